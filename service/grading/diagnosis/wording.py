@@ -26,9 +26,8 @@ UNIT_FACTORS: Final = (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001)
 def axes_of_row(axis: str, label: str, last: int) -> str:
     """Return the names of the two x or z axes that a row connects; ``axis`` is "x" or "z".
 
-    ``label`` is the label of the row; ``last`` is the number of the last joint. The axes have no
-    names in a row without a label, in a fixed row before the first joint, and in the second row
-    after the last joint.
+    ``label`` is the label of the row; ``last`` is the number of the last joint. For some fixed rows
+    the axes have no numbers; then the result is "the two z axes".
     """
     if label.isdecimal() and label != "0":
         return listed([f"{axis}{int(label) - 1}", f"{axis}{label}"])

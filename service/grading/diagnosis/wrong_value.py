@@ -36,8 +36,8 @@ class WrongValue:
     """A submitted value that differs from the expected value.
 
     ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the correct
-    answer in the student's ``spelling``. It is None if no formula is known, or if ``corrects`` is
-    False, which means that the report must not contain corrections.
+    answer as the student would write it. It is None if no formula is known, or if ``corrects`` is
+    False: then the report must not contain corrections.
     """
 
     expression: Expression
@@ -57,7 +57,7 @@ class WrongValue:
 
     @cached_property
     def slack(self) -> float:
-        """The most that rounding may have moved the value."""
+        """The largest error of the value that rounding can cause."""
         return rounding_slack(self.expression, self.samples)
 
     def equal(self, one: Numbers, other: Numbers) -> bool:
@@ -97,11 +97,11 @@ def finding_on(
 class WrongCell(WrongValue):
     """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
 
-    ``contained`` maps each joint to the count of its variable in the student's cell, or is None if
-    the cell is not linear in the variables. ``required`` maps each joint to the count in the
-    expected cell. If ``shared``, the joint's axis has a parallel neighbour, so that offsets along
-    it add up. ``joints`` are all joints of the robot. ``label`` is the label of the row, "" if
-    there is only one row.
+    ``contained`` maps each joint to the factor of its variable in the student's cell. It is None if
+    the cell is not linear in the variables. ``required`` maps each joint to the factor in the
+    expected cell. ``shared`` is true if the joint's axis is parallel to a neighbouring axis, so
+    that offsets along both axes add up. ``joints`` are all joints of the robot. ``label`` is the
+    label of the row, "" if there is only one row.
     """
 
     column: int
@@ -128,12 +128,12 @@ class WrongCell(WrongValue):
 
     @property
     def same_motion(self) -> bool:
-        """True if the cell moves with the joints as expected, so that only its constant differs."""
+        """True if the cell changes with the joints as it should: only its constant is wrong."""
         return self.contained == self.required
 
     @property
     def contained_alone(self) -> tuple[Joint, int] | tuple[None, int]:
-        """The only joint variable in the cell and its count, or ``(None, 0)``."""
+        """The only joint variable in the cell and its factor, or ``(None, 0)``."""
         contained = self.contained or {}
         return next(iter(contained.items())) if len(contained) == 1 else (None, 0)
 
@@ -222,10 +222,9 @@ def undefined(case: WrongValue) -> Finding | None:
 
 
 def differs(case: WrongValue, hint: str) -> Finding:
-    """Return a finding with ``hint`` and a counterexample, for an unexplained value.
+    """Return a finding with ``hint`` and a counterexample, for a value that nothing else explains.
 
-    The counterexample is computed from the printed numbers, so that a pocket calculator agrees. A
-    bare number usually has no counterexample, because its value is known already.
+    The counterexample is computed from the printed numbers, so that a pocket calculator agrees.
     """
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None
@@ -239,7 +238,7 @@ def differs(case: WrongValue, hint: str) -> Finding:
 
 
 def _at_printed(case: WrongValue) -> float:
-    """Return the value of the entry, computed from the printed numbers of sample 0."""
+    """Return the value of the student's entry, computed from the rounded numbers that are shown."""
     samples, names = case.samples, case.expression.symbols
     printed = {
         name: np.array([math.radians(number) if name in samples.in_degrees else number])

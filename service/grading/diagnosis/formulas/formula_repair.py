@@ -27,11 +27,10 @@ MAX_TEXT = 200
 
 @dataclass(slots=True)
 class Rewritten(Repaired[Node]):
-    """The student's formula without the misconception.
+    """A student's formula, rewritten as if the student did not have some misconception.
 
-    The rewritten formula explains the entry if the rewritten formula is correct. Unless ``signed``,
-    a rewritten formula with only a wrong sign explains the entry, too. ``WrongEntry`` then adds the
-    sign and the correction to the finding.
+    The misconception explains the wrong entry if the rewritten formula is correct. Its sign may be
+    wrong, unless ``signed`` is true.
     """
 
     signed: bool = False
@@ -42,7 +41,7 @@ class WrongEntry(WrongValue):
     """A wrong entry of a matrix or a list.
 
     ``turning`` maps the number of each turning joint to the symbol of its angle. If
-    ``only_compared``, the formula of the entry is not rewritten.
+    ``only_compared`` is true, the formula of the entry is not rewritten.
     """
 
     turning: Mapping[int, Symbol]
@@ -78,10 +77,9 @@ class WrongEntry(WrongValue):
                 yield self._completed(hypothesis, sign)
 
     def _sign(self, rewritten: Rewritten) -> int | None:
-        """Return the sign, 1 or -1, that makes the rewritten formula correct, or None.
+        """Return 1 if the rewritten formula is correct, -1 if its negative is correct, else None.
 
-        Only a formula that is correct at one point is evaluated at all samples. A rewritten formula
-        that has the same value as the student's formula explains nothing.
+        Return None also if the rewritten formula has the same value as the student's formula.
         """
         tree = rewritten.answer
         if tree is self.tree:

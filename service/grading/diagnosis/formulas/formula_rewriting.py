@@ -251,7 +251,7 @@ def _merged_factors(
 
 
 def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:
-    """Return the joints whose sines (or cosines) are factors of the same product.
+    """Return sets of joints whose sines (or cosines) are multiplied, such as {1, 2} for c1 c2.
 
     Each set has two or more consecutive joints of ``turning``.
     """
@@ -311,7 +311,7 @@ def factors_of(node: Node) -> tuple[int, list[Node]]:
 
 
 def joined(terms: list[Signed]) -> Node:
-    """Return the sum of the terms; there must be at least one."""
+    """Return the sum of the terms. There must be at least one term."""
     (sign, first), *others = terms
     total = _with_sign(sign, first)
     for sign, term in others:

@@ -49,7 +49,7 @@ NOT_RIGHT = say("This angle is not right: check which two directions it is measu
 
 
 class WrongAngle(WrongValue):
-    """The class under which records on wrong angles are registered; it has no instances."""
+    """Misconceptions about wrong angles are registered under this class. It has no instances."""
 
 
 @misconception(
@@ -111,7 +111,7 @@ def is_constant(angle: Numbers) -> bool:
     unlike={"3/1": "theta6/2"},
 )
 def lost_quadrant(case: WrongValue) -> Hypotheses:
-    """atan(y/x) was used for atan2(y, x); they differ by half a turn if x is negative."""
+    """The student used atan(y/x) instead of atan2(y, x). If x is negative, they differ by 180°."""
     opposite = np.abs(difference(case.actual, case.expected, angle=True)) > np.pi / 2
     if opposite.any() and not opposite.all():
         finding = finding_on(
@@ -225,7 +225,7 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
 
 @check(of=WrongAngle, rank=200)
 def of_sum(case: WrongValue) -> Explained | None:
-    """The correct angle is a sum of angles, and the student's sum has a slip (``angle_sum``)."""
+    """The correct angle is a sum of angles, and the student made a mistake in this sum."""
     return explanation(case, WrongSum.of(case))
 
 

@@ -18,7 +18,10 @@ MAX_ADDENDS = 6
 
 
 def addends(case: WrongValue) -> dict[str, int]:
-    """Return the count of each symbol in the correct angle; empty if the angle is not a sum."""
+    """Return the factor of each symbol in the correct angle: {"theta1": 1, "theta2": -1}.
+
+    The result is empty if the correct angle is not a sum of angles.
+    """
     names = list(case.samples.values)
     columns = [case.samples.values[name] for name in names]
     system = np.stack([*columns, np.ones_like(case.expected)], axis=1)
@@ -31,7 +34,7 @@ def addends(case: WrongValue) -> dict[str, int]:
 
 
 def _computed(case: WrongValue, names: Sequence[str]) -> dict[str, int]:
-    """Return the count of each symbol in an angle that was computed, for example by atan2.
+    """Return the factor of each symbol if the correct angle was computed, for example by atan2.
 
     A computed angle may differ from the sum of its symbols by whole turns.
     """
@@ -52,18 +55,18 @@ def _sum_of(case: WrongValue, counts: Mapping[str, int]) -> Numbers:
 
 @dataclass(frozen=True, slots=True)
 class WrongSum:
-    """A wrong angle, and the count of each symbol in the correct angle."""
+    """A wrong angle, with the factor of each symbol in the correct angle."""
 
     case: WrongValue
     counts: Mapping[str, int]
 
     @classmethod
     def of(cls, case: WrongValue) -> "WrongSum":
-        """Return the wrong angle with the counts of the symbols in the correct angle."""
+        """Return the wrong angle, with the factor of each symbol in the correct angle."""
         return cls(case, addends(case))
 
     def named(self, names: Iterable[str]) -> str:
-        """Return the symbols, listed by the names that the student uses."""
+        """Return the symbols as a list in words, by the names that the student uses."""
         return listed([self.case.spelling.names.get(name, name) for name in names])
 
     def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:

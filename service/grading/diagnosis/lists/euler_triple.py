@@ -90,10 +90,7 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
 
 
 def _on_angles(finding: Finding, angles: Numbers) -> Finding:
-    """Return the finding on ``angles``.
-
-    If their unit is wrong, and one of the angles is a formula, the hint is reworded.
-    """
+    """Return the finding. If it is on the unit of ``angles`` that vary, its hint is reworded."""
     is_of_unit = finding.hint in (angle.FITS_IN_DEGREES, angle.FITS_IN_RADIANS)
     if is_of_unit and not all(map(angle.is_constant, angles)):
         return replace(finding, hint=angle.CONVERTED)

@@ -28,8 +28,8 @@ from service.translations import say, template
 class WrongPosition(WrongNumbers):
     """Wrong coordinates ``(n, SAMPLES)`` of a point, along the ``axes`` 0, 1, 2.
 
-    ``chains`` holds the links that lead to the point if it is the end of a chain. ``slips``
-    compares the point with the answers that slips of the table lead to. ``motion`` holds the
+    If the point is the end of a chain of links, ``chains`` holds these links. ``slips`` compares
+    the point with the wrong answers that mistakes in the table lead to. ``motion`` holds the
     displacements in the formulas of the exercise.
     """
 
@@ -40,7 +40,7 @@ class WrongPosition(WrongNumbers):
 
     @cached_property
     def slip(self) -> Explained | None:
-        """The slip of the table that explains all coordinates, or None."""
+        """The mistake in the table that explains all coordinates, or None."""
         every = np.ones(len(self.axes), dtype=np.bool_)
         return None if self.slips is None else self.slips.explanation(every)
 
@@ -66,7 +66,7 @@ def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=20)
 def slip(case: WrongPosition) -> Explained | None:
-    """The table has a slip that is likelier than a reversed position."""
+    """A mistake in the table explains the position, and is likelier than a reversed position."""
     found = case.slip
     return None if found is None or found.findings[0].code in AFTER_SIGNS else found
 
@@ -90,7 +90,7 @@ def reversed_position(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=40)
 def slip_after_signs(case: WrongPosition) -> Explained | None:
-    """The table has a slip that is less likely than a reversed position."""
+    """A mistake in the table explains the position, but is less likely than a reversed position."""
     return case.slip
 
 
@@ -125,5 +125,5 @@ def other_pose(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=60)
 def displacement(case: WrongPosition) -> Explained | None:
-    """The displacements whose sum is the position were added wrongly."""
+    """The correct position is a sum of displacements, and the student added them wrongly."""
     return None if case.motion is None else explanation(case, case.motion, Displacements)

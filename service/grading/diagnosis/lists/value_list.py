@@ -21,7 +21,7 @@ SEARCH_WORK = 15.0
 def search_of(
     answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> SlipSearch | None:
-    """Return the search for slips of the table that explain a list of values, or None."""
+    """Return the search for mistakes in the table that explain a list of values, or None."""
     if answers is None:
         return None
     student = compared.student
@@ -44,10 +44,10 @@ def slips_of(
     grading: Grading,
     answers: SlippedAnswers | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """Return the findings on wrong readable values, as far as the work budget allows.
+    """Return the findings on the wrong values of a list, as far as the work budget allows.
 
-    The key of a finding is ``(place, 0)``. ``answers`` are the answers that follow if the values of
-    symbols change.
+    The key of a finding is ``(index of the value, 0)``. ``answers`` tells on which symbols each
+    correct value depends.
     """
     student, scales = compared.student, compared.scales(grading)
     requirements = answers and Requirements(

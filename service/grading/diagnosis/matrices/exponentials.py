@@ -18,10 +18,9 @@ from service.translations import say
 
 @dataclass(frozen=True, slots=True)
 class Exponentials:
-    """The factors of a product of exponentials.
+    """The factors of a product of exponentials: screw axes, joint values and home pose.
 
-    The screw axes ``(n, SAMPLES, 6)`` in the space and in the body frame, the joint values, and the
-    home pose.
+    The screw axes are given in the space frame and in the body frame, ``(n, SAMPLES, 6)`` each.
     """
 
     space: Numbers
@@ -144,7 +143,7 @@ def reversed_product(product: Exponentials) -> Hypotheses:
     unlike={"4/2": "1"},
 )
 def moment_sign(product: Exponentials) -> Hypotheses:
-    """For every turning joint, v has the wrong sign: v = ω × q."""
+    """The student wrote v = ω × q instead of −ω × q for every turning joint."""
     finding = says(
         say(
             "v has the wrong sign in the screw axes behind this: check the order of ω and q in the "
@@ -158,7 +157,10 @@ def moment_sign(product: Exponentials) -> Hypotheses:
 
 
 def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> list[Explanation]:
-    """Return the explanation of a wrong pose that is a product of exponentials, if there is one."""
+    """Return the explanation of a wrong pose that should be a product of exponentials.
+
+    The list is empty if no misconception about such products explains the pose.
+    """
     if not isinstance(exercise.reference, ScrewRobot):
         return []
     subset = samples.subset(case.actual.shape[-1] // 2)

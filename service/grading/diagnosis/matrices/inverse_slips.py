@@ -1,8 +1,8 @@
 """Slips in the inverse of a homogeneous transform.
 
-If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp. If the
-expected transform is not an inverse, the same wrong numbers mean a vector in the wrong frame or in
-the opposite direction.
+If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp. The same wrong
+numbers also occur in transforms that are not inverses. They then mean a vector in the wrong frame
+or in the opposite direction.
 """
 
 import numpy as np
@@ -29,7 +29,10 @@ def _with_rule(sentence: Sentence) -> Finding:
 
 
 def _parts(case: MatrixCase) -> tuple[Numbers, Numbers]:
-    """Return R ``(3, 3, samples)`` and p ``(3, samples)`` of the correct transform's inverse."""
+    """Return the rotation and the position of the inverse of the correct transform.
+
+    They are ``(3, 3, samples)`` and ``(3, samples)``.
+    """
     rotation = np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1)
     return rotation, -_turned(rotation, case.expected[:3, 3])
 
@@ -53,7 +56,7 @@ def _turned(rotation: Numbers, vector: Numbers) -> Numbers:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
-    """The whole transform was transposed, which inverts only a rotation."""
+    """The student transposed the whole transform to invert it. That inverts only a rotation."""
     finding = _with_rule(
         say(
             "This is the transpose of the transform, not its inverse: only a rotation is inverted "
@@ -83,7 +86,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def negated_for_inverse(case: MatrixCase) -> Hypotheses:
-    """All signs, or only the signs of the position, were changed. Nothing was transposed."""
+    """The student inverted a transform by changing all signs, or only those of the position."""
     if case.is_transform:
         rotation, position = _parts(case)
         for sign in (1, -1):
@@ -102,7 +105,7 @@ def negated_for_inverse(case: MatrixCase) -> Hypotheses:
     unlike={"1/1": "0", "1/3": "1"},
 )
 def negated_rotation(case: MatrixCase) -> Hypotheses:
-    """The signs of the rotation were changed in order to invert it."""
+    """The student changed the signs of a rotation in order to invert it."""
     rotation = case.expected[ROTATION_BLOCK]
     for written in (-np.swapaxes(rotation, 0, 1), -rotation):
         yield Written(written, NEGATED, ROTATION_BLOCK)
@@ -122,7 +125,7 @@ NEGATED = _with_rule(say("The signs were changed, but that does not invert a rot
     unlike={"1/1": "0", "1/4": "0", "3/4": "0", "4/4": "0"},
 )
 def position_not_turned(case: MatrixCase) -> Hypotheses:
-    """The position of the inverse is −p, without the rotation."""
+    """The student wrote −p instead of −Rᵀp for the position of the inverse."""
     finding = _with_rule(
         say(
             "The position is the right vector, but seen in the axes of the other frame: it must "
@@ -145,7 +148,7 @@ def position_not_turned(case: MatrixCase) -> Hypotheses:
     unlike={"3/3": "0", "3/4": "1"},
 )
 def position_not_inverted(case: MatrixCase) -> Hypotheses:
-    """The position was not inverted."""
+    """The student wrote p instead of −Rᵀp for the position of the inverse."""
     finding = _with_rule(
         say("The position is still that of the transform that was to be inverted.")
     )
@@ -169,7 +172,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
     unlike={"3/4": "2*pz"},
 )
 def position_reversed(case: MatrixCase) -> Hypotheses:
-    """The position was turned into the other frame, but its sign was not changed."""
+    """The student wrote Rᵀp instead of −Rᵀp for the position of the inverse."""
     finding = _with_rule(say("Every coordinate of the position has the wrong sign."))
     if case.is_transform:
         yield _position(-case.expected[:3, 3], finding)
@@ -186,7 +189,7 @@ def position_reversed(case: MatrixCase) -> Hypotheses:
     unlike={"2/4": "3"},
 )
 def position_turned_back(case: MatrixCase) -> Hypotheses:
-    """The position of the inverse is −R p."""
+    """The student wrote −R p instead of −Rᵀp for the position of the inverse."""
     finding = _with_rule(say("The position was turned by R, not by its transpose."))
     if case.is_transform:
         rotation, position = _parts(case)

@@ -26,7 +26,7 @@ class Lines:
 def line_sign(case: MatrixCase) -> Hypotheses:
     """A whole column or row has the wrong sign, because an axis points the opposite way.
 
-    If only one entry of a column or row is wrong, only this entry is diagnosed.
+    A column or row with a single wrong entry is not reported here.
     """
     opposite = case.agree(case.actual, -case.expected)
     wrong = case.wrong & case.mask(UPPER_ROWS)

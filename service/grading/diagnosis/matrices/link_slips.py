@@ -1,4 +1,4 @@
-"""Slips in a link transform that contains angles or factors of earlier links."""
+"""Slips in a single link transform, such as the angles of earlier joints in it."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -46,9 +46,9 @@ class LinkAmongOthers:
         convention: Convention,
         count: int,
     ) -> "LinkAmongOthers":
-        """Return the last of ``links`` ``(k, SAMPLES, 4, 4)`` with the links before it.
+        """Return the last of ``links`` ``(k, SAMPLES, 4, 4)``, together with the links before it.
 
-        The result has the first ``count`` samples of each half.
+        The result has fewer samples; ``count`` says how many.
         """
         turning = [joint.variable for joint in joints[: len(links) - 1] if not joint.prismatic]
         values = samples.subset(count).values
@@ -128,7 +128,7 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
     unlike={"A1.2/4": "R*s2"},
 )
 def translation_not_turned(link: LinkAmongOthers) -> Hypotheses:
-    """The position contains a and d as they are, not turned by the link's angle."""
+    """The student wrote a and d into the position without turning them by the link's angle."""
     finding = says(
         say(
             "The rotation is right, but the last column is not turned with it. Check the order of "

@@ -27,10 +27,10 @@ class MatrixCase(WrongNumbers):
     """A wrong matrix ``(rows, columns, SAMPLES)``; unreadable entries are NaN.
 
     ``wrong`` ``(rows, columns)`` marks the entries that have a value and are wrong. ``rigid`` is
-    True for a transform (4×4) or a rotation (3×3). If the matrix is a product of links, ``chains``
-    holds these links, else it is empty. ``motion`` holds the single motions in the formulas of the
-    exercise. ``slips`` compares the matrix with the answers that slips of the table lead to, or is
-    None if there are no such answers.
+    True for a transform (4×4) or a rotation (3×3). If the correct matrix is a product of links,
+    ``chains`` holds these links, else it is empty. ``motion`` holds the turns and displacements in
+    the formulas of the exercise. ``slips`` compares the matrix with the wrong answers that mistakes
+    in the table lead to. It is None if there are no such answers.
     """
 
     wrong: Mask
@@ -46,9 +46,9 @@ class MatrixCase(WrongNumbers):
 
     @cached_property
     def other_poses(self) -> tuple[list[Explained], Numbers]:
-        """The poses that slips in the product of the links lead to, and their entries.
+        """The wrong poses that mistakes in the product of links lead to, and all their entries.
 
-        The entries are ``(poses, rows, columns, SAMPLES)``, cut to the expected size.
+        The entries are ``(poses, rows, columns, SAMPLES)``, cut to the size of the expected matrix.
         """
         poses = other_poses(self.chains)
         rows, columns = self.expected.shape[:2]
@@ -85,7 +85,10 @@ class Explanation:
 
 
 def as_explanations(case: MatrixCase, found: Explained | None) -> list[Explanation]:
-    """Return the findings of a hypothesis, with the entries that it explains; [] for None."""
+    """Convert a hypothesis to explanations: its findings, with a mask of the entries they explain.
+
+    The list is empty if ``found`` is None.
+    """
     if found is None:
         return []
     return [Explanation(finding, case.mask(found.entries)) for finding in found.findings]

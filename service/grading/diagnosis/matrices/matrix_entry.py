@@ -185,10 +185,7 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def relative_angle(case: WrongEntry) -> Formulas:
-    """The student wrote a joint's own angle for the sum of the angles up to it: c2 for c12.
-
-    A joint angle is measured from the link before, not from the base.
-    """
+    """The student wrote a joint's own angle for the sum of the angles up to it: c2 for c12."""
     finding = says(
         say(
             "A joint angle is measured from the link before: the direction of a link is the sum "
@@ -296,10 +293,10 @@ def diagnose_entries(
     work_budget: float = WORK_BUDGET,
     requirements: Requirements | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """Return the findings on the wrong entries, as far as the submission's budget ``affords``.
+    """Return the findings on the wrong entries of a matrix, as far as the work budgets allow.
 
-    ``work_budget`` is the budget of the matrix. When this budget is used up, formulas are no longer
-    rewritten.
+    ``affords`` takes work from the budget of the submission. ``work_budget`` is the budget of the
+    matrix. When it is used up, formulas are no longer rewritten.
     """
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():

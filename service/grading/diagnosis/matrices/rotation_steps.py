@@ -22,7 +22,10 @@ MAX_STEPS = 4
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A turn: axis "X", "Y" or "Z", rotation ``(SAMPLES, 3, 3)``, and whether the axis is fixed."""
+    """One turn of a composite rotation.
+
+    ``axis`` is "X", "Y" or "Z", ``rotation`` is ``(SAMPLES, 3, 3)``. The axis is fixed or moving.
+    """
 
     axis: str
     rotation: Matrices
@@ -63,7 +66,7 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     unlike={"2/3": "cos(theta)*cos(psi)", "3/3": "-sin(theta)"},
 )
 def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
-    """A turn about a moving axis was multiplied as one about a fixed axis, or the reverse."""
+    """A turn about a moving axis was multiplied as if the axis were fixed, or vice versa."""
     exchanged = [replace(step, fixed=not step.fixed) for step in steps]
     finding = _with_rule(say("Every turn was multiplied from the wrong side."))
     yield _made_of(exchanged, finding)
@@ -222,13 +225,16 @@ def another_order(steps: Sequence[Step]) -> Hypotheses:
 
 
 def _about(axis: str, step: Step) -> Matrices:
-    """Return the turn of a step by the same angle, but about ``axis``."""
+    """Return the rotation of a turn by the same angle, but about ``axis``."""
     shift = (ord(axis) - ord(step.axis)) % 3
     return np.roll(step.rotation, (shift, shift), axis=(1, 2))
 
 
 def _subsets(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
-    """Yield the places of some steps, the fewest first; with many steps, single places only."""
+    """Yield sets of turns by their indices, the smallest sets first.
+
+    If there are many turns, yield only sets of one turn.
+    """
     most = len(steps) if len(steps) <= MAX_STEPS else 1
     return chain.from_iterable(combinations(range(len(steps)), k) for k in range(1, most + 1))
 
@@ -238,7 +244,10 @@ def _numbers(places: Sequence[int]) -> str:
 
 
 def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
-    """Return the explanation of a wrong rotation that is composed of ``steps``, if there is one."""
+    """Return the explanation of a wrong rotation that should be the product of these turns.
+
+    The list is empty if no misconception explains the rotation.
+    """
     count = case.actual.shape[-1] // 2
     subset = [replace(step, rotation=Samples.subset_of(step.rotation.T, count).T) for step in steps]
     return as_explanations(case, explanation(case, subset, Step)) if steps else []

@@ -1,6 +1,6 @@
 """Slips in a whole matrix, or in its whole rotation or position.
 
-Entries that a slip of the whole matrix or block explains get no finding of their own.
+If such a slip explains an entry, the entry gets no finding of its own.
 """
 
 from collections.abc import Mapping, Sequence
@@ -83,7 +83,7 @@ def transposed_matrix(case: MatrixCase) -> Hypotheses:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def inverse_transform(case: MatrixCase) -> Hypotheses:
-    """The answer describes the first frame in the last one."""
+    """The student submitted the inverse of the correct transform."""
     if case.is_transform:
         yield Written(_inverted(case.expected)[UPPER_ROWS], INVERTED, UPPER_ROWS)
 
@@ -110,7 +110,7 @@ def _inverted(matrix: Numbers) -> Numbers:
 
 @misconception(of=UpperRows, rank=60)
 def other_pose(case: MatrixCase) -> Hypotheses:
-    """The answer is another pose than the part asks for."""
+    """The student submitted the pose of another frame, or another product of the links."""
     for pose, entries in zip(*case.other_poses, strict=True):
         # Translators: {pose} is a name such as "the pose of frame {2}".
         found = named(pose, template("This matrix is {pose}. {advice}"))
@@ -131,7 +131,7 @@ def other_pose(case: MatrixCase) -> Hypotheses:
     unlike={"2/2": "90"},
 )
 def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
-    """The answer is the inverse of another pose."""
+    """The student submitted the inverse of another pose than the expected one."""
     if case.is_transform:
         poses, entries = case.other_poses
         for pose, inverted in zip(poses, _inverted(entries), strict=True):
@@ -150,7 +150,7 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     unlike={"1/3": "1", "4/4": "0"},
 )
 def transposed_rotation(case: MatrixCase) -> Hypotheses:
-    """The rotation has the axes of the first frame, described in the last one."""
+    """The student submitted the transpose of the correct rotation."""
     finding = says(
         say(
             "The rotation is transposed: its columns, not its rows, must be the axes of the frame "
@@ -226,27 +226,27 @@ def _from_other_poses(case: MatrixCase, block: Block, told: str) -> Hypotheses:
 
 @check(of=UpperRows, rank=20)
 def slip_of_rows(case: MatrixCase) -> Explained | None:
-    """A slip of the table explains the wrong rotation and the wrong position."""
+    """A mistake in the DH table explains the wrong rotation and the wrong position."""
     return _of_slips(case, UPPER_ROWS)
 
 
 @check(of=RotationBlock, rank=20)
 def slip_of_rotation(case: MatrixCase) -> Explained | None:
-    """A slip of the table explains the wrong rotation."""
+    """A mistake in the DH table explains the wrong rotation."""
     return _of_slips(case, ROTATION_BLOCK)
 
 
 @check(of=PositionBlock, rank=20)
 def slip_of_position(case: MatrixCase) -> Explained | None:
-    """A slip of the table explains the wrong position."""
+    """A mistake in the DH table explains the wrong position."""
     return _of_slips(case, POSITION_BLOCK)
 
 
 def _of_slips(case: MatrixCase, block: Block) -> Explained | None:
-    """Return the slips of the table that explain a block, or None.
+    """Return the mistakes in the DH table that explain a block of the matrix, or None.
 
-    ``line_sign`` is preferred if the axes of a frame have nothing but wrong signs. A single wrong
-    entry is diagnosed as an entry, unless the slip explains the whole matrix.
+    If axes of a frame with wrong signs explain the block, too, that simpler explanation is
+    preferred.
     """
     entries = case.mask(block)
     if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
@@ -330,10 +330,7 @@ def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
 
 
 def _fault(rotation: Numbers) -> Sentence | None:
-    """Return the message on the first column without length 1, or None.
-
-    If all columns have length 1, the message is on the first two that are not at right angles.
-    """
+    """Return the message on a rotation whose columns are not orthonormal, or None if they are."""
     products = np.swapaxes(rotation, 1, 2) @ rotation
     wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
@@ -375,15 +372,14 @@ def _of_blocks(case: MatrixCase) -> list[Explanation]:
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
-    """Return a mask of the wrong entries that no explanation covers."""
+    """Return a mask of the wrong entries that none of the explanations covers."""
     return np.asarray(case.wrong & ~np.any([each.entries for each in explained], axis=0))
 
 
 def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:
-    """Return the finding that the student's rotation lacks a property of rotations, or None.
+    """Return a finding if the student's rotation is left-handed or not orthonormal, else None.
 
-    A left-handed frame is always reported, other faults only if an entry is unexplained. ``slips``
-    are the findings on the entries.
+    ``slips`` are the findings on the single entries.
     """
     rotation = np.moveaxis(case.actual[ROTATION_BLOCK], -1, 0)
     codes = [finding.code for (i, j), finding in slips.items() if i < 3 and j < 3]

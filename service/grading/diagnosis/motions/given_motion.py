@@ -1,8 +1,8 @@
-"""A motion composed of several, whose result the exercise gives in formulas.
+"""Split a composite motion, which an exercise gives in formulas, into turns and displacements.
 
-The formulas show the single motions. A displacement is the part of the position that contains
-certain lengths. The turns before a displacement are the turns whose angles change this part. A turn
-is the rotation with all angles but one set to 0.
+A displacement is the part of the position that contains certain lengths. The turns before a
+displacement are those whose angles change this part. A turn is the rotation that remains if all
+angles except one are set to 0.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
@@ -35,10 +35,10 @@ IN_NUMBERS = Displacement((), ())
 
 @dataclass(frozen=True)
 class GivenMotion:
-    """The formulas of a position (one row), a rotation or a transform, split into single motions.
+    """A composite motion given in formulas: a position (one row), a rotation or a transform.
 
-    ``values`` are the values of the symbols at ``count`` samples. ``angles`` and ``lengths`` are
-    the symbols in the formulas.
+    ``angles`` and ``lengths`` are the symbols in the formulas. ``values`` are the values of these
+    symbols at ``count`` samples.
     """
 
     grid: FormulaGrid
@@ -49,7 +49,7 @@ class GivenMotion:
 
     @classmethod
     def of(cls, part_id: str, exercise: Exercise, samples: Samples) -> "GivenMotion | None":
-        """Return the motion of a part, or None if the exercise gives no formulas for it."""
+        """Return the motion that a part of an exercise asks for, or None if it has no formulas."""
         grid = exercise.formulas.get(part_id)
         if grid is None:
             return None
@@ -76,7 +76,7 @@ class GivenMotion:
             return grid_values(tuple(map(tuple, grid)), values, self.count)
 
     def part(self, displacement: Displacement, straight: Sequence[str] = ()) -> Numbers:
-        """Return a part of the position, with the angles ``straight`` set to 0."""
+        """Return one displacement in numbers, with the angles ``straight`` set to 0."""
         key = displacement.lengths, tuple(straight)
         if key not in self._parts:
             self._parts[key] = self._part(displacement, straight)
@@ -94,9 +94,10 @@ class GivenMotion:
 
     @cached_property
     def displacements(self) -> list[Displacement]:
-        """The displacements whose sum is the position, those with the fewest turns first.
+        """The displacements that sum to the position.
 
-        The list is empty if the position is not a sum of displacements.
+        Displacements with few turns before them come first. The list is empty if the position is
+        not a sum of displacements.
         """
         by_angles: dict[tuple[str, ...], list[str]] = {}
         for name in self.lengths:
@@ -108,7 +109,7 @@ class GivenMotion:
         return sorted(found, key=lambda each: len(each.angles)) if _is_zero(rest) else []
 
     def _turning(self, displacement: Displacement) -> tuple[str, ...]:
-        """Return the angles that change a part of the position."""
+        """Return the angles that change this displacement."""
         right = self.part(displacement)
         return tuple(
             angle for angle in self.angles if not _is_zero(self.part(displacement, [angle]) - right)
@@ -116,7 +117,7 @@ class GivenMotion:
 
     @cached_property
     def order(self) -> tuple[str, ...] | None:
-        """The angles in the order of their turns; None if the rotation is no product of turns."""
+        """The angles in the order of their turns. None if the rotation is no product of turns."""
         if not self.angles or not _is_zero(self.rotation(self.angles) - np.eye(3)[..., None]):
             return None
         right = self.rotation()
@@ -129,7 +130,7 @@ class GivenMotion:
 
     @cached_property
     def _turns(self) -> dict[str, Matrices]:
-        """For each angle, the turn ``(samples, 3, 3)`` by only this angle."""
+        """The rotation ``(samples, 3, 3)`` about each angle, with all other angles 0."""
         return {
             angle: np.moveaxis(self.rotation(set(self.angles) - {angle}), -1, 0)
             for angle in self.angles
@@ -137,7 +138,10 @@ class GivenMotion:
 
     @cached_property
     def steps(self) -> list[Matrices] | None:
-        """The motions ``(samples, 4, 4)``, each a displacement and then a turn, or None."""
+        """The single motions ``(samples, 4, 4)`` whose product is the whole motion, or None.
+
+        Each single motion is a displacement and then a turn.
+        """
         if self.order is None or len(self.displacements) > len(self.order) + 1:
             return None
         places = {frozenset(self.order[:i]): i for i in range(len(self.order) + 1)}

@@ -28,8 +28,8 @@ LinkPose = Written[Matrices]
 class Chain:
     """The links of the reference robot.
 
-    ``table`` is ``(rows, 4, SAMPLES)``. ``frames`` names the frame before each row, then the last
-    frame.
+    ``table`` is the DH table ``(rows, 4, SAMPLES)``. ``frames`` are the names of the frames before
+    each row and of the last frame.
     """
 
     table: Table
@@ -43,12 +43,12 @@ class Chain:
 
     @cached_property
     def from_base(self) -> Matrices:
-        """For each row, the pose of the next frame in the base frame: A_1, A_1 A_2 and so on."""
+        """The poses of frames 1, 2, … in the base frame: A_1, A_1 A_2 and so on."""
         return _running_products(self.links)
 
     @cached_property
     def to_end(self) -> Matrices:
-        """For each row, the last frame's pose in the previous frame: A_1 … A_n first, A_n last."""
+        """The pose of the last frame in frames 0, 1, …: A_1 … A_n first, A_n last."""
         turned = np.swapaxes(self.links[::-1], -1, -2)
         return np.swapaxes(_running_products(turned), -1, -2)[::-1]
 
@@ -75,7 +75,7 @@ def _running_products(transforms: Matrices) -> Matrices:
 
 
 def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
-    """Return the links of the exercise's robot, in its own convention."""
+    """Return the links of the exercise's robot, as a tuple with a single element."""
     robot = exercise.robot
     table = robot.tables[robot.convention]
     base = str(robot.joints[0].index - 1)
@@ -171,7 +171,7 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/1": "0"},
 )
 def wrong_base(chain: Chain) -> Iterator[LinkPose]:
-    """The pose was described in a later frame instead of the base frame."""
+    """The pose was described in a later frame instead of in the base frame."""
     for k in range(1, len(chain.links)):
         finding = _other_pose(
             say("the pose seen from frame {frame}", frame=chain.frame(k)),
@@ -225,10 +225,9 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     unlike={"1/4": "-(a1*c1 + a2*c12)", "3/3": "-1/2"},
 )
 def premultiplied(chain: Chain) -> Iterator[LinkPose]:
-    """One link transform, or every turn and shift, was multiplied from the left.
+    """One link transform, or each single turn and shift, was multiplied from the left.
 
-    The student took the turns as if they were about the base axes. With every turn and shift on the
-    left, the whole product is reversed.
+    That is correct for motions about fixed axes, but the axes of the links move.
     """
     order = list(range(len(chain.links)))
     advice = say("Check on which side a motion about a moving axis is multiplied.")
@@ -266,8 +265,7 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
 def row_order(chain: Chain) -> Iterator[LinkPose]:
     """One row of the table, or its link transform, is at another place in the product.
 
-    An exchange of two neighbours is a slip of the table (``rows_and_columns``). A link transform
-    moved to the front was multiplied from the left (``premultiplied``).
+    Exchanges of two neighbours, and link transforms moved to the front, are not tried here.
     """
     count = len(chain.links)
     orders = [
@@ -295,10 +293,9 @@ def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
 
 
 def named(pose: Explained, told: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
-    """Return a function that builds the findings on a pose.
+    """Return a function that builds the findings on a pose, after the findings ``others``.
 
-    ``told`` is the template of the hints on the pose, such as "This matrix is {pose}. {advice}".
-    The findings ``others`` come first.
+    ``told`` is the template of the hint, such as "This matrix is {pose}. {advice}".
     """
 
     def findings() -> Iterator[Finding]:

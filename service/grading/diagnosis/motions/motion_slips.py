@@ -1,4 +1,4 @@
-"""Slips in a motion composed of several, whose result the exercise gives in formulas."""
+"""Slips in a composite motion (turns and displacements) that an exercise gives in formulas."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
@@ -62,7 +62,7 @@ def _with_sum(sentence: Sentence) -> Finding:
     unlike="[l1, 0, h]",
 )
 def displacement_not_turned(motion: GivenMotion) -> Hypotheses:
-    """A displacement was added without the turns before it: d1 + d2 for d1 + R1 d2."""
+    """The student added a displacement without the turns before it: d1 + d2 for d1 + R1 d2."""
     found = motion.displacements
     if prod(2 ** len(each.angles) for each in found) > MAX_WAYS:
         return
@@ -144,10 +144,9 @@ def lone_displacement(motion: GivenMotion) -> Hypotheses:
 
 
 def _are_numbered(found: Sequence[Displacement]) -> bool:
-    """True if each displacement is turned by one more angle than the displacement before it.
+    """True if displacement 1 is not turned, and each other one has one more turn before it.
 
-    The first displacement must not be turned. Then displacement ``i``, counted from 0, belongs to
-    motion ``i + 1``.
+    Then each displacement belongs to the motion with the same number.
     """
     return [len(each.angles) for each in found] == list(range(len(found)))
 
@@ -241,7 +240,7 @@ OTHER_ORDER = says(
     unlike={"2/2": "0"},
 )
 def steps_in_reverse(motion: GivenMotion) -> Hypotheses:
-    """The motions were multiplied in reverse order; the last two may be in the correct order."""
+    """The motions were multiplied in reverse order, or all but the last two."""
     steps = motion.steps
     if steps is not None and len(steps) > 2:
         *moved, last = steps
@@ -254,7 +253,7 @@ def _subsets(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _in_matrix(case: MatrixCase, of: type, block: Block) -> Hypotheses:
-    """Yield the hypotheses about one block of a matrix."""
+    """Yield the hypotheses about one block of a matrix, such as its rotation."""
     motion = None if block != ROTATION_BLOCK and not case.is_transform else case.motion
     for hypothesis in hypotheses_of(motion, of) if motion else ():
         answer = hypothesis.answer.reshape(case.expected[block].shape)
@@ -263,17 +262,17 @@ def _in_matrix(case: MatrixCase, of: type, block: Block) -> Hypotheses:
 
 @misconception(of=UpperRows, rank=90)
 def motion_of_rows(case: MatrixCase) -> Hypotheses:
-    """The transform is composed of other motions than the formulas say."""
+    """The transform is composed of other motions than the exercise's formulas say."""
     return _in_matrix(case, WholeMotion, UPPER_ROWS)
 
 
 @misconception(of=RotationBlock, rank=90)
 def turns_of_rotation(case: MatrixCase) -> Hypotheses:
-    """The rotation is composed of other turns than the formulas say."""
+    """The rotation is composed of other turns than the exercise's formulas say."""
     return _in_matrix(case, TurnsOfMotion, ROTATION_BLOCK)
 
 
 @misconception(of=PositionBlock, rank=90)
 def displacements_of_position(case: MatrixCase) -> Hypotheses:
-    """The position is a sum of other displacements than the formulas say."""
+    """The position is a sum of other displacements than the exercise's formulas say."""
     return _in_matrix(case, Displacements, POSITION_BLOCK)

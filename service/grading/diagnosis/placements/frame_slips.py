@@ -1,4 +1,4 @@
-"""The rules of the DH conventions that a placed frame breaks."""
+"""Find which rule of the DH conventions a wrongly placed frame breaks."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -27,9 +27,9 @@ class WrongPlacement:
 
     @property
     def is_standard(self) -> bool:
-        """True if x must cross the z axis of the previous frame.
+        """True in the standard convention, where x must cross the z axis of the previous frame.
 
-        Otherwise x must cross the z axis of the next frame.
+        In the modified convention, x must cross the z axis of the next frame.
         """
         return self.convention is Convention.STANDARD
 

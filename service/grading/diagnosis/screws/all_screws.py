@@ -56,7 +56,7 @@ class WrongScrews(WrongNumbers):
     unlike={"1/2": "90"},
 )
 def exchanged_halves(case: WrongScrews) -> Hypotheses:
-    """Every axis was written as (v; ω)."""
+    """Every axis was written as (v; ω) instead of (ω; v)."""
     yield Written(np.roll(case.expected, 3, axis=1), EXCHANGED_HALVES)
 
 
@@ -90,7 +90,7 @@ def axes_reversed(case: WrongScrews) -> Hypotheses:
     unlike={"2/4": "0", "2/6": "1"},
 )
 def moment_signs(case: WrongScrews) -> Hypotheses:
-    """For every turning joint, v has the wrong sign: v = ω × q."""
+    """The student wrote v = ω × q instead of −ω × q for every turning joint."""
     axes = [
         axis.with_velocity(axis.pitch * axis.direction - axis.moment) if axis.turns else right
         for axis, right in zip(case.axes, case.expected, strict=True)
@@ -120,8 +120,8 @@ def other_frame(case: WrongScrews) -> Hypotheses:
 def explain_screws(case: WrongScrews) -> Finding | None:
     """Return the finding that explains all wrong axes, or None.
 
-    Also return None if an axis could not be read. If only one axis is wrong, only the order of the
-    halves ω and v is checked.
+    Return None also if an axis could not be read. If only one axis is wrong, only the order of ω
+    and v is checked.
     """
     if not np.isfinite(case.actual).all():
         return None

@@ -47,7 +47,7 @@ class WrongScrew(WrongNumbers):
 
     @cached_property
     def moment(self) -> Numbers:
-        """The part −ω × q of v, which depends on the place of the axis, ``(3, SAMPLES)``."""
+        """The part −ω × q of v, ``(3, SAMPLES)``. It depends on where the axis is."""
         return self.expected[3:] - self.pitch * self.direction
 
     def with_velocity(self, velocity: Numbers) -> Numbers:
@@ -115,7 +115,7 @@ def axis_reversed(case: WrongScrew) -> Hypotheses:
     unlike="[1, -2, 0, 0, 0, 0]",
 )
 def moment_sign(case: WrongScrew) -> Hypotheses:
-    """The vector v has the wrong sign: the student wrote v = ω × q."""
+    """The student wrote v = ω × q instead of −ω × q."""
     if case.turns:
         velocity = case.pitch * case.direction - case.moment
         yield Written(case.with_velocity(velocity), MOMENT_SIGN)
@@ -149,7 +149,7 @@ def other_frame(case: WrongScrew) -> Hypotheses:
     unlike={"1/5": "1"},
 )
 def sliding_as_turning(case: WrongScrew) -> Hypotheses:
-    """A sliding joint, which has ω = 0 (infinite pitch), was written as a turning joint."""
+    """The axis of a sliding joint was written as that of a turning joint. It should have ω = 0."""
     finding = says(
         say("This joint slides and does not turn: check which of ω and v holds its direction."),
         say("ω is 0, and v is the unit vector of the direction."),
@@ -188,7 +188,7 @@ def turning_as_sliding(case: WrongScrew) -> Hypotheses:
     unlike={"1/3": "0", "1/5": "1"},
 )
 def exchanged_halves(case: WrongScrew) -> Hypotheses:
-    """The halves were written as (v; ω)."""
+    """The axis was written as (v; ω) instead of (ω; v)."""
     yield Written(np.concatenate([case.expected[3:], case.direction]), EXCHANGED_HALVES)
 
 
@@ -202,7 +202,7 @@ def exchanged_halves(case: WrongScrew) -> Hypotheses:
     unlike={"1/4": "0"},
 )
 def not_normalised(case: WrongScrew) -> Hypotheses:
-    """ω, or v of a sliding joint, is not of unit length."""
+    """The vector ω does not have length 1. For a sliding joint, v does not have length 1."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = says(
         say(
@@ -291,7 +291,7 @@ def point_off_axis(case: WrongScrew) -> Hypotheses:
     unlike={"1/1": "1"},
 )
 def other_direction(case: WrongScrew) -> Hypotheses:
-    """The unit vector is not parallel to the joint axis."""
+    """The unit vector (ω, or v of a sliding joint) is not parallel to the joint axis."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = says(
         say(

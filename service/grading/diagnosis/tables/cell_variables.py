@@ -32,7 +32,7 @@ CONVERTED = say(
     unlike={"6/d": "0"},
 )
 def unknown_length(case: WrongCell) -> Finding | None:
-    """The cell contains a length that the exercise does not have: d1 where joint 1 turns."""
+    """The cell contains a length that the exercise does not have, such as d1 if joint 1 turns."""
     name, joint = _absent(case)
     if joint is None or joint.prismatic:
         return None
@@ -83,10 +83,10 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
-    """Return a name in the cell that the robot does not have, and the joint with its number.
+    """Return a variable in the cell that the robot does not have, and the joint with its number.
 
-    The name is "" if the robot has all names in the cell. The joint is None if no joint has the
-    number in the name.
+    Return "" if the robot has all variables in the cell. The joint is None if no joint has the
+    number.
     """
     absent = sorted(case.samples.absent_names([case.expression]))
     if not absent:
@@ -105,7 +105,7 @@ def _absent(case: WrongCell) -> tuple[str, Joint | None]:
     unlike={"1/theta": "-theta1"},
 )
 def joint_variable_missing(case: WrongCell) -> Finding | None:
-    """The joint variable is missing, as if the table described the drawn pose."""
+    """The joint variable is missing, as if the joint could not leave the drawn pose."""
     if case.joint is None or not case.required or case.contained != {}:
         return None
     joint = case.joint.index
@@ -127,7 +127,7 @@ def joint_variable_missing(case: WrongCell) -> Finding | None:
     unlike={"6/d": "0"},
 )
 def joint_variable_sign(case: WrongCell) -> Finding | None:
-    """The joint moves in the negative sense of its axis."""
+    """The joint variable has the wrong sign."""
     opposite = {joint: -count for joint, count in case.required.items()}
     if case.joint is None or not opposite or case.contained != opposite:
         return None

@@ -46,11 +46,10 @@ _PERMUTED = register(
 
 
 def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
-    """Yield the table in each order of columns that suits its cells, most likely first.
+    """Yield the table in each other order of columns that suits its cells best, likeliest first.
 
-    A column with joint variables is d or θ. Formulas with lengths are not angles; formulas in
-    degrees are not lengths. Yield nothing if the written order suits the cells as well as any
-    other. Each table is built on demand.
+    For example, a column with joint variables must be d or θ, and a column with lengths must be a
+    or d. Yield nothing if the written order suits the cells as well as any other.
     """
     if table.reread is None or _suits(table, grading):
         return
@@ -77,11 +76,7 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
 
 
 def _suits(table: StudentTable, grading: Grading) -> bool:
-    """True if all cells obviously suit their own columns.
-
-    This test is fast. Most wrong tables pass it, so that their lengths need not be read as angles
-    and their angles not as lengths.
-    """
+    """True if all cells obviously suit their own columns. This test is fast."""
     sliding = _sliding(grading.exercise.joints)
     known = grading.exercise.vocabulary.by_name
     return all(
@@ -114,7 +109,10 @@ def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
 
 
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
-    """Count, for each written column, the cells that do not suit a, α, d and θ: ``(4, 4)``."""
+    """Count the cells of each written column that cannot be a, α, d or θ: ``(4, 4)``.
+
+    ``other`` is the same table with lengths read as angles and angles read as lengths.
+    """
     sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):

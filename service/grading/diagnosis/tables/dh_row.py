@@ -1,4 +1,4 @@
-"""Slips in the DH row of a transform: a missed condition, or another transform's row."""
+"""Slips in the DH row of a transform, or in the answer that a transform has no DH row."""
 
 from dataclasses import dataclass
 from typing import ClassVar
@@ -27,7 +27,7 @@ class WrongRow(WrongNumbers):
     angle: ClassVar[ArrayLike] = IS_ANGLE[:, None]
 
     def row_of(self, transform: Matrices, convention: Convention) -> Numbers | None:
-        """Return the row ``(4, SAMPLES)`` of a transform in a convention, or None."""
+        """Return the DH row ``(4, SAMPLES)`` of a transform, or None if it has no DH row."""
         length_scale = float(np.asarray(self.scale)[A])
         if violated(transform, convention, length_scale):
             return None
@@ -44,7 +44,7 @@ class WrongRow(WrongNumbers):
     unlike={"a": "pi/2", "alpha": "0", "d": "2", "theta": "3"},
 )
 def exchanged_parameters(case: WrongRow) -> Hypotheses:
-    """The student's row has a and d, or α and θ, in each other's places."""
+    """The student exchanged a and d, or α and θ."""
     for first, last, order in (("a", "d", [2, 1, 0, 3]), ("α", "θ", [0, 3, 2, 1])):
         hint = say(
             "{first} and {last} are exchanged: a and α are measured along and about x, d and θ "
@@ -134,7 +134,7 @@ def axes_named(convention: Convention) -> tuple[str, str]:
 
 
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """Return the findings on the conditions that a transform without a row violates."""
+    """Return findings on the DH conditions that a transform without a DH row violates."""
     x, z = axes_named(convention)
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = _NOT_PERPENDICULAR.finding(
@@ -164,7 +164,7 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
 
 
 def has_a_row(convention: Convention) -> Finding:
-    """Return the finding for the answer "none" to a transform that has a row."""
+    """Return the finding for the answer "none" if the transform has a DH row."""
     x, z = axes_named(convention)
     return _ROW_EXISTS.finding(
         say(

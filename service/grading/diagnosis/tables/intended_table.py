@@ -1,4 +1,4 @@
-"""A table without a systematic slip, and the search for one row with a and d exchanged."""
+"""The table that a student intended, without one systematic slip such as an exchange of a and d."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -20,7 +20,10 @@ _EXCHANGED = [D, 1, A, 3]
 
 
 class IntendedTable(NamedTuple):
-    """A table without a slip, the finding on the slip, and the cells that have the slip."""
+    """The table that the student intended, without one systematic slip.
+
+    ``finding`` describes the slip; ``cells`` are the cells that have it.
+    """
 
     table: StudentTable
     finding: Finding
@@ -30,11 +33,9 @@ class IntendedTable(NamedTuple):
 def with_exchanged_row(
     table: StudentTable, convention: Convention | None, grading: Grading
 ) -> IntendedTable | None:
-    """Return the table with a and d exchanged in one row, if they then agree with the reference.
+    """Return the table with a and d exchanged in one row, if that makes both cells correct.
 
-    Return None unless exactly one row becomes correct in this way. Without this repair, the report
-    might blame a correct row: before a sliding joint, a wrong ``a`` can look like a choice of
-    frames.
+    Return None unless there is exactly one such row.
     """
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)

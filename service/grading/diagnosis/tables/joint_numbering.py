@@ -81,10 +81,9 @@ def _joint_variables(row: StudentRow, vocabulary: Vocabulary) -> set[str]:
 
 
 def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joint]) -> bool:
-    """True if this numbering gives each row the variable of its own joint and no other.
+    """True if this numbering gives each row the variable of its own joint and no other variable.
 
-    If the numbering changes only one row, that row must contain a joint variable that the robot
-    does not have.
+    ``used`` are the joint variables in each row; ``meanings`` is the numbering.
     """
     if len(used) < len(joints):
         return False
@@ -98,7 +97,7 @@ def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joi
 
 
 def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[Finding, Meanings]]:
-    """Yield, for each other numbering, a finding and a map from names to joint variables."""
+    """Yield each other numbering: a finding on it, and a map from written to correct variables."""
     first = joints[0].index
     by_index = {joint.index: joint for joint in joints}
     for start in {0, 1} - {first}:

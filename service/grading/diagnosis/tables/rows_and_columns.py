@@ -1,7 +1,6 @@
 """Slips in whole rows or columns of the robot's table that lead to a wrong answer.
 
-These slips change the numbers of the table but no symbols. So they are the same whatever frames are
-chosen.
+These slips change numbers of the table, but no symbols.
 """
 
 from collections.abc import Iterable, Iterator, Sequence
@@ -37,7 +36,7 @@ from service.translations import say
 class TableRows:
     """The rows of a table, with their ``constants`` ``(rows, 4)`` at one sample.
 
-    The constants are the cells with all joint variables 0. ``joints`` belong to the first rows;
+    The constants are the cells with all joint variables 0. The first rows belong to the ``joints``;
     ``labels`` are the labels of all rows. ``home`` is True if the answer is for the home position,
     so that no joint moves. ``multiplied`` is True if the answer is the product of the links, False
     if it is the links themselves.
@@ -91,7 +90,7 @@ def exchanged_in_row(
 
 
 def exchanged_throughout(rows: TableRows) -> Iterator[Slip]:
-    """Yield the exchange of a and d in all rows."""
+    """Yield the slip in which a and d are exchanged in all rows."""
 
     def words(_: Names) -> SlipWords:
         return SlipWords(
@@ -117,7 +116,7 @@ def _exchanged(row: int, *, moving: bool = False) -> tuple[CellChange, ...]:
 def negated_columns(rows: TableRows) -> Iterator[Slip]:
     """Yield the slips in which one column has the wrong sign in all rows.
 
-    The joint variables keep their signs, or change them, too.
+    The joint variables in the column have the wrong sign, too, or keep their signs.
     """
     for column in range(len(COLUMNS)):
         cells = rows.constants[:, column]
@@ -141,10 +140,9 @@ def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
 
 
 def other_table(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips of a table in the other convention: a and α are in a neighbouring row.
+    """Yield the slips in which the table was written in the other convention.
 
-    A standard table has no a and α before the axis of the first joint. In a modified table, the
-    last row, from the last joint to the end effector, may be missing.
+    Then a and α are in a neighbouring row.
     """
     last = len(rows.constants) - 1
     cells: list[CellChange] = []
@@ -162,7 +160,7 @@ def other_table(rows: TableRows) -> Iterator[Slip]:
 
 
 def _of_link(row: int, source: int) -> tuple[CellChange, ...]:
-    """Return the changes that take a row's a and α from another row."""
+    """Return the changes that replace a and α of a row by those of the row ``source``."""
     return tuple(CellChange(row, column, source=(source, column)) for column in (A, ALPHA))
 
 
@@ -201,10 +199,7 @@ def _standard_table_multiplied(_: Names) -> SlipWords:
 
 
 def other_formula(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slip in which the links are computed with the formula of the other convention.
-
-    If a standard table has no twists, this slip is ``translation_not_turned`` (``link_slips``).
-    """
+    """Yield the slip in which the links are computed with the formula of the other convention."""
     has_twists = (np.cos(rows.constants[:, ALPHA]) < 1 - CONSTANT).any()
     if rows.convention is Convention.STANDARD and not has_twists:
         return
@@ -293,10 +288,7 @@ def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, 
 
 
 def missing_links(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips in which one inner row is missing in the product.
-
-    A report names this slip only together with exchanged rows, so it has no advice.
-    """
+    """Yield the slips in which a row, but not the first or last one, is missing in the product."""
     for row in range(1, len(rows.constants) - 1):
         cells = tuple(CellChange(row, column, 0.0, moving=True) for column in range(len(COLUMNS)))
         yield Slip(MISSING_LINK, partial(_missing_link, f"A{rows.labels[row]}"), cells=cells)

@@ -48,7 +48,7 @@ ROUNDED_TURN = ROUNDED_VALUE * np.pi
     unlike={"1/alpha": "0"},
 )
 def sign(case: WrongCell) -> Hypotheses:
-    """The constant has the right size and the wrong sign."""
+    """The constant in the cell has the right size and the wrong sign."""
     hint = say(
         "The sign of {symbol} is wrong: it must be measured along {axis}, positive in the "
         "direction of the axis.",
@@ -213,7 +213,7 @@ def _compare_axes(case: WrongCell) -> Sentence:
     unlike={"6/d": "0"},
 )
 def half_turn(case: WrongCell) -> Hypotheses:
-    """An axis points the opposite way."""
+    """The angle differs by 180° from the correct angle, because an axis points the opposite way."""
     finding = finding_on(
         case,
         _compare_axes(case),
@@ -279,7 +279,7 @@ def _in_symbols(case: WrongCell) -> str:
 
 
 def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:
-    """Return the joints with a count other than 0, and their counts."""
+    """Return the joints whose variables are in a cell, with the factors of the variables."""
     if counts is None:
         return None
     return {joint: count for joint, count in zip(joints, counts, strict=True) if count}
@@ -350,10 +350,9 @@ def diagnose_cells(
 def _of_misplaced_variables(
     slips: dict[CellIndex, Finding], judgement: Judgement
 ) -> dict[CellIndex, Finding]:
-    """Return the findings; both cells of a misplaced joint variable get the same finding.
+    """Return the findings, with one shared finding for both cells of a misplaced joint variable.
 
-    For example, the variable of a sliding joint is in θ and missing in d. Each cell keeps its own
-    correction.
+    For example, the variable of a sliding joint is in θ and missing in d.
     """
     told = dict(slips)
     for (i, column), finding in slips.items():

@@ -41,10 +41,11 @@ TABLE_SAMPLES = 3
 
 @dataclass(frozen=True, slots=True)
 class _Intended:
-    """A table without the slips: ``(rows, 4, SAMPLES)``, or None if it needs other rows.
+    """The table that the student intended, without the slips that ``findings`` describe.
 
-    ``changed`` ``(rows, 4)`` marks the cells that differ from the student's table. The table
-    without the slips has frames of its own; ``departures`` is the cost of these frames.
+    ``table`` is ``(rows, 4, SAMPLES)``, or None if it needs other rows than the student wrote.
+    ``changed`` ``(rows, 4)`` marks the cells that differ from the student's table. ``departures``
+    measures how far its frames are from the reference frames.
     """
 
     findings: tuple[Finding, ...]
@@ -64,11 +65,9 @@ def explained(
 ) -> tuple[tuple[Finding, ...], Judgement]:
     """Return the findings that explain a whole wrong table, and a judgement that fits them.
 
-    An explanation must not contradict the findings on single cells. It is accepted in two cases. In
-    the first case, the explanation changes exactly the cells that were found wrong. In the second
-    case, the table without the slip has frames that are nearer to the reference frames than those
-    of the judgement; for the other convention, equally near is enough. In the second case, the
-    cells are judged again by the nearer table.
+    Misconceptions that would make the whole table correct are compared with the cells that were
+    found wrong. If none of them fits, return no findings and the same ``judgement``. Pairs of
+    misconceptions are tried only if ``combine`` is true.
     """
     values = values_of([role.row for role in roles if role.row is not None])
     if len(values) < len(roles) or not np.isfinite(values).all():
@@ -102,10 +101,7 @@ def explained(
 
 
 def _is_other_convention(intended: _Intended, judgement: Judgement) -> bool:
-    """True if the only slip is the other convention, and the frames are near enough.
-
-    They must be at least as near to the reference frames as the frames of the judgement are.
-    """
+    """True if the only slip is the other convention, and the frames are near the reference's."""
     codes = [finding.code for finding in intended.findings]
     return codes == ["other_convention"] and intended.departures <= judgement.departures
 
@@ -134,7 +130,7 @@ def _wrong_table(
 def _exchanges(
     judgement: Judgement, roles: Sequence[Role], grading: Grading
 ) -> Iterator[tuple[str, str, Table]]:
-    """Yield two lengths in wrong cells, and the change of the table if they are exchanged."""
+    """Yield pairs of lengths in wrong cells, and how the table changes if the two are exchanged."""
     by_name = grading.exercise.vocabulary.by_name
     lengths: set[str] = set()
     for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():

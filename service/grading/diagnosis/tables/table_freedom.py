@@ -74,10 +74,9 @@ def lost_freedom(
 ) -> tuple[Finding, ...]:
     """Return the findings on joints that share an axis or depend on each other.
 
-    ``values`` is the student's table ``(rows, 4, SAMPLES)`` in ``convention``. There is no finding
-    if the table contains NaN (an unreadable cell) or an extremely large length, or if a joint
-    variable is missing: then the cell of the joint variable has a finding. ``joint_rows`` gives the
-    row of each joint of the robot; joints with None are left out.
+    ``values`` is the student's table ``(rows, 4, SAMPLES)``; NaN is an unreadable cell.
+    ``joint_rows`` gives the row of each joint of the robot; joints with None are left out. The
+    result is empty if a cell is unreadable or extremely large, or if a joint variable is missing.
     """
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
@@ -201,7 +200,7 @@ def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, Se
 
 
 def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
-    """Return in words the rows whose a and α lead from the axis of joint ``i`` to that of ``j``."""
+    """Return, in words, the rows whose a and α lead from the axis of joint i to that of joint j."""
     # In a standard row, a and α come after its joint; in a modified one, before it.
     shift = int(convention is Convention.MODIFIED)
     labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]

@@ -1,7 +1,7 @@
 """Slips in a whole table.
 
-Each misconception is undone, which gives another table. If that table describes the robot, the
-misconception explains the answer.
+For each misconception, the table is changed as if the student did not have it. If the changed table
+describes the robot, the misconception explains the wrong table.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -39,10 +39,10 @@ _OF_LINK = slice(A, ALPHA + 1)
 
 @dataclass(frozen=True, slots=True)
 class WrongTable:
-    """A wrong table at all samples, and at a subset of samples that is enough for comparisons.
+    """A wrong table at all samples, and at a few samples, which make comparisons fast.
 
-    ``valid`` returns a mask ``(T,)`` of tables ``(T, rows, 4, samples)`` at the subset: True for a
-    table that describes the robot.
+    ``valid`` takes tables ``(T, rows, 4, samples)`` at these few samples. It returns a mask
+    ``(T,)`` of the tables that describe the robot.
     """
 
     written: WrittenTable
@@ -50,9 +50,9 @@ class WrongTable:
     valid: Callable[[Table, Convention], NDArray[np.bool_]]
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Return the hypotheses that change the table to a valid one, all compared at once.
+        """Return the hypotheses whose changed table describes the robot; all are compared at once.
 
-        The hypotheses must be tables at the subset.
+        The hypotheses must be tables at the few samples.
         """
         tried = list(hypotheses)
         explains = np.zeros(len(tried), dtype=np.bool_)
@@ -77,12 +77,7 @@ class WrongTable:
     unlike={"2/a": "d3", "3/d": "0"},
 )
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The columns a and α, or one of them, are one row too early or too late.
-
-    Undoing the shift leaves the cells of the first or last row open. These cells get the numbers
-    from the other end of the table. If those numbers are 0, the numbers of the reference are tried,
-    too.
-    """
+    """The columns a and α, or one of them, are one row too early or too late."""
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
     for columns in (_OF_LINK, slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
@@ -181,7 +176,7 @@ def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
 
 
 def exchanged_columns(one: int, other: int) -> Finding:
-    """Return the finding that two columns are in each other's places, throughout or in a row."""
+    """Return the finding that two columns are exchanged, in all rows or in one row."""
     hint = say("a and d are exchanged: a is measured along x, d along z.")
     if one == ALPHA:
         hint = say("α and θ are exchanged: α is measured about x, θ about z.")
@@ -253,7 +248,7 @@ def _exchanged_lengths(one: str, other: str) -> Finding:
 def _with_another(
     basic: Record, others: Sequence[Record], table: WrittenTable
 ) -> Iterator[Explained]:
-    """Yield the hypotheses of a basic misconception together with another one."""
+    """Yield each pair of the misconception ``basic`` and one of the ``others``."""
     for first in each_hypothesis((basic,), table):
         for second in each_hypothesis(others, first.answer):
             yield Repaired(second.answer, partial(_both, first, second), record=second.record)
@@ -283,10 +278,7 @@ def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
 def _explaining(
     case: WrongTable, ways: Sequence[Callable[[WrittenTable], Iterator[Explained]]]
 ) -> Iterator[Explained]:
-    """Yield the hypotheses that explain the table.
-
-    They are compared at the subset, and built again at all samples.
-    """
+    """Yield the hypotheses that explain the table; each of the functions ``ways`` builds some."""
     tried = [(build, list(build(case.subset))) for build in ways]
     every = chain.from_iterable(hypotheses for _, hypotheses in tried)
     explains = set(map(id, case.explained_by(every)))

@@ -41,9 +41,9 @@ def explain_links(
 ) -> Finding | None:
     """Return the finding that explains all wrong link transforms at once, or None.
 
-    ``written``, the numbers of the ``matrices``, and ``right`` are ``(rows, SAMPLES, 4, 4)``,
-    ``scale`` is ``(4, 4)``. Also return None if the correct link transforms follow from an earlier
-    answer of the student.
+    ``written`` are the numbers of the ``matrices`` and ``right`` the correct numbers, ``(rows,
+    SAMPLES, 4, 4)`` each; ``scale`` is ``(4, 4)``. Return None also if the answer is judged by an
+    earlier answer of the student.
     """
     wrong = _wrong(written, right, scale)
     if grading.following or not wrong.any() or not grading.affords(LINKS_WORK):
@@ -68,7 +68,6 @@ def _explained(
     part: LinkTransformsSpec,
     grading: Grading,
 ) -> Finding | None:
-    """Return the finding on the slips that turn these ``right`` link transforms into the answer."""
     entries = [entry for matrix in matrices for row in matrix.entries for entry in row]
     wrong = _wrong(written, right, scale)
     search = SlipSearch(
@@ -86,14 +85,14 @@ def _explained(
 
 
 def _wrong(written: Matrices, right: Matrices, scale: Numbers) -> Mask:
-    """Return a mask ``(rows, 4, 4)`` of the entries that were read and are wrong."""
+    """Return a mask ``(rows, 4, 4)`` of the entries that are readable and wrong."""
     actual, expected = _at_subset(written), _at_subset(right)
     is_read = np.isfinite(actual).all(axis=-1)
     return np.asarray(is_read & ~nearly_equal(actual, expected, scale, False))
 
 
 def _at_subset(transforms: Matrices) -> Numbers:
-    """Return the entries ``(rows, 4, 4, L)`` of the ``transforms`` at a subset of the samples."""
+    """Return the entries ``(rows, 4, 4, L)`` of link transforms at some of the samples."""
     return Samples.subset_of(np.moveaxis(transforms, 1, -1), SUBSET)
 
 
@@ -104,7 +103,10 @@ def _reference(part: LinkTransformsSpec, grading: Grading) -> Matrices:
 
 
 def _slipped_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> SlippedAnswers:
-    """Return the link transforms ``(K, rows, 4, 4, samples)`` that slips lead to."""
+    """Return the wrong link transforms that mistakes in the table lead to.
+
+    Their shape is ``(K, rows, 4, 4, samples)``.
+    """
     table, samples = grading.exercise.robot.tables[part.convention], grading.samples
     constants, motion = constants_and_motion(right, table.convention, table.joints, samples)
     slips = list(

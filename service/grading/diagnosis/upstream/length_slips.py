@@ -17,10 +17,10 @@ MAX_LENGTHS = 12
 
 
 def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[Slip]:
-    """Yield the slips in these lengths.
+    """Yield the slips in these lengths: a wrong sign, a length left out, two lengths exchanged.
 
-    If a length is ``alone`` in its cell, a wrong sign or an omission is not yielded here, because
-    it is a slip of the cell.
+    For the lengths ``alone``, each of which is a whole cell of the table, only exchanges are
+    yielded.
     """
     in_cells = set(alone)
     for length in lengths:

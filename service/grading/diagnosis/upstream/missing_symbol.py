@@ -27,11 +27,11 @@ NOT_ZERO = say("This must not be 0: check which lengths have a part here.")
 
 @dataclass(frozen=True, slots=True)
 class Required:
-    """The symbols that the correct entry depends on, and how it grows if all ``lengths`` double.
+    """The symbols that the correct entry depends on, and how the entry grows with ``lengths``.
 
-    ``grows`` is 1 if the entry also doubles, 0 if the entry stays the same, None for anything else.
-    ``lengths`` includes the variables of sliding joints. ``joints`` are the variables of all
-    joints.
+    ``grows`` is 1 if the entry doubles when all ``lengths`` double, 0 if it stays the same, None
+    for anything else. ``lengths`` includes the variables of sliding joints. ``joints`` are the
+    variables of all joints.
     """
 
     symbols: frozenset[str]
@@ -42,7 +42,7 @@ class Required:
 
 @dataclass(frozen=True)
 class Requirements:
-    """The symbols that each correct entry depends on, found by changing one symbol after another.
+    """Finds the symbols that each correct entry depends on, by changing one symbol after another.
 
     ``expected`` is ``(..., SAMPLES)``, ``scale`` broadcasts to ``(...)``.
     """
@@ -75,9 +75,9 @@ class Requirements:
 
     @cached_property
     def _dependences(self) -> tuple[Mask, Mask]:
-        """Masks of the entries that depend on each symbol, and on all lengths.
+        """The masks of the entries that depend on each symbol, and on all lengths.
 
-        The first mask is ``(symbols, ...)``. The second one is ``(2, ...)``: it marks the entries
+        The first mask is ``(symbols, ...)``. The second mask is ``(2, ...)``: it marks the entries
         that stay the same if all lengths are doubled, and the entries that double.
         """
         probes = [

@@ -1,8 +1,7 @@
 """A slip made before the answer is computed: in the robot's table, joints or lengths.
 
-Other misconceptions are formulas for the wrong answer. A slip instead changes the input from which
-the correct answer is computed. Many slips are tried at once: a single computation takes the changed
-inputs of all slips.
+A slip changes the input from which the correct answer is computed, and so leads to a wrong answer.
+Many slips are tried at once: a single computation takes the changed inputs of all slips.
 """
 
 from collections.abc import Callable, Sequence
@@ -46,9 +45,9 @@ class CellChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """A change to the input of the correct answer: to symbols, or to cells of the table.
+    """A change to what an answer is computed from: to ``symbols``, or to ``cells`` of the table.
 
-    With ``misread``, the table is multiplied out with the link transform of the other convention.
+    If ``misread`` is true, the links are computed with the formula of the other convention.
     """
 
     symbols: tuple[SymbolChange, ...] = ()
@@ -61,14 +60,14 @@ class Names:
     """The names of symbols in a message.
 
     ``name`` returns the name that the student uses for a symbol. ``gives_away`` is True for a
-    symbol whose name would give an entry away.
+    symbol that a message must not name, because its name would reveal the correct entry.
     """
 
     name: Callable[[str], str]
     gives_away: Callable[[str], bool]
 
     def shown(self, symbol: str) -> str | None:
-        """Return the name of a symbol in a hint, or None if it would give an entry away."""
+        """Return the name of a symbol, or None if the name would reveal the correct entry."""
         return None if self.gives_away(symbol) else self.name(symbol)
 
 
@@ -87,7 +86,7 @@ class SlipWords:
 
 @dataclass(frozen=True, slots=True)
 class Slip(Change):
-    """A slip of some kind (``slip_kinds``), with the change that it makes.
+    """A possible mistake of a student: its kind, and the change that it makes.
 
     ``words`` returns the sentences about the slip; they contain the names that the student uses.
     """
@@ -97,14 +96,14 @@ class Slip(Change):
 
     @property
     def code(self) -> str:
-        """The code of the slip's kind; a kind without a code has a name instead."""
+        """The code of the slip's kind, or the name of a kind without a code."""
         return self.kind.name
 
 
 def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
     """Return the values ``(K · samples,)`` of each symbol after each of K changes.
 
-    The samples of one change are consecutive.
+    The values after one change are consecutive.
     """
     names = list(values)
     if not names:

@@ -34,12 +34,13 @@ MAX_LISTED = 4
 
 @dataclass(frozen=True)
 class SlipSearch:
-    """A wrong answer and the answers that slips lead to.
+    """A student's wrong answer, and the wrong answers that possible slips lead to.
 
-    ``actual`` and ``expected`` are ``(..., L)`` at the first samples of each half of ``samples``,
-    NaN if unreadable; ``wrong`` ``(...)`` marks the wrong entries. ``scale`` broadcasts to
-    ``(...)``, ``angle`` to ``(..., 1)``. ``name`` returns the name that the student uses for a
-    symbol; ``unwritten`` are the constants that the student did not write.
+    A slip is a mistake in the table, the joints or the lengths. ``actual`` and ``expected`` are
+    ``(..., L)`` at some of the samples, NaN if unreadable. ``wrong`` ``(...)`` marks the wrong
+    entries. ``scale`` broadcasts to ``(...)``, ``angle`` to ``(..., 1)``. ``name`` returns the name
+    that the student uses for a symbol. ``unwritten`` are the constants that the student did not
+    write.
     """
 
     answers: SlippedAnswers
@@ -59,11 +60,7 @@ class SlipSearch:
         return None if finding is None else Hypothesis(None, finding, entries, record=slips[0].kind)
 
     def _gives_away(self, symbol: str) -> bool:
-        """True if the name of the symbol would give the answer away.
-
-        The symbol may be a constant that the student did not write, or the whole of a wrong entry.
-        If the answer is constant, the name of any joint variable gives away what is missing.
-        """
+        """True if the name of the symbol would reveal the correct answer."""
         if symbol in self.unwritten:
             return True
         count = self.actual.shape[-1] // 2
@@ -101,11 +98,7 @@ class SlipSearch:
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:
-        """Return two masks ``(K, ...)`` for K slips.
-
-        The first mask marks the entries that each slip explains, the second mask the entries that
-        each slip changes.
-        """
+        """Return two masks ``(K, ...)``: the entries that K slips explain, and that they change."""
         samples = self.samples if count == HALF else self.samples.subset(count)
         half = self.actual.shape[-1] // 2
         some = [*range(count), *range(half, half + count)]
@@ -116,10 +109,10 @@ class SlipSearch:
 
 
 def _certain(slips: list[Slip]) -> list[Slip]:
-    """Return the slips without those that include another of the slips as a part.
+    """Return the slips that may be reported.
 
-    A missing link is kept only if the only other code is that of exchanged rows. Otherwise
-    ``link_products`` reports the missing link.
+    A slip is removed if it includes another slip of the list as a part. A missing link is kept only
+    together with exchanged rows.
     """
     codes = {slip.code for slip in slips}
     covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}

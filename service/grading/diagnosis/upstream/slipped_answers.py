@@ -48,9 +48,8 @@ class SlippedAnswers:
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
     """Return the wrong answers that slips lead to, or None if they cannot be computed.
 
-    If the part has formulas of its own, the answers are ``(K, rows, columns, samples)``; otherwise
-    they are poses ``(K, 4, 4, samples)`` of the robot. Return None if there are neither formulas
-    nor poses, or if the part is judged by the student's earlier answer.
+    If the exercise has formulas for the part, the answers are ``(K, rows, columns, samples)``.
+    Otherwise they are poses ``(K, 4, 4, samples)`` of the robot.
     """
     exercise = grading.exercise
     if grading.following:
@@ -91,7 +90,7 @@ def slipped_tables(
 ) -> Table:
     """Return one table for each of K changes: ``(rows, 4, K, count)``.
 
-    Rows are added as needed.
+    A change in a row that the table does not have adds rows.
     """
     changed = changed_values(changes, values)
     tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
@@ -130,7 +129,7 @@ def _of_formulas(part: PartSpec, exercise: Exercise, samples: Samples) -> Slippe
 
 
 def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
-    """Return a function that computes ``answer`` for all changes at once."""
+    """Return a function that calls ``answer`` once for all changes, and splits the result."""
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         values = changed_values(changes, samples.values)

@@ -1,4 +1,4 @@
-"""The link transforms that slips in their own row lead to, whatever frames are chosen."""
+"""The wrong link transforms that mistakes in one row of the table lead to."""
 
 from collections.abc import Sequence
 
@@ -34,10 +34,10 @@ from service.kinematics.transforms import Matrices, Numbers
 def slipped_link(
     row: int, right: Matrices, convention: Convention, grading: Grading
 ) -> SlippedAnswers | None:
-    """Return the transforms ``(K, 4, 4, samples)`` that slips in one row lead to.
+    """Return the wrong link transforms ``(K, 4, 4, samples)`` that mistakes in one row lead to.
 
-    ``right`` is the correct transform ``(SAMPLES, 4, 4)``. Return None if ``right`` follows from an
-    earlier answer of the student.
+    ``right`` is the correct transform ``(SAMPLES, 4, 4)``. Return None if the answer is judged by
+    an earlier answer of the student.
     """
     if grading.following:
         return None
@@ -64,7 +64,7 @@ def slipped_link(
 
 
 def _in_reference_frames(table: ReferenceTable, row: int) -> AnswersAt:
-    """Return a function that computes the link transform of a row of the reference."""
+    """Return a function that computes the link transform of a row of the reference table."""
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         tables = slipped_tables(table, changes, samples.values, samples.count)
@@ -76,9 +76,9 @@ def _in_reference_frames(table: ReferenceTable, row: int) -> AnswersAt:
 def _in_own_frames(
     row: int, constants: Numbers, senses: Numbers, joint: Joint | None, convention: Convention
 ) -> AnswersAt:
-    """Return a function that computes the link transform of a row.
+    """Return a function that computes the link transform of a row with other frames.
 
-    ``constants`` ``(4, SAMPLES)`` are the constants in the row.
+    ``constants`` ``(4, SAMPLES)`` are the cells of the row with all joint variables 0.
     """
 
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
@@ -97,10 +97,10 @@ def _in_own_frames(
 def constants_and_motion(
     right: Matrices, convention: Convention, joints: Sequence[Joint], samples: Samples
 ) -> tuple[Table, Table]:
-    """Return the constants and the motion of correct link transforms ``(rows, SAMPLES, 4, 4)``.
+    """Return the DH rows of correct link transforms, split into constants and motion.
 
-    Both are tables ``(rows, 4, SAMPLES)``. The motion is the part of each cell that the joints
-    change.
+    ``right`` is ``(rows, SAMPLES, 4, 4)``. Both results are tables ``(rows, 4, SAMPLES)``; their
+    sum is the table. The motion is the part of each cell that changes with the joints.
     """
     constants, motions = np.empty((2, len(right), len(COLUMNS), samples.count))
     for i, link in enumerate(right):
@@ -116,7 +116,7 @@ def _motion(senses: Numbers, joint: Joint | None, values: SymbolValues) -> Numbe
 
 
 def _senses(cells: Numbers, joint: Joint | None, samples: Samples) -> Numbers:
-    """Return the count of the joint's variable in each cell ``(4, SAMPLES)``: 0, 1 or −1."""
+    """Return the factor of the joint's variable, 0, 1 or −1, in each cell of a row."""
     senses = np.zeros(len(cells))
     if joint is not None:
         column = variable_column(joint)

@@ -43,9 +43,9 @@ QUARTER = np.pi / 2
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell of a table, and the words about it.
+    """A cell of a table, and the words about it in messages.
 
-    With ``own_frames``, the student has chosen other frames, so that the correct value of the cell
+    If ``own_frames`` is true, the student chose other frames, so that the correct value of the cell
     may differ from ``table``.
     """
 
@@ -98,11 +98,11 @@ def table_slips(
     home: bool = False,
     whole: bool = True,
 ) -> Iterator[Slip]:
-    """Yield all single slips.
+    """Yield all single slips in a table.
 
-    ``constants`` ``(rows, 4, samples)`` is the table with all joint variables 0. If the answer is
-    for the ``home`` position, only constants can be wrong. Slips of whole rows and columns are
-    tried only if the answer follows from the ``whole`` table.
+    ``constants`` ``(rows, 4, samples)`` is the table with all joint variables 0. If ``home`` is
+    true, the answer is for the home position, so that only constants can be wrong. If ``whole`` is
+    true, slips of whole rows and columns are tried, too.
     """
     if not home:
         yield from joint_slips(table.joints, table.joints, axis)
@@ -116,7 +116,7 @@ def table_slips(
 
 
 def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
-    """Return all lengths of the table in order, and those that are alone in their only cell."""
+    """Return all lengths of the table in order, and those that are the whole of their only cell."""
     cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
     names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
     once = [name for name in names if sum(name in cell for cell in cells) == 1]
@@ -134,9 +134,9 @@ def row_slips(
 ) -> Iterator[Slip]:
     """Yield the slips in one row.
 
-    ``constants`` are the cells of the row at one sample, with all joint variables 0. With
-    ``own_frames``, they are not the cells of ``table``. ``home`` is True if the answer is for the
-    home position, so that no joint moves.
+    ``constants`` are the cells of the row at one sample, with all joint variables 0. If
+    ``own_frames`` is true, the student chose other frames, so that ``constants`` differ from
+    ``table``. If ``home`` is true, the answer is for the home position, so that no joint moves.
     """
     joint = table.joints[row] if row < len(table.joints) and not home else None
     for column in (A, ALPHA, D, THETA):
