@@ -174,8 +174,8 @@ def _has_unexplained_cells(part: PartReport) -> bool:
 def _without_rows(report: PartReport) -> PartReport:
     """Return the report on a part without its rows, but with the messages on unreadable cells.
 
-    These messages reveal nothing, and students need them. The lost points are one sum, which does
-    not say where they were lost.
+    These messages reveal nothing, and students need them. Instead of the points lost in each row,
+    the report has their sum.
     """
     reading = tuple(
         replace(message, places=(Place(row.label, cell.label),))
@@ -199,8 +199,7 @@ def with_shared_messages(report: PartReport) -> PartReport:
     """Replace equal messages on several cells by one message on the part, with all their places.
 
     Messages are equal if they have the same code, sentence and repaired text. The first
-    counterexample is kept. A message with a span stays with its cell, unless ``_WORDS_ENOUGH``
-    contains its code.
+    counterexample is kept. Most messages on a piece of the text in a cell stay with their cell.
     """
     in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
     for row in report.rows:

@@ -1,8 +1,8 @@
-"""Points for an answer that follows from an earlier answer of the student.
+"""Points for an answer that is computed correctly from an earlier wrong answer of the student.
 
-One early slip must not make every later part wrong. So if a part is wrong by the reference, it is
-also judged by the student's answer to the part that it follows. The earlier answer must be good
-enough, so that a trivial table does not earn easy points later.
+One early mistake must not make every later part wrong. So if the answer to a part is wrong, it is
+also judged by the student's earlier answer instead of the reference. The earlier answer must be
+good enough, so that a trivial table does not earn easy points later.
 """
 
 from collections.abc import Callable, Sequence
@@ -32,7 +32,7 @@ ToolAt = Callable[[Samples], Matrices]
 
 
 def can_carry(chain: StudentChain, grading: Grading) -> bool:
-    """True if later parts may follow from an answer.
+    """True if later answers may be judged by this answer instead of by the reference.
 
     The answer must be a rigid chain. Each joint must turn about, or slide along, one axis by its
     own variable. The arm must have as many degrees of freedom as the robot. Other arms may make
@@ -66,8 +66,8 @@ def _jacobian(tool_at: ToolAt, grading: Grading) -> Numbers | None:
 def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool) -> Numbers | None:
     """Return the axis ``(HALF, 6)`` of joint ``i`` in the base frame.
 
-    Return None if the tool does not move by ``step`` about or along one axis. With ``later``, the
-    later joints have other values.
+    Return None if a small motion of the joint does not move the tool about or along one axis. If
+    ``later`` is true, the later joints have other values.
     """
     scale, joints = grading.exercise.length_scale, grading.exercise.joints
     values = {name: np.tile(numbers[:HALF], 2) for name, numbers in grading.samples.values.items()}
@@ -89,8 +89,7 @@ def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> 
     """True if no joint moves any entry ``(rows, columns, SAMPLES)`` of an answer.
 
     ``quantities`` are the quantities of the columns, or the quantity of all entries. An answer with
-    an unreadable entry (NaN) counts as moving. An empty entry cannot move: the caller writes 0 for
-    it.
+    an unreadable entry (NaN) counts as moving.
     """
     scales = np.where(np.array(quantities) == "length", grading.exercise.length_scale, 1.0)
     motion = np.abs(changes(values)).max(axis=-1)

@@ -28,7 +28,7 @@ def spelled(formula: Node, spelling: Spelling) -> Correction:
 def value_formula(
     values: Numbers, angle: bool, exercise: Exercise, samples: Samples, spelling: Spelling
 ) -> Correction | None:
-    """Return ``values`` ``(SAMPLES,)`` as the sum of a constant and multiples of letters.
+    """Return ``values`` ``(SAMPLES,)`` as a formula: a constant plus whole multiples of symbols.
 
     Table cells are such sums: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Return None if the values
     are not such a sum.
@@ -71,9 +71,9 @@ def sum_formula(
 def multiples(
     constant: Numbers, angle: bool, exercise: Exercise, samples: Samples
 ) -> tuple[list[tuple[int, str]], float] | None:
-    """Return whole multiples of letters and a remainder; their sum is ``constant`` ``(HALF,)``.
+    """Return ``constant`` ``(HALF,)`` as a sum: whole multiples of letters, and a remaining number.
 
-    Return None if no multiples have this sum. Letters with the multiple 0 are left out.
+    Return None if there is no such sum. Letters with the multiple 0 are left out.
     """
     first = constant[0]
     if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < CONSTANT:

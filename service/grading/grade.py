@@ -57,10 +57,10 @@ _WORK_LIMIT: Final = Finding(
 
 @dataclass(frozen=True, slots=True)
 class GradedAnswers:
-    """Answers that were graded once, for reports at several levels.
+    """Answers that were graded once, for reports at several levels of feedback.
 
-    ``corrects`` is true if corrections were computed, ``has_left_out`` if the work budget did not
-    allow all explanations. ``parts`` have all their messages.
+    ``corrects`` is true if corrections were computed. ``has_left_out`` is true if the work budget
+    did not allow all explanations. ``parts`` have all their messages.
     """
 
     exercise: Exercise
@@ -120,8 +120,8 @@ def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
 class _Graded:
     """A part that was graded; ``judged`` is None if there was no readable answer.
 
-    If the answer follows from an earlier answer of the student, the part was judged by that earlier
-    answer.
+    A wrong answer may have been judged by an earlier answer of the student instead of the
+    reference.
     """
 
     part: PartSpec
@@ -130,14 +130,15 @@ class _Graded:
 
     @cached_property
     def chain(self) -> StudentChain | None:
-        """Return the answer as a chain that later parts may follow from, or None."""
+        """Return the answer as a chain by which later parts may be judged, or None."""
         return None if self.judged is None else self.judged.chain()
 
     def carries(self, share: float, grading: Grading) -> bool:
-        """True if a later part may follow from the answer.
+        """True if later parts may be judged by this answer instead of by the reference.
 
-        The answer must have earned ``share`` of the points in the marking "content", even if the
-        part has another marking. The answer must be an arm with the robot's joints (``can_carry``).
+        The answer must be an arm with the robot's joints (``can_carry``) and must have earned
+        ``share`` of the points. These are counted as in the marking "content", even if the part has
+        another marking.
         """
         if (
             self.judged is None
@@ -151,7 +152,7 @@ class _Graded:
 def _graded(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded], grading: Grading
 ) -> _Graded:
-    """Judge a part by the reference, or by the student's answer to the part that it follows."""
+    """Judge a part by the reference, or by the student's answer to an earlier part."""
     answer = answers.get(part.id)
     if answer is None:
         return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
@@ -192,7 +193,7 @@ def _graded(
 def _followed(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded]
 ) -> _Graded | None:
-    """Return the nearest part with an answer among the parts that this part follows."""
+    """Return the nearest earlier part that this part depends on and that has an answer."""
     while part.follows is not None:
         part = earlier[part.follows].part
         if answers.get(part.id) is not None:

@@ -26,9 +26,10 @@ KnownCells = NDArray[np.bool_]
 def known_cells(
     right: Numbers, lazy: ArrayLike, scale: ArrayLike = 1.0, angle: ArrayLike = False
 ) -> KnownCells:
-    """Return a mask ``(...)`` of the cells in which ``right`` ``(..., samples)`` is not ``lazy``.
+    """Return a mask ``(...)`` of the cells in which the correct answer differs from the lazy one.
 
-    ``scale`` is the unit of the tolerance; ``angle`` is true for angles.
+    ``right`` is ``(..., samples)``. ``scale`` is the unit of the tolerance; ``angle`` is true for
+    angles.
     """
     error = np.abs(difference(right, np.asarray(lazy), angle)).max(axis=-1)
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
@@ -157,7 +158,7 @@ def _rows(known: KnownCells) -> tuple[tuple[bool, ...], ...]:
 
 
 def _all_if_none(known: KnownCells) -> KnownCells:
-    """Return ``known``, or a mask of all cells if the correct answer is the lazy answer."""
+    """Return ``known``, or a mask of all cells if ``known`` marks none."""
     return known if known.any() else np.ones_like(known)
 
 

@@ -65,7 +65,10 @@ def _fitting(
 
 
 def _misfit(judgement: Judgement) -> int:
-    """Return the number of wrong, missing and extra cells; one more if the tool frame is missed."""
+    """Return the number of wrong, missing and extra cells.
+
+    The number is one larger if the table does not lead to the tool frame.
+    """
     return judgement.wrong + len(COLUMNS) * len(judgement.extra) + (not judgement.reached)
 
 

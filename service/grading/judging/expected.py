@@ -45,7 +45,7 @@ def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matr
 
 
 def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
-    """Return the expected pose ``(SAMPLES, 4, 4)``, from the student's chain or from the robot.
+    """Return the expected pose ``(SAMPLES, 4, 4)``, from the robot or from an earlier answer.
 
     The student's chain is used if the part is judged by the student's earlier answer, and if the
     chain has both frames that the part asks for.

@@ -32,6 +32,6 @@ class ExpectedMatrix:
     def matches(
         self, student: StudentMatrix, length_scale: float, samples: Samples
     ) -> NDArray[np.int_]:
-        """Return the Match of each entry, ``(rows, columns)``."""
+        """Compare a student's matrix with this matrix; return the Match (result) of each entry."""
         scale = self.scale(length_scale)
         return entry_matches(student.expressions, student.values, self.values, scale, samples)

@@ -1,1 +1,1 @@
-"""The points of an answer, from the verdicts on its cells; all points add up."""
+"""The points of an answer, computed from the verdicts on its cells."""

@@ -1,9 +1,9 @@
 """Make sure that an empty row or cell of a table never earns more than anything written there.
 
-A wrong row can hide the frames in which all other rows are correct; an empty row cannot. A row is
-given up by writing numbers into it that are wrong whatever frames are chosen. So a wrong table
-earns at least as much as the same table with one wrong row given up. A table with empty cells earns
-at most as much as the same table with such numbers in these cells.
+The frames that a student chose are found by comparing rows. A wrong row can mislead this search, so
+that correct rows look wrong; an empty row cannot. So a wrong table earns at least as much as the
+same table with one wrong row replaced by numbers that are wrong in all frames. A table with empty
+cells earns at most as much as the same table with such numbers in these cells.
 """
 
 from collections.abc import Callable
@@ -45,7 +45,8 @@ def with_fair_points(
 ) -> Judged:
     """Return ``judged``, the judgement of a wrong table, with limits on its points.
 
-    ``judged_again`` judges another table. ``work`` is the work of judging a table with messages.
+    ``judged_again`` judges other tables, whose points are the limits. ``work`` is the work of
+    judging a table with messages.
     """
 
     def lost(other: Judged) -> int:
@@ -95,7 +96,6 @@ def with_fair_points(
 def _missing_at_end(
     part: DhTableSpec, answer: StudentTable, judged: Judged, grading: Grading
 ) -> int:
-    """Return the number of rows that are missing at the end of a table."""
     convention = _convention_of(part, answer)
     # The other convention may need fewer rows.
     if convention is None or part.frames == "given" or judged.whole_cost is not None:
@@ -112,7 +112,7 @@ def _convention_of(part: DhTableSpec, answer: StudentTable) -> Convention | None
 
 
 def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
-    """Return the rows that may hide better frames, those with the most wrong cells first."""
+    """Return the wrong rows that may make others look wrong; most wrong cells come first."""
     if part.frames == "given":
         return []
     if judged.whole_cost is not None:
@@ -146,7 +146,7 @@ def _has_given_ends(part: DhTableSpec, judged: Judged) -> bool:
 def _content_in_any_frames(
     part: DhTableSpec, answer: StudentTable, rows: list[int], grading: Grading
 ) -> list[tuple[int, int]]:
-    """Return the rows, each with its number of content cells that every choice of frames has.
+    """Return the rows, each with the number of its cells that are not trivial in any frames.
 
     A row has at most two such cells: the angle between its two axes, unless the axes are parallel;
     and the distance between the axes, unless one axis only has a direction.

@@ -1,6 +1,7 @@
 """The points of a part, from the verdicts on its cells and the worth of the cells.
 
-``docs/marks.md`` explains the rules to students and tutors, with an example.
+Points are counted in steps of a quarter or a hundredth of a point. ``docs/marks.md`` explains the
+rules to students and tutors, with an example.
 """
 
 import math
@@ -41,7 +42,10 @@ _Verdicts = Sequence[Sequence[Verdict]]
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """Steps lost in the cells of the row with index ``row``, or in the whole answer if None."""
+    """Points lost in one row, or in the whole answer if ``row`` is None.
+
+    ``steps`` counts them in quarters or hundredths of a point.
+    """
 
     code: str
     steps: int
@@ -50,7 +54,10 @@ class _Loss:
 
 @dataclass(frozen=True, slots=True)
 class _Marks:
-    """The steps that an answer has lost: ``lost`` in all, ``losses`` by place, ``rows`` by row."""
+    """What an answer has lost, in steps (quarters or hundredths of a point).
+
+    ``lost`` is the sum; ``losses`` has the reasons, ``rows`` the loss of each row.
+    """
 
     worth: CellWorth
     lost: int
@@ -94,10 +101,11 @@ def unjudged_report(
 
 
 def has_earned(part: PartSpec, judged: Judged, share: float) -> bool:
-    """True if an answer has earned ``share`` (0 to 1) of the points in the marking "content".
+    """True if an answer has earned ``share`` (0 to 1) of its points.
 
-    A rotation with a position must have earned more than ``share``, because later parts that need
-    only a correct rotation are easy.
+    Points are counted as in the marking "content", in which only cells that need knowledge earn
+    points. A rotation with a position must have earned more than ``share``, because later parts
+    that need only a correct rotation are easy.
     """
     marks = _marks(judged, "content", part.points)
     earned, least = marks.worth.total - marks.lost, share * marks.worth.total
@@ -110,7 +118,11 @@ def steps_lost(part: PartSpec, judged: Judged) -> int:
 
 
 def least_lost(part: PartSpec, judged: Judged, cells: int) -> int:
-    """Return the fewest steps that a wrong row with ``cells`` content cells can lose."""
+    """Return the smallest possible loss of a wrong row with ``cells`` content cells.
+
+    A content cell is a cell that needs knowledge. The loss is in steps (quarters or hundredths of a
+    point).
+    """
     if part.marking != "content":
         return 0
     worth = worth_of(judged.content, part.marking, part.points)
@@ -118,7 +130,7 @@ def least_lost(part: PartSpec, judged: Judged, cells: int) -> int:
 
 
 def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
-    """Return the marks of an answer to a part of ``points`` points."""
+    """Return the points that an answer loses in a part worth ``points``, with the reasons."""
     if judged.is_right:
         return _of_right(judged.content, marking, points)
     worth = worth_of(judged.content, marking, points)
@@ -131,7 +143,7 @@ def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
 
 @lru_cache(maxsize=1024)
 def _of_right(content: Content, marking: Marking, points: float) -> _Marks:
-    """Return the marks of a correct answer; memoized, because most answers are correct."""
+    """Return the result of ``_marks`` for a correct answer, memoized."""
     worth = worth_of(content, marking, points)
     return _Marks(worth, 0, (), (0,) * len(worth.rows))
 
@@ -170,7 +182,7 @@ def _losses(
 
 
 def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: CellWorth) -> int:
-    """Return the steps that a wrong answer loses, within the limits of the judgement."""
+    """Return ``lost``, raised or lowered to the limits that the judgement sets for the loss."""
     if judged.at_most is not None:
         least = _marks(judged.at_most, marking, points).lost
         if judged.needs_all:
@@ -188,10 +200,9 @@ def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: 
 def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:
     """Return, for each row, the cost of its cells that are not right.
 
-    A group of cells cannot lose more than it is worth. A wrong, empty or unreadable content cell
-    costs a unit. So does any other cell that is wrong or empty. All other unreadable cells of a row
-    together cost a fifth of a unit. The cells in the bottom row of a homogeneous matrix also cost a
-    fifth of a unit together.
+    A wrong cell costs what it is worth. A wrong cell that needs no knowledge costs as much as a
+    cheap one that does, or a fifth of it if the cell is only unreadable. A group of cells cannot
+    lose more than it is worth.
     """
     if marking == "rows":
         pairs = zip(worth.rows, verdicts, strict=True)
@@ -228,7 +239,7 @@ def _is_right(row: Sequence[Verdict]) -> bool:
 
 
 def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
-    """Return the steps that each row loses; no row loses more than it is worth.
+    """Distribute the loss over the rows; no row loses more than it is worth.
 
     A row loses the cost of its cells. If the row is worth less, other rows lose the rest: first the
     rows of the same group, then the rows with a cost, then all rows.

@@ -1,4 +1,4 @@
-"""The worth of the cells of an answer in whole steps: quarters or hundredths of a point.
+"""The worth of the cells of an answer in whole steps (quarters or hundredths of a point).
 
 All points are counted in steps, so that they add up. ``docs/marks.md`` explains the rules.
 """
@@ -29,11 +29,11 @@ _ROUNDING_ERROR: Final = 1e-9
 class CellWorth:
     """The worth of the cells and rows of an answer, in steps of ``step`` points.
 
-    ``cells`` ``(rows, cells)`` is the worth of each cell. ``besides`` ``(rows,)`` is the worth that
-    each row has in addition. All of them sum to ``total``. ``unit`` is the cost of a wrong cell
-    that is not a content cell. With ``is_fixed``, a wrong content cell costs a unit, too, even if
-    the cell is worth more or less. ``slip`` is the cost of a slip outside all cells.
-    ``least_besides`` is the smallest worth that a group has besides its cells.
+    ``cells`` ``(rows, cells)`` is the worth of each cell. ``besides`` ``(rows,)`` is the worth of
+    each row in addition to its cells. All of them sum to ``total``. A cell that needs no knowledge
+    is worth nothing, but costs ``unit`` if it is wrong. If ``is_fixed`` is true, every wrong cell
+    costs ``unit``. ``slip`` is the cost of a mistake that no cell shows. ``least_besides`` is the
+    smallest worth that a group of cells has besides its cells.
     """
 
     step: float
@@ -48,7 +48,7 @@ class CellWorth:
 
     @property
     def counted(self) -> int:
-        """The number of content cells that count."""
+        """The number of cells that earn points."""
         return (self.is_fixed and self.content.most) or self.content.count
 
     @cached_property
@@ -74,7 +74,7 @@ class CellWorth:
 
     @cached_property
     def units(self) -> dict[int, int]:
-        """The cost of a wrong cell that is not a content cell, by its group."""
+        """The cost of a wrong cell that needs no knowledge, for each group of cells."""
         units = dict.fromkeys(self.groups, self.unit)
         if not self.is_fixed:
             least: dict[int, int] = {}
@@ -96,7 +96,7 @@ class CellWorth:
 
 @lru_cache(maxsize=2048)
 def worth_of(content: Content, marking: Marking, points: float) -> CellWorth:
-    """Return the worth of the cells of an answer to a part of ``points`` points."""
+    """Return the worth of the cells of an answer to a part that is worth ``points``."""
     step, total = _steps(content, points)
     if marking == "content" or marking == "whole":
         return _by_content(content, step, total)
@@ -117,7 +117,7 @@ def worth_of(content: Content, marking: Marking, points: float) -> CellWorth:
 
 
 def _steps(content: Content, points: float) -> tuple[float, int]:
-    """Return the step in points, and the number of steps of the part.
+    """Return the size of a step in points, and the number of steps of the part.
 
     Neither of them depends on the answer.
     """
@@ -173,11 +173,11 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
 
 
 def _unit(cells: int, groups: int, total: int) -> int:
-    """Return the worth of a content cell if each group is also worth something besides its cells.
+    """Return the worth of a cell that needs knowledge, in steps.
 
-    The groups share the remaining steps, which a lazy answer earns. The worth is rounded so that
-    the remaining steps are at most a quarter of all steps and, if possible, at least one for each
-    group.
+    ``cells`` is the number of such cells. The remaining steps are shared by the ``groups`` of
+    cells; an answer without knowledge earns them. They are at most a quarter of all steps and, if
+    possible, at least one for each group.
     """
     if not cells:
         return total
@@ -210,13 +210,13 @@ def apportioned(total: int, weights: list[int]) -> list[int]:
 
 
 def _cells(content: Content, worth: list[int]) -> tuple[tuple[int, ...], ...]:
-    """Return the worth of each cell, by row; ``worth`` lists it for content cells only."""
+    """Return the worth of each cell, by row; ``worth`` lists it for the cells that earn points."""
     steps = iter(worth)
     return tuple(tuple(next(steps) if known else 0 for known in row) for row in content.known)
 
 
 def _counts(content: Content) -> dict[int, int]:
-    """Return the number of content cells of each group."""
+    """Return, for each group of cells, the number of its cells that earn points."""
     counts: dict[int, int] = {}
     for row, groups in zip(content.known, content.groups, strict=True):
         for known, number in zip(row, groups, strict=True):

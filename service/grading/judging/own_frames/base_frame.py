@@ -1,4 +1,4 @@
-"""Find the poses that a free frame 0 may have, and test tables from there.
+"""Find the poses that frame 0 may have if the student chose it.
 
 All comparisons are in the home configuration (all joint variables 0), where the positive direction
 of a joint does not matter. The joint screws and the pose in this configuration determine a chain
@@ -26,12 +26,11 @@ def possible_bases(
     mechanism: Mechanism,
     freedom: FrameFreedom,
 ) -> Iterator[Matrices | None]:
-    """Yield possible poses ``(L, 4, 4)`` of frame 0 in the reference frame 0; None is the identity.
+    """Yield the poses ``(L, 4, 4)`` that the student's frame 0 may have in the reference frame 0.
 
-    ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of a table. ``joint_signs`` ``(rows +
-    1,)`` has the sign of the joint variable that each row starts from. A given tool allows one
-    pose. Otherwise the joint axes must lie on the joint axes of the reference, in the directions
-    that the signs give, or in either direction if the directions are free.
+    None stands for the identity. ``links`` ``(rows + 1, 4, L)`` are the constants of the table,
+    ``joint_signs`` ``(rows + 1,)`` the signs of its joint variables. A given tool frame allows one
+    pose. Otherwise the joint axes must lie on those of the reference.
     """
     if not freedom.base:
         yield None

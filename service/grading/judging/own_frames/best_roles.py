@@ -31,7 +31,7 @@ def best_roles(
 def _best_as_written(
     rows: tuple[StudentRow, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
-    """Return the best roles and nearest table; its correct cells are not adjusted for rounding."""
+    """Return the best roles and nearest table, without correcting the table for rounding."""
     joints = grading.exercise.robot.joints
     roles = roles_in(rows, convention, grading)
     roles = with_true_numbers(roles, convention, freedom, grading)
@@ -101,8 +101,7 @@ def rows_of_mechanism(
 ) -> list[int]:
     """Return the indices of the joints' rows and of the first tool rows, up to the usual number.
 
-    Only the joint variables decide. So if a student writes several guesses at a row, the correct
-    guess is not preferred.
+    The choice depends only on the joint variables in the rows, not on what is correct.
     """
     usual, joints = usual_rows(convention, grading), grading.exercise.robot.joints
     if len(rows) <= usual:
@@ -121,5 +120,4 @@ def usual_rows(convention: Convention, grading: Grading) -> int:
 
 
 def _pairing(roles: Sequence[Role]) -> list[tuple[Joint | None, bool]]:
-    """Return the joint of each role, and whether its row is missing."""
     return [(role.joint, role.row is None) for role in roles]

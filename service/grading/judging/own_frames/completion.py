@@ -1,4 +1,4 @@
-"""Search for values of the unread cells of a table that make the table valid.
+"""Search for values of the unreadable cells of a table with which the table describes the robot.
 
 An unread cell is empty or could not be read, so it has no value. If such values exist, no other
 cell is wrong. The search uses one set of link lengths. So the value of an unread cell is a
@@ -6,7 +6,8 @@ constant, or a constant plus or minus the joint variable that belongs in the cel
 frame must agree with the reference tool frame at all joint values. The method is Newton's with
 damping (Levenberg and Marquardt), from many starts at once.
 
-Shapes: S starts, L joint values, U unread cells and twists of a free base or tool.
+Shapes: S starts, L joint values, U unknowns (the unread cells, and the pose of a free base or
+tool).
 """
 
 from collections.abc import Sequence
@@ -85,7 +86,7 @@ class _Case:
 def completed(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
-    """Return the submitted table if some values in its unread cells make it valid, else None.
+    """Return the table if some values in its unread cells make it describe the robot, else None.
 
     These values are not unique, so the result has 0 in the unread cells, and its frames are those
     of the reference. The directions of the joint axes count as given.
@@ -140,7 +141,7 @@ def _values_at(role: Role, samples: Samples) -> Table:
 
 
 def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
-    """True if one of the starts leads to a valid table before the budget is used up."""
+    """True if the search finds values of the unread cells before the budget is used up."""
     if not budget.affords_search(START_WORK):
         return False
     rng = np.random.default_rng(HALF)
@@ -256,7 +257,7 @@ def _step(error: Numbers, columns: Numbers, damping: Numbers) -> Numbers:
 
 
 def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
-    """Return the share ``(S,)`` of the squared error that a step removes in a linear model."""
+    """Return the share ``(S,)`` of the squared error that a step removes, to first order."""
     undone = (change * (columns @ error[..., None])[..., 0]).sum(axis=-1)
     return np.asarray(undone / (error**2).sum(axis=-1))
 

@@ -26,7 +26,7 @@ from service.kinematics.transforms import Numbers
 def row_constants(
     roles: tuple[Role, ...], joints: tuple[Joint, ...], convention: Convention, samples: Samples
 ) -> list[RowConstants]:
-    """Return the constants of a table, regrouped into rows that lead from target to target.
+    """Return the constants of a table, regrouped into rows that each lead to the next joint axis.
 
     A cell that depends wrongly on the joint variables is wrong whatever frames are chosen.
     """

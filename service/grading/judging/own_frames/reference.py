@@ -1,7 +1,4 @@
-"""Convert the reference for its comparison with tables in a student's own frames.
-
-For this comparison, the cells of a table are also put into other rows (``regrouped``).
-"""
+"""Convert the reference table for its comparison with tables in a student's own frames."""
 
 from dataclasses import dataclass
 from itertools import accumulate
@@ -88,10 +85,9 @@ def frames_on_axes(
 ) -> Matrices:
     """Return the student's frames on the joint axes, as seen from the reference's frames.
 
-    The shape is ``(joints, ..., 4, 4)``. ``relative_poses`` ``(rows + 1, ..., 4, 4)`` are the
-    relative poses of the frames before each joint's transform Z, which consists of d and θ.
-    ``links`` ``(rows + 1, 4, ...)`` are the regrouped constants. The frame on a joint axis is the
-    frame before Z in the standard convention, and the frame after Z in the modified convention.
+    The shape is ``(joints, ..., 4, 4)``. ``relative_poses`` ``(rows + 1, ..., 4, 4)`` compare the
+    frames of both tables before the motion by d and θ. ``links`` ``(rows + 1, 4, ...)`` are the
+    constants of the student's table, as ``regrouped`` returns them.
     """
     places = [i for i, _ in joint_cells(roles)]
     on_axes = relative_poses[places]
@@ -110,7 +106,7 @@ def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
 
 
 def regrouped(cells: NDArray[_Cell], convention: Convention) -> NDArray[_Cell]:
-    """Regroup the cells of a table into rows that each lead from one target to the next.
+    """Regroup the cells of a table into rows that each lead from one joint axis to the next.
 
     Each new row is a product Z X: first the motion along z by d and θ, then the motion along x by a
     and α. ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with zeros for cells that the table

@@ -28,8 +28,8 @@ def remarks_on(
 
     ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the joint axes, as
     seen from the reference's frames. ``rows_right`` ``(joints, 2)`` says, for each axis, whether
-    the rows before and after it are correct. Neighbouring frames that differ count as one choice.
-    There are no findings on a choice that a wrong row implies.
+    the rows before and after it are correct. A frame that differs because of a wrong row gets no
+    finding.
     """
     error = np.abs(relative_poses - _IDENTITY)
     error[..., :3, 3] /= exercise.length_scale
@@ -48,7 +48,7 @@ def remarks_on(
 
 
 def _chosen(departs: NDArray[np.bool_], rows_right: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the differing frames, without runs of such frames beside a wrong row."""
+    """Return a mask of the differing frames, except those that a wrong row causes."""
     runs = np.cumsum(~departs)
     implied = runs[departs & ~rows_right.all(axis=1)]
     return departs & ~np.isin(runs, implied)

@@ -23,7 +23,7 @@ _NOTHING = np.full((len(COLUMNS), SAMPLES), np.nan)
 
 @dataclass(frozen=True, slots=True)
 class FrameFreedom:
-    """The choices that an exercise leaves to the student besides the frames on the joints."""
+    """What the student may choose: base frame, tool frame, directions of the joint axes."""
 
     base: bool = False
     tool: bool = False
@@ -31,7 +31,7 @@ class FrameFreedom:
 
 
 def freedom_of(part: DhTableSpec) -> FrameFreedom:
-    """Return the choices that the part leaves to the student besides the frames on the joints."""
+    """Return which of base frame, tool frame and axis directions the student may choose."""
     return FrameFreedom(part.base == "free", part.tool == "free", part.directions == "free")
 
 
@@ -96,9 +96,9 @@ def roles_of(
     """Return each row with its joint; the reference's table has ``expected_rows`` rows.
 
     If there are as many rows as joints, they are paired in order, unless ``in_order`` is false.
-    Otherwise the joint variables decide: the pairing in order with the most matching variables is
-    taken, and the remaining rows are fixed. But if the variable of some joint is in no cell of its
-    usual column, and the number of rows is the expected number, the joints' rows come first.
+    Otherwise the pairing in order is taken in which most rows have their joint's variable; the
+    remaining rows are fixed. If the variable of some joint is missing, and the number of rows is as
+    expected, the joints' rows come first.
     """
     one_by_one = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
     if len(rows) == len(joints) if in_order is None else in_order:

@@ -31,7 +31,7 @@ def valid_tables(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """Return a mask ``(T,)`` of the tables that describe the mechanism in some valid frames.
+    """Return a mask ``(T,)`` of the tables that describe the robot in some allowed frames.
 
     ``tables`` is ``(T, rows, 4, samples)``; all tables have the same ``roles``. The base counts as
     given, even if it is free.
@@ -78,7 +78,7 @@ def _valid_by_pose(
 def targets_of(
     roles: tuple[Role, ...], convention: Convention, mechanism: Mechanism, freedom: FrameFreedom
 ) -> list[Target]:
-    """Return the target of each row: a joint axis, the frame of a fixed row, or the tool."""
+    """Return what each row must lead to: a joint axis, the frame of a fixed row, or the tool."""
     targets: list[Target] = []
     links, fixed = iter(mechanism.joints), iter(mechanism.fixed)
     last_joint = max((i for i, role in enumerate(roles) if role.joint), default=-1)

@@ -27,8 +27,8 @@ class WrittenTable(Rereadable):
     """A student's table ``(rows, 4, samples)``, angles in radians, every cell with a value.
 
     Each value is the sum of ``constants`` and ``motion``, the part that depends on the joint
-    variables. ``reference`` is the reference's table if both have equally many rows. Each of the
-    ``exchanges`` names two lengths and holds the change of the table when they are exchanged.
+    variables. ``reference`` is the reference's table if both have equally many rows. ``exchanges``
+    lists pairs of lengths, each with the change of the table if the two are exchanged.
     """
 
     constants: Table

@@ -1,1 +1,1 @@
-"""Find the valid table nearest to a wrong one."""
+"""Find the valid table (one that describes the robot) nearest to a wrong one."""

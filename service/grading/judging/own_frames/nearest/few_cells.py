@@ -1,9 +1,9 @@
-"""Find the valid table that equals a submitted one, or differs in one or two cells or one row.
+"""Find the valid table that differs from a submitted one in no cell, one or two cells or one row.
 
-If base, tool and directions are given, a table is valid if and only if its tool pose equals the
-tool pose of the reference at all joint values, and every cell changes only as its own joint
-variable does. So no search is needed: the correct value of a cell, or of a whole row, follows from
-all other cells.
+A table is valid if it describes the robot. If base, tool and directions are given, this is so if
+the tool pose equals that of the reference at all joint values, and every cell changes only as its
+own joint variable does. So no search is needed: the correct value of a cell, or of a whole row,
+follows from all other cells.
 """
 
 from collections.abc import Container, Iterable, Sequence
@@ -50,7 +50,7 @@ UNREAD = WRONG_CELL / 10
 
 @dataclass(frozen=True, slots=True)
 class NearestTable:
-    """The valid table nearest to a submitted table: ``expected`` is ``(rows, 4, SAMPLES)``.
+    """The table nearest to a submitted table that describes the robot.
 
     ``frames`` ``(joints, samples, 4, 4)`` are the frames of the valid table on the joint axes, as
     seen from the reference's frames. ``cost`` is explained in ``frame_choice``; if it is below 1,
@@ -70,9 +70,8 @@ class NearestTable:
 class _Case:
     """A table to be repaired.
 
-    ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable in each cell, or 0:
-    each cell must change with the joints as its entry in ``variables`` does. ``wrong`` has the
-    indices of the cells that change otherwise.
+    ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable that belongs in each
+    cell, or 0. ``wrong`` has the indices of the cells that change with the joints in another way.
     """
 
     roles: tuple[Role, ...]
@@ -104,7 +103,7 @@ class _Case:
 def nearest_by_few_cells(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NearestTable | None:
-    """Return the valid table that equals the written table, or differs in 1-2 cells or 1 row.
+    """Return the valid table that differs from the written one in at most two cells or in one row.
 
     If there are several such tables, return the table with the likeliest slip; None if there is no
     such table. No row may be missing.
@@ -207,12 +206,10 @@ def _in_one_row(repair: CellRepair) -> bool:
 
 
 def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
-    """Return the table after the repair of the likeliest slip.
+    """Return the table after the likeliest repair.
 
-    A repair is cheap if it has few cells, if these are in one row, and if it leads to frames near
-    the reference's frames. Repairs are tried in the order of this cost. The search ends when this
-    cost alone is at least the full cost of the best repair so far, which includes the unlikelihood
-    of its slips.
+    A repair is likely if it has few cells, if these are in one row, if it leads to frames near the
+    reference's frames, and if students often make the mistake that it repairs.
     """
     tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
     for k, repair in enumerate(repairs):
@@ -249,7 +246,7 @@ def _lost(repair: CellRepair, case: _Case) -> float:
 
 
 def _base_cost(repair: CellRepair, departures: float, case: _Case) -> float:
-    """Return the cost of the wrong cells, without the cost ``departures`` of the frames."""
+    """Return the cost of a repair for the number of cells; ``departures`` is that of the frames."""
     rows = [role.row for role in case.roles]
     if all((row := rows[i]) and not row.entries[c].readable for i, c in repair.cells):
         return UNREAD
@@ -260,7 +257,7 @@ def _base_cost(repair: CellRepair, departures: float, case: _Case) -> float:
 
 
 def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
-    """Return how unlikely the slip in this cell is, at least 0."""
+    """Return how unlikely the student's mistake in this cell is, at least 0."""
     right = _constant(repaired[cell], cell, case)
     written = None if cell in case.wrong else _constant(case.table[cell], cell, case)
     return slip_penalty(written, right, bool(IS_ANGLE[cell[1]]), case.grading)

@@ -61,7 +61,7 @@ from service.kinematics.transforms import cross
 def nearest_for_roles(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the valid table nearest to the submitted one, whose rows have these ``roles``."""
+    """Return the valid table nearest to the rows in ``roles``, whose joints are known."""
     if freedom == FrameFreedom() and all(role.row is not None for role in roles):
         nearest = nearest_by_few_cells(roles, convention, grading)
         nearest = nearest or _as_intended(roles, convention, freedom, grading)
@@ -77,11 +77,7 @@ def nearest_for_roles(
 def _as_intended(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
-    """Return the intended table if correcting the convention or angle unit makes the table valid.
-
-    A wrong convention or unit makes most cells wrong at once. But the intended table is known, and
-    therefore the correct value of each cell.
-    """
+    """Return the intended table if only its convention or angle unit is wrong, else None."""
     values = handed_in_values(roles)
     if not np.isfinite(values).all():
         return None
@@ -102,7 +98,10 @@ def _as_intended(
 
 
 def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
-    """Convert a table to a convention, ``(rows, 4, samples)``; None if that needs other rows."""
+    """Convert a table to a convention, ``(rows, 4, samples)``.
+
+    Return None if the table needs another number of rows in this convention.
+    """
     links = regrouped(table.values, table.convention)
     left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
     return None if left_out.any() else as_table(links, convention)
@@ -111,11 +110,10 @@ def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
 def _link_by_link(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the nearest valid table by comparing the links between the axes.
+    """Return the nearest valid table, found by comparing the links between the joint axes.
 
-    Base, tool and directions may be free or given.
-
-    Try the table as written, then tables that differ in one cell, then a search.
+    Base, tool and directions may be free or given. Try the table as written, then tables that
+    differ in one cell, then a search.
     """
     exercise, samples = grading.exercise, grading.samples
     scale = exercise.length_scale
@@ -175,11 +173,7 @@ def _searched(
     freedom: FrameFreedom,
     scale: float,
 ) -> ChainMatch:
-    """Search for the nearest valid table, from the base, or from the tool if only that is given.
-
-    If base and tool are both free, the search moves the base for each row. So if the search finds
-    nothing wrong except rounding, the search is repeated from each possible base.
-    """
+    """Search for the nearest valid table, starting at the base or at a given tool."""
     search = partial(
         search_nearest_table, length_scale=scale, directions_given=not freedom.directions
     )

@@ -1,10 +1,10 @@
-"""Find the valid table that differs from a submitted one in one cell, if something is free.
+"""Find the valid table that differs from a submitted one in one cell, if some frames are free.
 
-``few_cells`` compares poses at all joint values. That is impossible if the student chooses base,
-tool or directions. So this module compares constants, as ``validity`` does: with all joints at 0,
-the joint axes must lie on the joint axes of the reference. The axes give the value that each cell
-would need if no other cell were wrong (``kinematics.axis_repairs``). All repaired tables are then
-tested at once.
+A table is valid if it describes the robot. ``few_cells`` compares poses at all joint values, which
+is impossible if the student chooses base, tool or directions. So this module compares the joint
+axes with all joints at 0: they must lie on the joint axes of the reference. The axes give the value
+that each cell would need if no other cell were wrong (``kinematics.axis_repairs``). All repaired
+tables are then tested at once.
 """
 
 from collections.abc import Iterator, Sequence, Set
@@ -48,10 +48,10 @@ SUBSET = 2
 
 @dataclass(frozen=True, slots=True)
 class _Repair:
-    """A new constant ``(L,)`` for a cell, and the pose of one end of the chain that it implies.
+    """A new constant ``(L,)`` for a cell, and the pose of one end of the chain after this repair.
 
-    The end is frame 0, or the last frame if ``is_last``; its pose ``(L, 4, 4)`` is in the
-    reference's frame 0. ``attempt`` is the index of the underlying assumption in ``_ends``.
+    The end is the last frame if ``is_last`` is true, else frame 0. Its pose ``(L, 4, 4)`` is in the
+    reference's frame 0. ``attempt`` is the index of the assumption on which the repair is based.
     """
 
     cell: CellIndex
@@ -63,11 +63,11 @@ class _Repair:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """A table as a product of factors, from one end, and the reference's axes in the same order.
+    """A table as a product of factors, and the reference's axes in the same order.
 
-    ``joints`` ``(n,)`` are the indices of the factors along whose z the joints act. ``axes`` ``(n,
-    L, 4, 4)`` are the correct poses of the joint axes in the reference's frame 0. ``is_reversed``
-    is true if the factors start from the last frame.
+    ``joints`` ``(n,)`` are the indices of the factors that a joint moves. ``axes`` ``(n, L, 4, 4)``
+    are the correct poses of the joint axes in the reference's frame 0. ``is_reversed`` is true if
+    the factors start from the last frame instead of frame 0.
     """
 
     factors: Factors
@@ -103,7 +103,7 @@ class _Case:
     """A table to be repaired, as constants ``(rows, 4, L)``, and the mechanism of the reference.
 
     ``wrong`` are the cells that are wrong whatever frames are chosen. ``joint_signs`` ``(rows +
-    1,)`` are the signs of the variables, 0 if irrelevant, as in RowConstants.
+    1,)`` are the signs of the joint variables, 0 if irrelevant.
     """
 
     table: Table
@@ -181,9 +181,10 @@ def one_cell_match(
 
 
 def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
-    """Return the cheapest repair.
+    """Return the likeliest repair.
 
-    A repair is cheap if it leads to frames near the reference's frames, and if its slip is likely.
+    A repair is likely if it leads to frames near the reference's frames, and if students often make
+    the mistake.
     """
     links = np.moveaxis(found.links, 0, 2)
     frames = frames_on_axes(found.poses, links, case.roles, case.convention, case.mechanism)
@@ -205,7 +206,7 @@ def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
 
 
 def _repaired(case: _Case, repairs: Sequence[_Repair]) -> _Repaired:
-    """Return the repairs, each at L samples, that make the table valid."""
+    """Return those repairs that make the table describe the robot."""
     if not repairs:
         return _Repaired((), np.empty(0), np.empty(0))
     samples = len(repairs[0].value)
@@ -271,10 +272,10 @@ def _values(
 
 
 def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[_Body, Matrices]]:
-    """Yield the table as seen from each usable end, and possible poses of that end.
+    """Yield the table as seen from each usable end, and the poses that this end may have.
 
-    The poses ``(K, L, 4, 4)`` are in the reference's frame 0. The k-th pose assumes that only the
-    k-th factor is wrong.
+    The poses ``(K, L, 4, 4)`` are in the reference's frame 0. Pose k is correct if only factor k of
+    the table is wrong.
     """
     count = len(body.factors.axes)
     if not freedom.base:
@@ -288,7 +289,7 @@ def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[
 
 
 def _ends_by_axes(body: _Body) -> Iterator[Matrices]:
-    """Yield poses of a free end that put the axes before a wrong factor on the reference's axes."""
+    """Yield poses of a free end, found by putting the student's axes on the reference's axes."""
     n, samples = body.axes.shape[:2]
     on_axes = body.factors.before[body.joints]
     # A variable may be the wrong cell, or have either sign. The first axis and the next one that is

@@ -25,8 +25,8 @@ UNRELATED = 4
 def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
     """Return how unlikely it is to write one constant ``(SAMPLES,)`` for another; at least 0.
 
-    ``written`` is None if the cell does not change as it should, or could not be read. The slip is
-    then in the joint variable.
+    ``written`` is None if the cell could not be read, or does not change with the joints as it
+    should. Then the mistake is in the joint variable.
     """
     right_terms = _terms(right, angle, grading)
     penalty = TERM * _count(right_terms)

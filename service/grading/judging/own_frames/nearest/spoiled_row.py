@@ -1,7 +1,7 @@
-"""Spoil the only wrong row of a table, so that no cell of it fits by chance.
+"""Replace the only wrong row of a table by wrong numbers, so that no cell of it fits by chance.
 
-A search compares valid rows with the written rows. So the entries of a wrong row can hide the
-frames in which the other rows are right.
+The frames that a student chose are found by comparing rows. A wrong row can mislead this search, so
+that correct rows look wrong.
 """
 
 from typing import Final
@@ -18,7 +18,7 @@ OUT_OF_PLACE: Final = 0.3819660112501051
 
 
 def out_of_place(rows: int, length_scale: float) -> Table:
-    """Return wrong numbers for all cells of a table, ``(rows, 4, 1)``."""
+    """Return numbers ``(rows, 4, 1)`` that are wrong in every cell of a table."""
     count = rows * len(IS_ANGLE)
     numbers = (OUT_OF_PLACE * np.arange(1, count + 1)) % 1 + OUT_OF_PLACE
     scales = np.where(IS_ANGLE, 1.0, length_scale)
@@ -28,10 +28,9 @@ def out_of_place(rows: int, length_scale: float) -> Table:
 def with_spoiled_row(
     roles: tuple[Role, ...], expected: Table, length_scale: float
 ) -> tuple[Role, ...] | None:
-    """Return the roles with wrong numbers in the only row that is not as ``expected``.
+    """Replace the only row that differs from ``expected`` by wrong numbers.
 
-    Return None if several rows differ, because each would cost a search. Return None also if the
-    row is missing, or has such wrong numbers already.
+    Return None if several rows differ, if the row is missing, or if it was replaced before.
     """
     handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
     right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)

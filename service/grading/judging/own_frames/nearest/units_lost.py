@@ -15,13 +15,9 @@ def units_lost(
 ) -> float:
     """Return the number of units that the ``wrong`` cells ``(rows, 4)`` lose.
 
-    A unit is the cost of one wrong cell. Several wrong cells in one row lose no more than the row
-    is worth. A single wrong cell always loses a whole unit, even in a row of zeros, which is worth
-    less: the mistake may be the sign of a joint variable, and a table of zeros with wrong axes must
-    lose enough.
-
-    ``expected`` ``(rows, 4, samples)`` is the correct table. ``variables`` is the joint variable
-    that belongs in each cell, or 0.
+    Several wrong cells in one row lose no more than the row is worth. ``expected`` ``(rows, 4,
+    samples)`` is the correct table. ``variables`` is the joint variable that belongs in each cell,
+    or 0.
     """
     either = np.array([expected - variables, expected + variables])
     error = np.abs(difference(either, np.zeros(1), IS_ANGLE[:, None])).max(axis=-1).min(axis=0)

@@ -29,9 +29,9 @@ EVERY_COLUMN = np.ones(len(COLUMNS), dtype=np.bool_)
 def with_exact_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> tuple[Role, ...]:
-    """Return the roles with rounded angles made exact.
+    """Replace rounded angles in the rows of ``roles`` by the exact angles.
 
-    ``as_written`` of a changed row has the written numbers. If no angle was rounded, return
+    A changed row keeps the written numbers in ``as_written``. If no angle was rounded, return
     ``roles`` itself.
     """
     slack = _slack_of_angles(roles, exercise, samples)
@@ -54,9 +54,8 @@ def known_angles(
 ) -> NDArray[np.bool_]:
     """Return a mask ``(rows, 4)`` of the rounded angles whose exact values are known.
 
-    The mask contains all rounded angles if each of them agrees with a multiple of the step,
-    otherwise none: if one angle of a table is not a multiple, another angle may look like a
-    multiple by chance.
+    The mask contains all rounded angles if each of them agrees with a multiple of 15°, otherwise
+    none. If one angle of a table is not a multiple, another angle may look like one by chance.
     """
     slack = _slack_of_angles(roles, exercise, samples)
     if slack is None:
@@ -69,9 +68,9 @@ def known_angles(
 def _slack_of_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> Numbers | None:
-    """Return the slack of the rounded angles, or None.
+    """Return the largest rounding error of each angle.
 
-    Return None if no angle is rounded, or if the angles of the robot are arbitrary.
+    Return None if no angle is rounded, or if the robot has angles that are not multiples of 15°.
     """
     if not any(role.row.has_decimal for role in roles if role.row):
         return None
@@ -93,7 +92,7 @@ def slack_of_cells(
 
 
 def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Numbers:
-    """Return how far rounding moved each cell ``(rows, 4, SAMPLES)`` from a multiple of the step.
+    """Return how far rounding moved each cell ``(rows, 4, SAMPLES)`` from a multiple of 15°.
 
     The result is NaN for a cell if the distance is more than rounding can cause, or if the cell is
     not a constant plus or minus its joint variable.
@@ -107,7 +106,7 @@ def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Num
 
 
 def _turns_in_steps(exercise: Exercise, samples: Samples) -> bool:
-    """True if the reference's constant angles are multiples of the step."""
+    """True if the reference's constant angles are multiples of 15°."""
 
     def compute() -> bool:
         robot = exercise.robot

@@ -1,14 +1,13 @@
-"""Shift the rounded decimals of a whole table so that the table becomes valid.
+"""Shift the rounded decimals of a whole table until the table describes the robot.
 
-A table in the student's own frames has no expected cells, and with rounded numbers it is not
-exactly valid. But the true number of each decimal is at most a unit of its last place away
-(``comparison``). So all decimals are shifted at once until the table is valid: the errors of the
-chain at its targets (``kinematics.chain_match``) depend almost linearly on the shifts. Each shift
-is limited by the unit of its own decimal. Hence a less precise decimal cannot hide a wrong number,
-and in a row of parallel axes it does not matter which offset was rounded.
+The true number of each decimal is at most a unit of its last place away. So all decimals are
+shifted at once, and each shift is limited by the unit of its own decimal. Hence a less precise
+decimal cannot hide a wrong number, and in a row of parallel axes it does not matter which offset
+was rounded. The errors of the chain depend almost linearly on the shifts
+(``kinematics.chain_match``).
 
 The pose of a free base may change slightly, and the right value of a wrong cell is unknown. Both
-are unknowns, too, and may differ between sets of links.
+are unknowns, too.
 """
 
 from collections.abc import Sequence
@@ -79,7 +78,7 @@ class _Chain:
         return len(self.unknown) + (TWIST if self.base is not None else 0)
 
     def misfits(self, shifts: Numbers, free: Numbers) -> Numbers:
-        """Return the errors at the targets ``(K, n, L)``.
+        """Return the errors of the chain ``(K, n, L)``.
 
         ``shifts`` ``(K, count)`` are the shifts of the decimals, ``free`` ``(K, free, L)`` the
         other unknowns.
@@ -106,7 +105,7 @@ class _Chain:
         return np.asarray(turn @ self.base)
 
     def _sizes(self) -> Numbers:
-        """Return, for each decimal, the largest change of its cell per unit: ``(count,)``."""
+        """Return how far a shift by one unit moves the cell of each decimal, ``(count,)``."""
         cells = self.values.reshape(-1, SAMPLES)
         moved = self.decimals.shifted(np.eye(self.decimals.count), cells) - cells
         lengths = np.tile(np.where(IS_ANGLE, 1.0, self.length_scale), len(self.values))
@@ -147,11 +146,10 @@ def _regrouped(tables: Numbers, convention: Convention) -> Numbers:
 def with_true_numbers(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> tuple[Role, ...]:
-    """Return the roles with decimals shifted so that the table is valid, if that is possible.
+    """Shift the decimals in the rows of ``roles`` so that the table describes the robot.
 
-    ``as_written`` of a row keeps its numbers. Return ``roles`` itself if the table is already valid
-    (perhaps because ``rounded_angles`` made its angles exact), or if no shifts make the table
-    valid.
+    A changed row keeps the written numbers in ``as_written``. Return ``roles`` itself if the table
+    already describes the robot, or if no shifts make it do so.
     """
     if not _has_decimals(roles):
         return roles
@@ -235,7 +233,7 @@ def _has_decimals(roles: tuple[Role, ...]) -> bool:
 
 
 def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> bool:
-    """True if the table leads to the tool at one sample, so that it is most likely valid."""
+    """True if the table leads to the tool frame at one sample, so that it is most likely valid."""
     reached = pose(handed_in_values(roles)[..., 0], convention)
     error = np.abs(reached - tool_pose(grading.exercise, grading.samples)[0])
     return bool(error.max() < SAME_POSE * max(1.0, grading.exercise.length_scale))
