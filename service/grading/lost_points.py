@@ -79,7 +79,8 @@ def _cells_in_row(labels: Sequence[str], row: str) -> Sentence:
 def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
     """Return why correct rows of zeros are worth little, or None if there are no such rows.
 
-    ``rows`` are the rows without a content cell; ``most`` is the number of points of the part.
+    ``rows`` are the rows without a cell that needs knowledge. ``most`` is the number of points of
+    the part.
     """
     found = [
         row

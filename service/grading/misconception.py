@@ -157,13 +157,13 @@ def all_records() -> tuple[Record, ...]:
 
 
 def says(hint: str, correction: str = "") -> Finding:
-    """Return the words of a message; the engine adds the code of the record."""
+    """Return a message as a finding; the engine adds the code of the misconception."""
     return Finding("", hint, correction)
 
 
 @dataclass(slots=True)
 class Hypothesis(Generic[Answer]):
-    """An answer that a misconception leads to, with the words of its message.
+    """An answer that a misconception leads to, with the message on the misconception.
 
     ``finding`` is a function if it is slow to build or names two misconceptions at once.
     ``entries`` are the entries of the answer that the hypothesis explains. The engine sets
@@ -242,9 +242,8 @@ def explanation(
 ) -> Explained | None:
     """Return the hypothesis of the lowest rank that explains ``case``, or None.
 
-    A misconception takes ``source``, for example the links whose product a matrix is; without a
-    ``source`` it takes ``case``. The records of the class ``of`` are tried until one of them
-    explains ``case``. By default, ``of`` is the class of ``source``, or of ``case`` without a
+    The misconceptions get ``source``, for example the links whose product a matrix is; by default
+    they get ``case``. Only misconceptions about the class ``of`` are tried, by default the class of
     ``source``.
     """
     start = case if source is None else source

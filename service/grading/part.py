@@ -27,7 +27,7 @@ _CELL = 40
 
 @dataclass(frozen=True, slots=True)
 class StudentChain:
-    """An answer as a chain of links, which a later part may follow from.
+    """An answer as a chain of links, by which later parts may be judged.
 
     ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are the frames of the chain in the base frame, from the
     base to the tool. ``frames_at`` returns the frames at other samples, NaN where a frame is

@@ -77,7 +77,7 @@ class WorkBudget:
 
     @property
     def left(self) -> float:
-        """The total work minus the work of searches and of reading.
+        """The work left for explanations: the total work minus that of searches and of reading.
 
         Reading includes the later parts of the submission.
         """

@@ -192,11 +192,8 @@ def _axis_by_others(
 ) -> AxisLine | None:
     """Return the axis of a sliding joint, moved to where the student's x axes meet it.
 
-    A sliding joint determines only the direction of its axis. If another frame has the sliding axis
-    as its neighbouring axis, the x axis of that frame must cross the sliding axis. The x axis of
-    the joint's own frame must cross both the sliding axis and the neighbouring axis. Return None if
-    the origin of the joint's frame is on the sliding axis as drawn, or if no line determines the
-    place of the sliding axis.
+    A sliding joint determines only the direction of its axis. Return None if the student's origin
+    is on the axis as drawn, or if no x axis determines where the axis is.
     """
     asked, own = robot.asked[i], placed[i]
     if not asked.slides or own.point is None:
@@ -266,7 +263,10 @@ def lazy_frames(robot: FramesAtHome) -> list[PlacedFrame]:
 
 
 def known_frames(robot: FramesAtHome, home: Samples) -> NDArray[np.bool_]:
-    """Return a mask ``(frames, 6)`` of the content cells, in which the lazy frames are wrong."""
+    """Return a mask ``(frames, 6)`` of the cells that need geometry.
+
+    In these cells, frames that are all placed at the base frame are wrong.
+    """
     everywhere = (True,) * len(robot.asked)
     judged = _judged(robot, lazy_frames(robot), None, home, everywhere)
     return np.asarray(judged.found == Match.DIFFERENT)

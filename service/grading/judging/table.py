@@ -89,7 +89,7 @@ class Judgement:
 
     @property
     def slips(self) -> int:
-        """The number of slips that no cell shows."""
+        """The number of mistakes that no cell shows, such as an extra row."""
         return len(self.extra) + (not self.reached)
 
     @cached_property
@@ -332,7 +332,7 @@ def _is_as_written(nearest: NearestTable) -> bool:
 
 
 def departures_of(frames: Matrices, grading: Grading) -> float:
-    """Return the cost of frames ``(joints, samples, 4, 4)``, given in the reference's frames."""
+    """Return how far frames ``(joints, samples, 4, 4)`` are from the reference's frames."""
     return float(departure(frames, grading.exercise.length_scale).sum())
 
 

@@ -85,10 +85,7 @@ def _of_reference(task: _Task) -> Content:
 
 
 def _without_given(content: Content, part: DhTableSpec) -> Content:
-    """Return the content without the cells of given rows.
-
-    The given rows join the group of another row.
-    """
+    """Return the content without the cells of the rows that the exercise gives."""
     if not part.given:
         return content
     given = tuple(i + 1 in part.given for i in range(len(content.known)))

@@ -37,18 +37,18 @@ def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Gradi
 
 
 def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) -> StudentTable:
-    """Return the table with given-up ``cells`` ``(rows, 4)``.
+    """Return the table with wrong numbers in ``cells`` ``(rows, 4)``.
 
-    The numbers in these cells are wrong whatever frames are chosen.
+    The numbers are wrong whatever frames are chosen.
     """
     numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
     return _filled(answer, cells, np.repeat(numbers, SAMPLES, axis=-1), GIVEN_UP)
 
 
 def with_wrong_rows(answer: StudentTable, more: int, grading: Grading) -> StudentTable:
-    """Return the table with ``more`` given-up rows at its end.
+    """Return the table with ``more`` rows of wrong numbers at its end.
 
-    The numbers in these rows are wrong whatever frames are chosen.
+    The numbers are wrong whatever frames are chosen.
     """
     rows = len(answer.rows)
     numbers = out_of_place(rows + more, grading.exercise.length_scale)[rows:]
@@ -65,10 +65,9 @@ def with_empty_cells(answer: StudentTable, cells: KnownCells) -> StudentTable:
 
 
 def written_content(answer: StudentTable, given: Sequence[bool], grading: Grading) -> int:
-    """Return the number of cells that the student wrote and that are not lazy.
+    """Return the number of cells in which the student wrote more than 0 or a joint variable.
 
-    A lazy cell is 0, a joint variable with either sign, or empty. ``given`` marks the rows that the
-    exercise gives.
+    ``given`` marks the rows that the exercise gives; their cells are not counted.
     """
     values = answer.values[..., None, :: SAMPLES - 1]
     variables = [grading.samples.values[joint.variable] for joint in grading.exercise.joints]

@@ -1,7 +1,7 @@
 """The answer kinds. Each kind has a file with its name, which reads and judges its answers.
 
-The file has the functions ``read`` and ``judge`` of AnswerKind. The package
-``shared`` has code of several kinds.
+The functions ``read`` and ``judge`` in each file have the interface ``AnswerKind``. The package
+``shared`` has code that several kinds use.
 """
 
 from collections.abc import Mapping

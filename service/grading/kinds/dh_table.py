@@ -70,7 +70,8 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """Judge the table row by row and cell by cell.
 
-    A wrong table is judged in its best reading, such as with its columns in another order.
+    A wrong table is also judged in other readings, such as with its columns in another order; the
+    best reading counts.
     """
     if np.isnan(answer.values).any():
         # Values for unread cells are looked for with what the judging itself leaves.
@@ -199,7 +200,7 @@ def _chain(
 
 
 def _cost_of(found: tuple[Finding, ...]) -> float:
-    """Return the share of the points that slips of the whole table cost."""
+    """Return the share of the points that mistakes in the whole table cost."""
     return sum(COSTS.get(finding.code, COST) for finding in found)
 
 

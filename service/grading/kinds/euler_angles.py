@@ -166,10 +166,9 @@ def nearest_triple(
 def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
     """Return which of the two triples of a rotation is intended at each sample, ``(SAMPLES,)``.
 
-    For each of the two triples, ``off`` is the distance of each angle from the triple's angle,
-    ``hit`` a mask of equal angles, both ``(2, SAMPLES, 3)``. Samples may belong to different
-    triples: atan2 always gives the same triple, but an angle of the robot itself may belong to
-    either triple. The choice makes as many angles as possible correct at all samples.
+    For each of the two triples, ``off`` is the distance of each angle from the triple's angle, and
+    ``hit`` is a mask of equal angles, both ``(2, SAMPLES, 3)``. The choice makes as many angles as
+    possible correct at all samples.
     """
     total, samples = off.sum(axis=-1), np.arange(off.shape[1])
     for count in (3, 2, 1):

@@ -50,8 +50,8 @@ _MARK_LINE: Final = re.compile(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.I
 class FoundSlip:
     """An answer: the marked cells and the corrected table.
 
-    ``table`` is None if the table is missing or cannot be read at all. ``unread`` is the reason why
-    the table cannot be read.
+    ``table`` is None if the table is missing or unreadable as a whole. ``unread`` is the reason why
+    it is unreadable.
     """
 
     marked: MarkedCells
@@ -179,7 +179,7 @@ def _covers(marked: frozenset[CellIndex], wrong: frozenset[CellIndex]) -> bool:
 
 
 def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
-    """Return the content: the marked cells are one half, and the corrected table the other.
+    """Return the worth of the cells: one half for the marked cells, one half for the table.
 
     In a correct table, the cells of the slip share the half of the table. In any other table, all
     cells that are not correct share this half, so that the table earns nothing.
@@ -244,9 +244,9 @@ def _slip_of(asked: _Asked) -> DrawnSlip:
 def blame(
     part: FindSlipSpec, exercise: Exercise, texts: TableTexts, turn: int = 0
 ) -> TableBlame | None:
-    """Return what is wrong in a table; None if it is correct, or a cell cannot be read.
+    """Return what is wrong in a table. Return None if it is correct, or a cell cannot be read.
 
-    Another ``turn`` draws other samples.
+    Another ``turn`` draws other random samples.
     """
     answer = {"rows": as_rows(texts)}
     samples = draw(exercise, [answer, turn] if turn else answer)

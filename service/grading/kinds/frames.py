@@ -281,7 +281,10 @@ def _chain(part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading) -
 def _table_told(
     part: FramesSpec, robot: FramesAtHome, placed: Sequence[PlacedFrame], grading: Grading
 ) -> tuple[Finding, ...]:
-    """Return the message with the table of correct frames, unless a later part asks for it."""
+    """Return a message with the DH table of correct frames.
+
+    There is no message if a later part asks for this table.
+    """
     exercise = grading.exercise
     if not grading.corrects or any(each.follows == part.id for each in exercise.parts):
         return ()

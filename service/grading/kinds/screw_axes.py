@@ -79,7 +79,8 @@ def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix
 def _columns_are_axes(part: ScrewAxesSpec, rows: StudentMatrix, grading: Grading) -> bool:
     """True if a square matrix has the axes in its columns, as in Lynch & Park, "Modern Robotics".
 
-    At least two more columns than rows must be correct, because one may be correct by chance.
+    One column may be correct by chance. So the number of correct columns must exceed that of
+    correct rows by two.
     """
     axes = _expected(part, grading).axes
     senses = (1, -1) if part.directions == "free" else (1,)
@@ -142,9 +143,9 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
 def _explained(
     answer: StudentMatrix, case: WrongScrews, grading: Grading
 ) -> tuple[dict[int, Finding], float | None]:
-    """Return the findings on whole wrong axes by index, and the cost of a slip in all axes.
+    """Return the findings on wrong axes, by the index of the axis, and a cost.
 
-    The cost is a share of the points, or None if there is no such slip.
+    If one slip explains all wrong axes, the cost is its share of the points; otherwise it is None.
     """
     wrong = np.flatnonzero(case.wrong.any(axis=1)).tolist()
     if (throughout := explain_screws(case)) is not None:
@@ -188,9 +189,9 @@ def _shared_messages(
 
 
 def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
-    """Return a mask ``(joints, 6)`` of the content cells.
+    """Return a mask ``(joints, 6)`` of the cells that earn points.
 
-    A content cell differs from 0 and from the cell of the lazy axis, the z axis of the frame.
+    Such a cell differs from 0 and from the cell of the frame's own z axis.
     """
     turns = np.abs(axes[:, :3]).max(axis=(1, 2)) > 0
     lazy = np.where(turns[:, None], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1])

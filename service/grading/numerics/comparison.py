@@ -104,9 +104,10 @@ def entry_matches(
     samples: Samples,
     angle: ArrayLike = False,
 ) -> NDArray[np.int_]:
-    """Return the Match of each entry ``(...)``; inexact entries are also tested for rounding.
+    """Return the Match (result of the comparison) of each entry ``(...)``.
 
-    ``expressions`` are the expressions of the entries in order, None for an unreadable entry.
+    Entries that differ may still be correct decimals that were rounded. ``expressions`` are the
+    expressions of the entries in order, None for an unreadable entry.
     """
     found = matches(actual, expected, scale, angle)
     different = np.flatnonzero(found == Match.DIFFERENT).tolist()

@@ -36,14 +36,11 @@ def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np
 def joint_counts(
     values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int_], NDArray[np.bool_]]:
-    """Return whole numbers k with ``values = Σ k_j q_j + constant``, for each cell.
+    """Return the factor of each joint variable in each cell, ``(cells, joints)``, and a mask.
 
-    The q_j are the joint variables. ``values`` is ``(cells, SAMPLES)``, ``angle`` ``(cells,)``.
-    Return the counts ``(cells, joints)`` and a mask ``(cells,)`` of the cells that have this form
-    (angles up to whole turns).
-
-    All cells are one least-squares problem, because the two halves of the samples differ only in
-    the joints.
+    The mask ``(cells,)`` marks the cells that are a constant plus whole multiples of the joint
+    variables (angles up to whole turns). ``values`` is ``(cells, SAMPLES)``, ``angle``
+    ``(cells,)``.
     """
     if not joints:
         return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))

@@ -1,9 +1,9 @@
-"""The readings of a wrong table, of which the best counts.
+"""Read a wrong table in several ways, of which the best counts.
 
 The first reading is the table as written. The others are the table with other joint numbers, with
 its columns in another order, with its lengths in another unit, or with a and d of one row
-exchanged. Each reading is judged alike. A reading that explains enough wrong cells counts, with the
-finding on its slip.
+exchanged. All readings are judged in the same way. A reading counts if it explains enough wrong
+cells.
 
 Three more readings only limit the points: the table without its extra rows; the table with each
 unread cell replaced by its joint variable or 0; and the table with one row given up
@@ -106,7 +106,7 @@ def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> flo
 
 @dataclass(frozen=True, slots=True)
 class _Readings:
-    """Judges the readings of tables; ``work`` is the work of judging one table."""
+    """Judges the possible readings of a table; ``work`` is the work of judging one table."""
 
     part: DhTableSpec
     judge: Judge
@@ -186,10 +186,11 @@ class _Readings:
 def _with_slip(
     intended: IntendedTable, without: Judged, judged: Judged, grading: Grading
 ) -> Judged:
-    """Return the judgement of a table with a systematic slip.
+    """Return the judgement of a table with a systematic mistake.
 
-    ``without`` is the judgement of the table without the slip, ``judged`` of the table as written.
-    The cells of the slip are wrong; together they cost as much as a slip of the whole table.
+    ``without`` is the judgement of the table without the mistake, ``judged`` that of the table as
+    written. The cells with the mistake are wrong; together they cost as much as a mistake in the
+    whole table.
     """
     rows = tuple(
         row_report(

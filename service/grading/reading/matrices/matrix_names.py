@@ -46,13 +46,12 @@ def is_product(name: str) -> bool:
 
 
 def places_of(names: Sequence[Indices], count: int) -> tuple[tuple[_Place, ...], str]:
-    """Return the place of each name, 1 to ``count`` or None, and a note on unusual counting.
+    """Return which link transform each name means, 1 to ``count`` or None, and a note.
 
-    The note is a template for the names of the ``matrices``; it is empty for usual counting.
-
-    A name has the number of the link, or the two frames that the link connects. There are several
-    ways to count: A0 may be the first link, and 12 may be the twelfth link or the link between
-    frames 1 and 2. The way that gives the most places is chosen.
+    The note is on unusual counting, and empty for usual counting. A name has the number of the
+    link, or the two frames that the link connects. There are several ways to count: A0 may be the
+    first link, and 12 may be the twelfth link or the link between frames 1 and 2. The way that
+    gives the most link transforms is chosen.
     """
     readings = [
         (tuple(_valid(way(name, count), count) for name in names), unusual)

@@ -336,7 +336,7 @@ def memoized_row(cells: Sequence[object], reader: Reader) -> tuple[Entry, ...] |
 
 
 class _MemoizedRow(NamedTuple):
-    """The entries of a row, and the number of symbols that were read for them."""
+    """The entries of a row, and the number of symbols (names, numbers and signs) in its text."""
 
     entries: tuple[Entry, ...]
     symbols: int

@@ -76,7 +76,7 @@ class StudentRow:
 
     @property
     def is_given_up(self) -> bool:
-        """True if some cell is ``GIVEN_UP``: its number is wrong whatever frames are chosen."""
+        """True if some cell was replaced by a number that is wrong whatever frames are chosen."""
         return any(entry is GIVEN_UP for entry in self.entries)
 
     @property
