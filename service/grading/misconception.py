@@ -146,7 +146,7 @@ def check(
 
 @cache
 def records_of(kind: type) -> tuple[Record, ...]:
-    """Return the records of a class of cases and of its base classes, in the order of ranks."""
+    """Return the records for a class of wrong answers and its base classes, by rank."""
     found = (each for each in _RECORDS if each.function and each.of in kind.__mro__)
     return tuple(sorted(found, key=lambda record: (record.rank, record.name)))
 

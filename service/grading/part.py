@@ -83,7 +83,7 @@ class Grading:
         return tuple(finding.message(places, corrects=self.corrects) for finding in findings)
 
     def spelling(self, entries: Iterable[Entry]) -> Spelling:
-        """Return the spelling of the entries of a part, for use in messages."""
+        """Return how the student writes symbols and angles in these entries."""
         # Half the cells of a table are a bare 0, which shows no spelling.
         expressions = [entry.expression for entry in entries]
         vocabulary = self.exercise.vocabulary

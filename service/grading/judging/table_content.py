@@ -100,7 +100,7 @@ def _without_given(content: Content, part: DhTableSpec) -> Content:
 
 
 def _own_grading(exercise: Exercise) -> Grading:
-    """Return a grading without a submission, for values that depend only on the exercise."""
+    """Return a grading without a submission, for values that only the exercise determines."""
     samples = draw(exercise, None)
     reader = Reader.of(exercise, samples, "radians")
     return Grading(exercise, samples, reader)

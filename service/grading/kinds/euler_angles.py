@@ -198,7 +198,7 @@ def _arctangents(entries: Sequence[Entry]) -> list[bool]:
 def _explained(
     found: NDArray[np.int_], explained: Explained | None
 ) -> tuple[NDArray[np.int_], dict[tuple[int, int], Finding], tuple[Finding, ...]]:
-    """Return the Matches, the findings on single angles, and the findings on the whole triple."""
+    """Return the Match of each angle, findings on single angles, and findings on the triple."""
     if explained is None:
         return found, {}, ()
     slipped = explained.entries

@@ -140,7 +140,7 @@ def _marked_row(
 def _hidden_table(
     answer: FoundSlip, table: Judged | None, grading: Grading, *, is_found: bool
 ) -> RowReport:
-    """Return a row for a table that is not correct, without the cells of the table."""
+    """Return a report row for a wrong table that does not show the table's cells."""
     verdict, findings = Verdict.MISSING, tuple[Finding, ...]()
     if answer.unread is not None:
         verdict, findings = Verdict.UNREADABLE, (answer.unread,)

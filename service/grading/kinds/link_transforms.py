@@ -177,10 +177,7 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
 
 
 def _completed(values: Matrices, part: LinkTransformsSpec, grading: Grading) -> Matrices:
-    """Return the matrices; if only one of them could not be read, it is computed.
-
-    A matrix with unread entries is computed from all other matrices and the tool frame.
-    """
+    """Return the matrices. A single unreadable matrix is computed from the others."""
     unread = np.flatnonzero(np.isnan(values).any(axis=(1, 2, 3)))
     if len(unread) != 1:
         return values

@@ -37,7 +37,7 @@ def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
 
 
 def _tails(coordinates: str) -> tuple[Tail, ...]:
-    """Return the tails that may follow these coordinates, such as the 0 in [x, y, 0]."""
+    """Return the values that may follow the coordinates, such as the 0 in [x, y, 0]."""
     if coordinates == "xy":
         return PLANAR, HOMOGENEOUS, (*PLANAR, *HOMOGENEOUS)
     # If x and z are expected, z in [x, y, 0] may be the second or the third value.

@@ -73,7 +73,7 @@ def joint_counts(
 def coefficients(
     values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
 ) -> list[tuple[int, ...] | None]:
-    """Return the counts of ``joint_counts`` for each cell; None for a cell of another form."""
+    """Return the factors of the joint variables in each cell; None for a cell of another form."""
     counts, linear = joint_counts(values, joints, samples, angle)
     found = zip(counts.tolist(), linear.tolist(), strict=True)
     return [tuple(cell) if is_linear else None for cell, is_linear in found]

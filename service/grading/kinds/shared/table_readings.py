@@ -81,7 +81,7 @@ def best_reading(
     best = readings.best(table, written)
 
     def judged_again(other: StudentTable) -> Judged:
-        """Judge a table with given-up rows or cells; only the points of the judgement count."""
+        """Judge a table with replaced rows or cells; only its points count."""
         silent = readings.in_silence()
         return silent.best(other, silent.as_written(other))
 
