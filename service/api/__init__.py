@@ -1,1 +1,1 @@
-"""The HTTP interface: routes read requests, call the other packages, and send responses."""
+"""The HTTP interface. Its routes read requests, call the other packages, and send responses."""

@@ -1,4 +1,4 @@
-"""The application: all routes, limits and headers."""
+"""Build the HTTP service from its routes, limits and headers."""
 
 import gc
 from collections.abc import AsyncIterator, Callable, Iterable
@@ -70,12 +70,10 @@ Layer = Callable[[ASGIApp], ASGIApp]
 
 
 def _freeze_gc() -> None:
-    """Exempt all objects that exist now from garbage collection.
+    """Turn garbage collection on, but exempt all objects that exist now.
 
     Reading a request body with many small lists triggers full collections. If these collections
-    also visited the objects of the program, they would take twice as long as reading the body. If
-    the process was started with garbage collection off, this function turns garbage collection on
-    without a first collection.
+    also visited the objects of the program, they would take twice as long as reading the body.
     """
     if gc.isenabled():
         gc.collect()
@@ -86,7 +84,10 @@ def _freeze_gc() -> None:
 def _sending(
     store: "AttemptStore", access: Access, catalogue: Catalogue
 ) -> "Iterable[BackgroundSending]":
-    """Yield the threads that send scores and reports to platforms; none if no secret is set."""
+    """Yield the threads that send scores and reports to learning platforms.
+
+    If the installation has no secret, there are no such threads.
+    """
     secret = None if access.keys is None else access.keys.secret
     if secret is None:
         return
@@ -103,7 +104,7 @@ def _sending(
 
 
 class _Api(FastAPI):
-    """FastAPI with additional layers outside its error handling and its limit on body size."""
+    """A FastAPI application with further layers around FastAPI's own layers."""
 
     def __init__(
         self,
@@ -159,10 +160,10 @@ class _Api(FastAPI):
     def build_middleware_stack(self) -> ASGIApp:
         """Return the application with its layers.
 
-        The layers from the inside to the outside: FastAPI's own layers, compression, turns
-        between clients, authentication, and the boundary. The CORS layer is outside these
-        layers, so that pages of other origins may read problems, too. The layer that sets
-        the request id is outermost, so that every response has a request id.
+        From the inside to the outside, they are FastAPI's own layers, compression, fair turns
+        between clients, authentication, and the layers of ``boundary.py``. The CORS layer is
+        outside these layers, so that pages of other origins may also read error responses.
+        The outermost layer gives every request and its response an id.
         """
         app = super().build_middleware_stack()
         if self._monitor is not None:
@@ -209,10 +210,10 @@ def application(
 
     Web pages of ``cors_origins`` may call the service. ``access`` checks callers. Without
     ``access``, everybody may grade and record, and nobody sees the data that are for tutors.
-    ``rates`` limits the number of requests. The level of a report is at most ``feedback``, and at
-    most the level of the exercise. ``turns`` is a layer that orders requests, and ``pages`` are the
-    service's web pages. Attempts are recorded in ``store``, if there is one. ``monitor`` counts
-    requests and reports.
+    ``rates`` limits the number of requests. ``feedback`` is the highest feedback level of reports;
+    an exercise may have a lower one. ``turns`` is a layer that lets clients take turns. ``pages``
+    are the service's web pages. Attempts are recorded in ``store``, if there is one. ``monitor``
+    counts requests and reports.
     """
     access = access or Access()
     app = _Api(catalogue, cors_origins, turns, store, access, rates, monitor, pages)

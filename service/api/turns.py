@@ -1,4 +1,4 @@
-"""Let the requests of clients take turns: functions for routes and the layers around them."""
+"""Let the requests of clients take turns on the processor."""
 
 import asyncio
 import math
@@ -43,20 +43,26 @@ ONE_STUDENT, ONE_ADDRESS, COURSE_SITE = 1.0, 8.0, math.inf
 
 
 def arrived_at(request: Request) -> datetime:
-    """Return when the whole request was received. A hand-in is not late if it waits for a turn."""
+    """Return the time when the whole request was received, before it waited for its turn.
+
+    This time decides whether answers were handed in late.
+    """
     found: datetime | None = request.scope.get(ARRIVED)
     return found or datetime.now(UTC)
 
 
 async def give_way(request: Request) -> None:
-    """Wait for the request's next turn. Raises ClientDisconnect if the client has gone."""
+    """Let other requests run, and wait until this request may continue.
+
+    Raises ClientDisconnect if the client has disconnected.
+    """
     turn: Callable[[], Awaitable[None]] | None = request.scope.get(TURN)
     # Without such a layer, as in tests of routes: let every other ready task run once.
     await (asyncio.sleep(0) if turn is None else turn())
 
 
 async def run_in_turns(request: Request, work: Callable[[], R]) -> R:
-    """Return the result of ``work``. Other requests have turns between the steps of ``work``.
+    """Call ``work`` and return its result. Other requests may run between its steps.
 
     Raises ClientDisconnect if the client has disconnected. Exceptions of ``work`` pass through.
     """

@@ -10,10 +10,10 @@ from service.catalogue.drafts import Drafts
 
 
 class WebPages(NamedTuple):
-    """The routes of the pages, and ``of_problem``, which makes an HTML page from a problem.
+    """The routes of the web pages, with the functions and data that the application needs.
 
-    ``close`` stops the work that the pages have started. ``drafts`` are the exercises in the
-    preview of the editor.
+    ``of_problem`` makes an HTML page from an error response. ``close`` stops the work that the
+    pages have started. ``drafts`` are the exercises that tutors preview in the editor.
     """
 
     routes: APIRouter

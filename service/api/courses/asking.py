@@ -36,7 +36,10 @@ _REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVIC
 
 
 def reading(model: type) -> dict[str, Any]:
-    """Return the options of a route that reads data of a course."""
+    """Return FastAPI's arguments for a route that reads data of a course.
+
+    ``model`` is the class of the response.
+    """
     refused = refusals(*_REFUSED, HTTPStatus.UNPROCESSABLE_ENTITY)
     return {"response_model": model, "responses": refused, "openapi_extra": MAY_NEED_KEY}
 
@@ -44,18 +47,28 @@ def reading(model: type) -> dict[str, Any]:
 def changing(
     body: type, model: type, *further: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
 ) -> dict[str, Any]:
-    """Return the options of a route that changes data of a course."""
+    """Return FastAPI's arguments for a route that changes data of a course.
+
+    ``body`` and ``model`` are the classes of the request body and the response. ``further`` are
+    additional error statuses of the route.
+    """
     options = posting(body, model, None, *_REFUSED, *further, success=success)
     return {"status_code": success, **options}
 
 
 async def read(store: "AttemptStore | None", work: "Callable[[Connection], R]") -> R:
-    """Return the result of ``work``, which only reads. Raises ProblemError."""
+    """Call ``work``, which only reads from the database, and return its result.
+
+    Raises ProblemError.
+    """
     return await _done(store, work, writes=False)
 
 
 async def write(store: "AttemptStore | None", work: "Callable[[Connection], R]") -> R:
-    """Return the result of ``work``, done in one transaction. Raises ProblemError."""
+    """Call ``work`` in one transaction of the database, and return its result.
+
+    Raises ProblemError.
+    """
     return await _done(store, work, writes=True)
 
 
@@ -69,6 +82,6 @@ async def _done(
 
 
 def course_problem(error: CourseError) -> ProblemError:
-    """Return the problem to send for a CourseError."""
+    """Return the HTTP problem for a CourseError."""
     status, title = _TITLES[error.name]
     return ProblemError(status, message_of(error), error.name, title)

@@ -55,7 +55,7 @@ def routes(
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the routes for learners; reports have at most the level ``feedback``.
+    """Return the routes for learners. ``feedback`` is the highest feedback level of reports.
 
     Web pages of the service and of ``origins`` may hand in answers.
     """
@@ -181,10 +181,12 @@ def _begun(
     idempotency_key: str,
     connection: "Connection",
 ) -> "tuple[LearnerTerms, Exercise, str | None, Standing] | CourseError":
-    """Return the terms of a hand-in, the exercise, the variant's seed, and the learner's standing.
+    """Return what the service needs to record a hand-in.
 
-    ``place`` is a course, an assignment and an exercise. A CourseError is returned, not raised:
-    raising the error would run the other jobs of the transaction again.
+    These are the assignment's rules for this learner, the learner's variant of the exercise, the
+    seed of the variant, and the number and points of the learner's earlier attempts. ``place`` is a
+    course, an assignment and an exercise. A CourseError is returned, not raised, because the
+    transaction contains the work of other requests, too.
     """
     from service.attempts.recording import standing
     from service.courses.dealing import assigned_seed, needs_choices, pin_choices

@@ -1,4 +1,4 @@
-"""The routes of personal links; for tutors."""
+"""The routes of personal links, with which learners open their courses; for tutors."""
 
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING

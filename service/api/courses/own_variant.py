@@ -28,7 +28,10 @@ _TEXT: Final = {
 
 
 def of_assignment(options: dict[str, Any]) -> dict[str, Any]:
-    """Return the options of a route with the parameters ``course`` and ``assignment`` added."""
+    """Return FastAPI's arguments for a route, with the documentation of two more parameters.
+
+    These query parameters are ``course`` and ``assignment``.
+    """
     extra = options.get("openapi_extra", {})
     own = [
         {"name": name, "in": "query", "required": False, "description": text, "schema": _SCHEMA}
@@ -42,7 +45,7 @@ _SCHEMA: Final = _NAME.json_schema()
 
 
 class OwnVariants:
-    """Finds the variants of learners."""
+    """Finds a learner's own variant of an exercise."""
 
     def __init__(self, store: "AttemptStore | None", access: Access) -> None:
         self._store = store

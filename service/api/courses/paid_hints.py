@@ -1,4 +1,8 @@
-"""The route for hints on recorded attempts: each step is recorded, and may have a price."""
+"""The route for hints on recorded attempts.
+
+A hint has several steps. The service records each step that a learner takes. A step may have a
+price, which reduces the points of later attempts.
+"""
 
 from collections.abc import Collection
 from functools import partial
@@ -41,7 +45,10 @@ def routes(
     access: Access,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the route; it gives hints only for messages that the level ``feedback`` allows."""
+    """Return the route. ``feedback`` is the highest feedback level of reports.
+
+    Hints are given only for messages that a report of this level shows.
+    """
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.post(
@@ -111,7 +118,10 @@ def _may_use(caller: Caller, row: "Row[Any]") -> bool:
 def _terms(
     row: "Row[Any]", exercise: Exercise, connection: "Connection"
 ) -> tuple[AttemptsSpec, list[float] | None, int]:
-    """Return the next attempt's rules, the prices of hints, and the number of counted attempts."""
+    """Return the rules for attempts, the prices of a hint's steps, and the number of attempts.
+
+    Only the learner's attempts that count are in this number.
+    """
     from service.attempts.recording import standing
     from service.courses.terms import terms_of
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 class PracticeGate:
-    """Refuses practice, a free hint or a solution if the learner may not have it now."""
+    """Refuses practice, free hints and solutions that an assignment of the learner forbids now."""
 
     def __init__(self, store: "AttemptStore | None", catalogue: Catalogue) -> None:
         self._store = store
@@ -30,7 +30,11 @@ class PracticeGate:
             raise refused
 
     async def check_hints(self, caller: Caller, exercise: Exercise) -> None:
-        """Raise ProblemError if the caller may not practise, or would have to pay for hints."""
+        """Raise ProblemError if the caller may not have free hints for the exercise now.
+
+        This is the case if the caller may not practise the exercise, or if hints have a price in
+        an assignment of the caller.
+        """
         await self.check(caller, exercise.plain_id)
         learner = caller.learner
         if self._store is None or learner is None:
@@ -114,7 +118,7 @@ class PracticeGate:
         return ProblemError(HTTPStatus.FORBIDDEN, detail, "no-practice", title)
 
     def _alike(self, exercise: str) -> set[str]:
-        """Return the ids of the exercises with the same robot, which have the same solution."""
+        """Return the ids of all exercises with the same correct table as this exercise."""
         reference = getattr(self._catalogue.get(exercise), "reference", None)
         return {
             name

@@ -137,7 +137,7 @@ def _learners(course_id: str, connection: "Connection") -> LearnerList:
 
 
 def _new_learners(body: LearnersRequest) -> list[NewLearner]:
-    """Return the new learners in a request's body. Raises ProblemError."""
+    """Return the learners whom a request's body adds. Raises ProblemError."""
     if (body.learners is None) == (body.csv is None):
         message = say("Send either learners or csv.")
         raise invalid([{"type": "either", "loc": (), "msg": message}])

@@ -1,4 +1,4 @@
-"""The OpenAPI document: the schemas of bodies, the failures, and examples.
+"""The OpenAPI document of the HTTP interface, with schemas, error responses and examples.
 
 The examples are stored in files, so that the service need not compute them when it starts. A test
 compares them with real responses.
@@ -118,10 +118,11 @@ def posting(
     *further: HTTPStatus,
     success: HTTPStatus = HTTPStatus.OK,
 ) -> dict[str, Any]:
-    """Return the options of a route that reads a body with ``read_body``.
+    """Return FastAPI's arguments for a route that reads a request body with ``read_body``.
 
-    ``name`` is the prefix of the names of the two example files; None if there are no examples.
-    ``further`` are the statuses of refusals that are not about the body.
+    ``body`` and ``model`` are the classes of the request body and the response. ``name`` is the
+    prefix of the names of the two example files; None if there are no examples. ``further`` are the
+    error statuses of the route in addition to those for an invalid body.
     """
     schema = _BODY_SCHEMAS.setdefault(body, {})
     content: dict[str, Any] = {"schema": schema}
@@ -136,7 +137,11 @@ def posting(
 def answers(
     model: type, name: str | None, *statuses: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
 ) -> dict[int | str, dict[str, Any]]:
-    """Return the OpenAPI responses for success, with schema and example, and for the refusals."""
+    """Return FastAPI's ``responses`` of a route, by status.
+
+    The response for ``success`` has the class ``model``, and the example from the file ``name``.
+    ``statuses`` are the error statuses.
+    """
     answer: dict[str, Any] = {"model": model}
     if name is not None:
         answer["content"] = {"application/json": {"example": example(name)}}
@@ -144,12 +149,15 @@ def answers(
 
 
 def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
-    """Return the OpenAPI responses for the ways in which a request may be refused."""
+    """Return the OpenAPI responses for these error statuses."""
     return {int(status): {"description": _REFUSALS[status]} for status in statuses}
 
 
 def completed(document: dict[str, Any]) -> dict[str, Any]:
-    """Return FastAPI's document with problem schemas, tidied schemas, and how to send a key."""
+    """Complete the OpenAPI document that FastAPI has made, and return it.
+
+    Add the schemas of error responses, tidy the other schemas, and describe how to send a key.
+    """
     problem = ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
     for path in document["paths"].values():
         for operation in path.values():

@@ -52,7 +52,7 @@ _CHOICES: Final = {
 
 
 def public_name(name: str) -> str:
-    """Return the name that a class has in the document."""
+    """Return the name that a class has in the OpenAPI document."""
     return _PUBLIC_NAMES.get(name, name)
 
 
@@ -69,7 +69,7 @@ def tidy_schemas(document: Schema) -> None:
 
 
 class _Tidying:
-    """Tidies one document; ``named`` holds the schemas that have a name."""
+    """Tidies one OpenAPI document; ``named`` has the schemas that have a name."""
 
     def __init__(self) -> None:
         self.named: Schema = {}
@@ -84,7 +84,10 @@ class _Tidying:
                 content["schema"] = self.tidied(content["schema"], is_sent=message is not asked)
 
     def name(self, name: str, schema: Schema, *, is_sent: bool = True) -> Schema:
-        """Store the schema under its public name unless the name is taken; return a reference."""
+        """Store the schema under its public name, and return a reference to it.
+
+        If the name already has a schema, nothing is stored.
+        """
         name = public_name(name)
         if name not in self.named:
             self.named[name] = {}
@@ -128,14 +131,14 @@ class _Tidying:
         return body
 
     def _fields(self, schema: Schema, *, is_sent: bool) -> Schema:
-        """Return the fields of a model, and the names of the required fields.
+        """Return the part of a model's schema with its fields and the list of required fields.
 
         In responses, a field with a default is required, because the service always sends the
         field. A field with the mark ``ADDED_LATER`` is not required, because a response that
         an older version has recorded may lack the field.
 
-        In requests, a field with a default is not required. The description of the field
-        names the default: the schema's own ``default`` makes some generators require a field.
+        In requests, a field with a default is not required. Its default is written into the
+        description, not into ``default``, because that makes some generators require the field.
         """
         required = list(schema.get("required", ()))
         fields = {}
@@ -155,7 +158,10 @@ class _Tidying:
 
 
 def _without_null(field: Schema) -> Schema:
-    """Return the schema of an optional field without null: the field is left out instead."""
+    """Return the schema of an optional field without null as an allowed value.
+
+    The service leaves the field out instead of sending null.
+    """
     forms = [form for form in field.get("anyOf", ()) if form != _NULL]
     rest = {key: value for key, value in field.items() if key != "anyOf"}
     if rest.get("default", ()) is None:
@@ -166,7 +172,7 @@ def _without_null(field: Schema) -> Schema:
 
 
 def _texts(schema: Schema) -> Schema:
-    """Return only the description of a schema, if any, with code in Markdown's backticks."""
+    """Return the description of a schema, if it has one, in Markdown."""
     if "description" not in schema:
         return {}
     return {"description": schema["description"].replace("``", "`")}

@@ -1,1 +1,1 @@
-"""What all routes share: bodies, problems, and layers around the application."""
+"""Code that all routes share: request bodies, error responses, and layers of the application."""

@@ -1,4 +1,4 @@
-"""The body of a request, read once and validated as a model."""
+"""Read the body of a request and validate it as an instance of a pydantic model."""
 
 from email.message import Message
 from http import HTTPStatus
@@ -17,7 +17,7 @@ M = TypeVar("M", bound=BaseModel)
 
 
 async def read_body(model: type[M], request: Request) -> M:
-    """Return the request's body as an instance of ``model``.
+    """Return the request's JSON body as an instance of ``model``.
 
     A JSON body is accepted with any Content-Type, because forms and scripts often omit this header.
     That is safe: a cookie gives rights only to requests of the service's own pages.
@@ -33,7 +33,9 @@ async def read_body(model: type[M], request: Request) -> M:
 
 
 def validated(model: type[M], value: object, at: Location = ()) -> M:
-    """Return a part of a body as an instance of ``model``; ``at`` is the part's place in the body.
+    """Return ``value``, a part of a request body, as an instance of ``model``.
+
+    ``at`` is the place of the part in the body.
 
     Raises ProblemError with status 422 if the value does not match the model.
     """
@@ -46,7 +48,10 @@ def validated(model: type[M], value: object, at: Location = ()) -> M:
 
 
 def _with_few_unknown(model: type[BaseModel], value: object) -> object:
-    """Return the value without unknown fields beyond ``MAX_ERRORS``: no problem lists more."""
+    """Return the value with at most ``MAX_ERRORS`` unknown fields; remove the others.
+
+    An error response lists no more errors than this.
+    """
     known = model.model_fields
     if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
         return value

@@ -40,7 +40,7 @@ class RequestIdMiddleware:
 
 
 class RouteMiddleware:
-    """Note the route that the application has found for a request, for the log and the metrics."""
+    """Store the route of each request for the log and the metrics, once FastAPI has found it."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -56,7 +56,7 @@ class RouteMiddleware:
 
 
 class RefusedRouteMiddleware:
-    """Note the route of a request that an outer layer refused before the routes saw it."""
+    """Store the route of a request that a layer refused before FastAPI looked for the route."""
 
     def __init__(self, app: ASGIApp, routes: Sequence[APIRoute]) -> None:
         self.app = app
@@ -81,7 +81,7 @@ class RefusedRouteMiddleware:
 
 
 class BoundaryMiddleware:
-    """Add security headers, answer HEAD like GET, and refuse too large a Content-Length.
+    """Add security headers, answer HEAD like GET, and refuse requests that announce large bodies.
 
     FastAPI's own limit counts the bytes of a body as they arrive. This layer refuses a body whose
     Content-Length is too large without reading the body, also on routes that take no body.

@@ -1,4 +1,4 @@
-"""Every response that is not a success: RFC 9457 problem details."""
+"""Error responses. Each contains a problem: a description of the error by RFC 9457."""
 
 import json
 import logging
@@ -30,7 +30,7 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """A request has failed; the attributes are the fields of the problem to send.
+    """The error of a failed request. Its attributes are the fields of the error response.
 
     The type of the problem ends with ``name``; without a name, the type is ``about:blank``. Each of
     ``challenges`` is sent in a separate header ``WWW-Authenticate``. A ``title`` or ``detail`` of
@@ -86,7 +86,10 @@ class ProblemError(Exception):
 
 
 def message_of(error: Exception) -> str:
-    """Return the message of an error. A Sentence stays translatable, unlike in ``str(error)``."""
+    """Return the message of an error.
+
+    A message of the class Sentence is returned as such, so that it can still be translated.
+    """
     message = error.args[0] if error.args else ""
     return message if isinstance(message, str) else str(error)
 
@@ -96,7 +99,10 @@ ProblemPage = Callable[[Request, ProblemError], Response | None]
 
 
 def too_large() -> ProblemError:
-    """Return the problem for a body that is too large; the connection closes without reading on."""
+    """Return the problem for a request body that is too large.
+
+    The service closes the connection without reading the rest of the body.
+    """
     return ProblemError(
         HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
         say("A request may hold {most} KiB; this one is larger.", most=MAX_BODY_SIZE // 1024),
@@ -133,9 +139,10 @@ def invalid(
     fields: Sequence[str] = (),
     at: tuple[str | int, ...] = (),
 ) -> ProblemError:
-    """Return the problem for a body in which pydantic has found errors.
+    """Return the problem for a request body in which pydantic has found errors.
 
-    ``fields`` are the names of all known fields of the object at the place ``at`` in the body.
+    ``details`` are pydantic's errors. If a field at the place ``at`` in the body is unknown, the
+    problem suggests the nearest name in ``fields``.
     """
     errors = [
         {
@@ -159,7 +166,7 @@ def invalid(
 
 
 def _pointer(location: Sequence[str | int]) -> str:
-    """Return a JSON pointer as a URI fragment, as RFC 9457 writes it; long keys are cut."""
+    """Return a place in a request body as a JSON pointer such as ``#/answers/dh``."""
     steps = (str(step)[:60].replace("~", "~0").replace("/", "~1") for step in location)
     return "#" + "".join(f"/{step}" for step in steps)
 
@@ -216,7 +223,7 @@ def _problem(request: Request, error: Exception) -> ProblemError:
 
 
 def _other_method(request: Request, error: HTTPException) -> ProblemError:
-    """Return the problem that lists the allowed methods; HEAD is allowed if GET is."""
+    """Return the problem for a wrong HTTP method; it lists the allowed methods."""
     methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
     allow = ", ".join(sorted(methods))

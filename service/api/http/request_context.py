@@ -31,7 +31,10 @@ _current: ContextVar[RequestContext | None] = ContextVar("request", default=None
 
 
 def begin_request(wished: str | None = None) -> RequestContext:
-    """Start a new request in the current task; a well-formed ``wished`` becomes its id."""
+    """Start a new request in the current task.
+
+    Its id is ``wished`` if this text is well formed, otherwise a random id.
+    """
     usable = wished is not None and _WELL_FORMED.fullmatch(wished)
     context = RequestContext(wished if usable and wished else secrets.token_hex(16))
     _current.set(context)

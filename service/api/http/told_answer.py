@@ -23,7 +23,7 @@ _VARY: Final = {"Vary": "Accept-Language, Cookie"}
 
 
 def in_languages(options: dict[str, Any]) -> dict[str, Any]:
-    """Return the options of a route with the parameter ``lang`` in its documentation."""
+    """Return FastAPI's arguments for a route, with the parameter ``lang`` in the documentation."""
     extra = options.get("openapi_extra", {})
     parameters = [*extra.get("parameters", ()), _PARAMETER]
     return {**options, "openapi_extra": {**extra, "parameters": parameters}}

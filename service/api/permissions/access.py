@@ -75,8 +75,8 @@ _UNKNOWN: Final = Identity(NOBODY, by_key=True)
 class Access:
     """Checks who the callers are and what they may do.
 
-    ``solutions`` and ``read_attempts`` say who may see solutions and attempts: nobody (False),
-    tutors (None), or, while there are no keys, everybody (True).
+    ``solutions`` and ``read_attempts`` say who may see solutions and attempts while the service has
+    no keys. False means nobody, None means tutors, and True means everybody.
     """
 
     def __init__(
@@ -160,7 +160,10 @@ class Access:
         return True
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token with the rights of ``caller``: a key's holder, restricted to a learner."""
+        """Return a token with the rights of ``caller``, until the time ``expires_at``.
+
+        ``caller`` has a key, but acts only for one learner.
+        """
         assert self.keys is not None, "only keys make tokens"
         return self.keys.token(caller, expires_at)
 
@@ -227,7 +230,7 @@ class Access:
 
 
 def require_reach(caller: Caller, exercise: str | None) -> None:
-    """Check that the caller may use the exercise, unless it is None. Raises ProblemError."""
+    """Raise ProblemError if ``exercise`` is an exercise that the caller may not use."""
     if exercise is not None and not caller.reaches(exercise):
         raise access_problem("other-exercise")
 

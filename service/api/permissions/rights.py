@@ -1,4 +1,7 @@
-"""The right that each route needs: one table, which the service checks and docs/keys.md prints."""
+"""A table with the right that each route needs.
+
+The service checks these rights. A part of docs/keys.md is generated from the table.
+"""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -186,7 +189,10 @@ def right_of(request: Request) -> Right:
 
 
 def require_entries(router: APIRouter) -> None:
-    """Check that the table has an entry for each route. Raises LookupError."""
+    """Check that the right of each route of ``router`` is in the table ``RIGHTS``.
+
+    Raises LookupError.
+    """
     routes = {
         f"{method} {route.path}"
         for route in iter_route_contexts(router.routes)

@@ -1,4 +1,4 @@
-"""One request to record an attempt, at an exercise alone or in an assignment of a course."""
+"""Grade and record one attempt at an exercise, perhaps in an assignment of a course."""
 
 import hashlib
 import json
@@ -34,7 +34,11 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 @dataclass(frozen=True, slots=True)
 class AttemptTerms:
-    """The rules for attempts, the n-th attempt's feedback level, and the assignment's number."""
+    """The rules for recording an attempt.
+
+    ``feedback_at`` returns the feedback level of the n-th attempt. ``assignment`` is the row number
+    of the assignment, or None.
+    """
 
     rules: AttemptsSpec
     feedback_at: Callable[[int], FeedbackLevel]
@@ -47,7 +51,7 @@ Arrived = tuple[datetime, Standing]
 
 @dataclass(frozen=True, slots=True)
 class Recorder:
-    """Records attempts in a store; reports have at most the level ``ceiling``."""
+    """Records attempts in a store. ``ceiling`` is the highest feedback level of reports."""
 
     store: "AttemptStore"
     ceiling: FeedbackLevel
@@ -65,8 +69,8 @@ class Recorder:
     ) -> Response:
         """Grade answers, record them, and return a response with the attempt and its report.
 
-        ``arrived`` has the time of arrival, and the learner's standing then. By default, the
-        time is that of the request, and the store is asked for the standing. Raises ProblemError.
+        ``arrived`` has the time when the request arrived, and the learner's earlier attempts at
+        that time. Without ``arrived``, both are looked up. Raises ProblemError.
         """
         now, before = arrived or (arrived_at(request), None)
         attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
@@ -163,7 +167,11 @@ class _Attempting:
         return earlier
 
     def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
-        """Return the attempt to record; None if it is not allowed or must be graded first."""
+        """Return the attempt to record, or None if it cannot be recorded now.
+
+        It cannot be recorded if it is not allowed, if it is recorded already, or if it must be
+        graded with another feedback level first.
+        """
         if standing.earlier is not None:
             return None
         try:

@@ -191,7 +191,10 @@ def course_of(caller: Caller, course: str | None) -> str | None:
 
 
 def may_reach(caller: Caller, found: "AttemptHistory | None") -> bool:
-    """True if the caller's key reaches this attempt."""
+    """True if the attempt exists and the caller may see it.
+
+    A caller may be restricted to some exercises or to a course.
+    """
     return (
         found is not None
         and caller.reaches(found.attempt.exercise)

@@ -41,10 +41,10 @@ def routes(
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the route that records; reports have at most the level ``feedback``.
+    """Return the route that records attempts. ``feedback`` is the highest level of reports.
 
-    ``practice`` refuses a learner for whom the exercise counts in an assignment now.
-    Web pages of the service and of ``origins`` may record attempts.
+    ``practice`` raises an error if an assignment of the learner forbids to practise the exercise
+    now. Web pages of the service and of ``origins`` may record attempts.
     """
     router = APIRouter(prefix="/v1", tags=["attempts"])
 

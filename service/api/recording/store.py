@@ -23,7 +23,10 @@ NO_STORE: Final = {"Cache-Control": "no-store"}
 async def ask(
     store: "AttemptStore | None", question: Callable[["AttemptStore"], Awaitable[R]]
 ) -> R:
-    """Return what ``question`` gets from the store. Raises ProblemError without a working store."""
+    """Call ``question`` with the store of attempts, and return its result.
+
+    Raises ProblemError if there is no store or its database does not respond.
+    """
     if store is None:
         raise not_recorded()
     try:

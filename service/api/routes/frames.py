@@ -1,4 +1,4 @@
-"""The route that computes the places of a table's frames and of a mechanism's parts."""
+"""The route that computes where to draw the frames of a DH table and the links of a robot."""
 
 from collections import OrderedDict
 from collections.abc import Hashable, Iterator, Mapping, Sequence, Set
@@ -62,7 +62,7 @@ _MOST_MECHANISMS: Final = 64
 
 
 class _Mechanisms:
-    """The most recently used mechanisms. While a slider is dragged, a mechanism is used again."""
+    """The most recently used mechanisms, because a dragged slider uses a mechanism many times."""
 
     def __init__(self) -> None:
         self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
@@ -182,7 +182,7 @@ def _refused(place: Location, message: Sentence) -> ProblemError:
 
 
 def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, float]) -> Numbers:
-    """Return the joint values of each picture as an array of shape ``(pictures, joints)``."""
+    """Return the joint values in a request, as an array of shape ``(poses, joints)``."""
     if body.joints is None:
         return np.array([[numbers[joint.variable] for joint in scope.joints]])
     for i, values in enumerate(body.joints):
@@ -217,7 +217,10 @@ def _table(
     numbers: Mapping[str, float],
     amounts: Numbers,
 ) -> tuple[FramesOfTable, TableFrames | None]:
-    """Return the frames for the response, and for the drawing, if the table can be read."""
+    """Return the frames of a table twice: for the response, and for the drawing.
+
+    If the table cannot be read, the response has the reason, and the drawing is None.
+    """
     budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:
         written = table_to_draw(table.rows, scope, budget, body.angle_unit)

@@ -123,7 +123,10 @@ def routes(
 
 
 def _named(submission: object) -> str:
-    """Return the plain id of a submission's exercise; "" if the submission is malformed."""
+    """Return the exercise id in a submission, without the seed of a variant.
+
+    Return "" if the submission is malformed.
+    """
     exercise = submission.get("exercise") if isinstance(submission, dict) else None
     return exercise.partition("~")[0] if isinstance(exercise, str) else ""
 

@@ -163,7 +163,7 @@ def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint
 
 
 def choices_for(exercise: Exercise, body: ChoicesRequest) -> FrameChoices:
-    """Return valid tables that differ from the table of a request. Raises ProblemError."""
+    """Return other correct tables for the robot of a correct table. Raises ProblemError."""
     require_parts(exercise, [(body.part, ("part",))])
     part = exercise.part(body.part)
     found = []

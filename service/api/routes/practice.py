@@ -1,4 +1,4 @@
-"""The route that deals generated robots."""
+"""The route that gives students generated robots to practise with."""
 
 from functools import partial
 from http import HTTPStatus
@@ -32,7 +32,10 @@ _FAVOUR = Query(description="A situation that the robot should have.")
 
 
 def routes(catalogue: Catalogue) -> APIRouter:
-    """Return the route that deals generated robots, which ``catalogue`` includes."""
+    """Return the route that chooses a generated robot.
+
+    ``catalogue`` contains all generated robots as exercises.
+    """
     router = APIRouter(prefix="/v1/practice", tags=["exercises"])
 
     @router.get(

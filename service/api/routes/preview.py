@@ -39,7 +39,7 @@ GENERIC: Final = Vocabulary(
 
 
 def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
-    """Return how the text is read with the symbols of this vocabulary."""
+    """Return how the grader reads the text, if ``vocabulary`` has the known symbols."""
     try:
         expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
     except ExpressionError as error:
@@ -75,7 +75,7 @@ _BETWEEN_CELLS: Final = frozenset("\n\t;|&<[,")
 
 
 def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
-    """Return the reading of a whole pasted table or matrix, cell by cell."""
+    """Return how the grader reads each cell of a pasted table or matrix."""
     pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
     symbols = {name for row in pasted.rows for cell in row for name in cell.symbols}
     return PreviewAnswer.model_validate(
@@ -90,7 +90,10 @@ def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> Preview
 
 
 def _shown(body: PreviewRequest, exercise: Exercise | None, language: Language) -> str:
-    """Return the reading of the text as JSON: as one entry, or else as a pasted grid."""
+    """Return as JSON how the grader reads the text.
+
+    The text may be one entry, or a whole table or matrix.
+    """
     shown = preview(body, exercise.vocabulary if exercise else GENERIC)
     if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
         grid = preview_grid(body, exercise, body.part)
