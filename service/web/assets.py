@@ -30,10 +30,10 @@ _WORDS: Final = "words.js"
 
 @dataclass(frozen=True, slots=True)
 class Asset:
-    """A file as it is served.
+    """A static file, with the ``name`` and the ``content`` that browsers get.
 
-    ``needs`` has the plain names of all files that this file refers to, except the modules that it
-    imports later.
+    ``needs`` has the names, without hashes, of all files that this file refers to. It does not have
+    the modules that a script imports only when it needs them.
     """
 
     name: str
@@ -58,7 +58,7 @@ class Assets:
         return self.by_plain_name[plain_name].name
 
     def modules(self, plain_name: str) -> list[str]:
-        """Return the names of a module and of all modules that it needs, to be preloaded."""
+        """Return the names of a module and of all modules that it imports; pages preload them."""
         found: dict[str, None] = {}
         waiting = [plain_name]
         while waiting:
@@ -69,7 +69,7 @@ class Assets:
         return [self.name(name) for name in found]
 
     def words(self, language: Language) -> str | None:
-        """Return the name of a language's dictionary, or None if the language has no dictionary."""
+        """Return the file name of a language's dictionary for scripts; None if there is no file."""
         found = self.by_plain_name.get(_dictionary_name(language))
         return None if found is None else found.name
 
@@ -123,7 +123,7 @@ def _name(match: re.Match[str]) -> str:
 
 
 def _target(files: Mapping[str, Path], name: str, match: re.Match[str]) -> str:
-    """Return the plain name of the file to which a match in the file ``name`` refers."""
+    """Return the plain name of the file to which a reference in the file ``name`` leads."""
     path = Path(os.path.normpath(files[name].parent / match[1]))
     if files.get(path.name) != path:
         raise LookupError(f"the static file {name} names {path}, which does not exist")

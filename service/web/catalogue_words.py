@@ -30,7 +30,7 @@ _JOINTS: Final = {"R": "revolute rotary turning", "P": "prismatic linear sliding
 
 
 def kinds_of(exercise: Exercise) -> Iterable[str]:
-    """Return the names of the kinds of an exercise's parts, without repetition."""
+    """Return what kinds of answers an exercise asks for, such as a DH table; each kind once."""
     return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
 
 

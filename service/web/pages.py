@@ -102,7 +102,7 @@ def play_page(assets: Assets, language: Language, *, tutor: bool = False) -> byt
 
 
 def practice_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page of generated robots, which the embedded element requests one by one."""
+    """Return the page for practice with generated robots; a script loads one after the other."""
     return page(
         "web/templates/practice.html",
         assets,

@@ -92,7 +92,10 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/learn")
     async def learn(request: Request) -> Response:
-        """Return the page for all learners; browsers do not send the key in a personal link."""
+        """Return the page that personal links open.
+
+        The page is the same for all learners: its script reads the key in the link.
+        """
         return page_answer(request, learner_page(assets, language_of(request)))
 
     @router.get("/docs")
@@ -104,7 +107,10 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
-        """Return the only module whose name never changes; it loads all others."""
+        """Return the script that other sites include; it loads the other scripts.
+
+        Only this script has a name that never changes.
+        """
         content = assets.by_plain_name[_ENTRY].content.replace(b'"./', b'"./static/')
         return _file(assets.by_plain_name[_ENTRY], content, "no-cache")
 

@@ -53,7 +53,10 @@ def dictionary(language: Language, sentences: ScriptSentences) -> str:
 
 
 def with_dictionaries(script: str, names: dict[str, str]) -> str:
-    """Return the script words.js with ``names`` inserted: each dictionary's address by language."""
+    """Return words.js with the addresses of the dictionaries inserted.
+
+    ``script`` is the text of words.js, and ``names`` has the addresses by language.
+    """
     return script.replace(_PLACE, f"const FILES = {json.dumps(names)};")
 
 

@@ -34,9 +34,9 @@ _GROUPS: Final = 10
 class CourseState(NamedTuple):
     """A course with its learners and assignments.
 
-    ``handed_in`` has the number of learners with a readable attempt for each assignment id.
-    ``roster`` is the row of the course's LTI context if the platform gives a roster, otherwise
-    None. ``reports`` are the reports on handed-in files that did not reach the platform.
+    ``handed_in`` has, for each assignment id, the number of learners with a readable attempt.
+    ``roster`` is a database row if the learning platform gives a list of the course's members,
+    otherwise None. ``reports`` are the reports on files that did not reach the platform.
     """
 
     course: Course
@@ -48,7 +48,7 @@ class CourseState(NamedTuple):
 
 
 class PointsGroup(NamedTuple):
-    """The learners whose share of the points is at least ``start`` and below ``end`` per cent."""
+    """How many learners have a share of the points from ``start`` to below ``end`` per cent."""
 
     start: int
     end: int
@@ -137,7 +137,7 @@ def learner_page(
     assets: Assets,
     language: Language,
 ) -> bytes:
-    """Return the page of a learner: what the learner sees, the variants, scores and the link.
+    """Return a tutor's page about one learner: the learner's own view, variants, scores and link.
 
     ``reports`` are the reports on handed-in files that did not reach the platform. ``variants`` has
     the learner's variants by assignment.
@@ -165,13 +165,17 @@ def roster_page(
     assets: Assets,
     language: Language,
 ) -> bytes:
-    """Return the page that says what a roster has changed, or why it was not read."""
+    """Return the page that a tutor sees after the roster of a course was read.
+
+    The roster is the platform's list of the course's members. The page says what has changed, or
+    why the roster could not be read.
+    """
     values = {"course": course, "change": change, "message": message}
     return _page("roster", assets, language, "../../../", [], **values)
 
 
 def distribution(book: Gradebook) -> list[PointsGroup]:
-    """Group the learners with hand-ins by each learner's share of all points."""
+    """Count the learners in each group of similar points; leave out learners without attempts."""
     most = sum(each.points for each in book.columns)
     counts = [0] * _GROUPS
     for row in book.rows:
@@ -184,7 +188,11 @@ def distribution(book: Gradebook) -> list[PointsGroup]:
 
 
 def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
-    """Return each exercise's id and points, and the number and mean points of its learners."""
+    """Return a tuple for each exercise.
+
+    It has the exercise's id, the possible points, the number of learners with an attempt, and the
+    mean of their points.
+    """
     found = []
     for i, column in enumerate(book.columns):
         earned = [row.points[i] for row in book.rows if row.points[i] is not None]

@@ -1,4 +1,4 @@
-"""Record a launch, and make the page that it opens: for a learner, a tutor, or a visitor."""
+"""Record launches from learning platforms, and make the pages for learners, tutors and visitors."""
 
 from datetime import UTC, datetime, timedelta
 from typing import Final
@@ -32,7 +32,10 @@ TOKEN_LIFETIME: Final = timedelta(hours=12)
 
 
 class Landings:
-    """Records launches, each in the transaction that uses up its login, and makes their pages."""
+    """Records launches, and makes the pages that they open.
+
+    One transaction records a launch and marks its login as used.
+    """
 
     def __init__(
         self,
@@ -86,7 +89,7 @@ class Landings:
         return choosing_page(choice, title, ticket, self.catalogue, self.assets, language)
 
     def _reviewed(self, message: LaunchMessage) -> str:
-        """Return the learner whose attempts a message asks for, or ""."""
+        """Return the learner whose attempts a tutor wants to see, or ""."""
         if not message.reviewed:
             return ""
         return pseudonym(message.registration.id, message.reviewed, self.secret)
@@ -106,7 +109,10 @@ class Landings:
         return picker_page(offer, Picked(), text, self.catalogue, self.assets, language)
 
     def _token(self, landing: Landing, now: datetime) -> str:
-        """Return a token for a learner or a preview, or "". A preview may only grade."""
+        """Return the token for the page of a learner or of a tutor who previews it.
+
+        With the token of a preview, the page can grade, but not record. Guests get no token ("").
+        """
         if landing.role is LtiRole.GUEST or not landing.key_id or landing.assignment is None:
             return ""
         is_learner = landing.role is LtiRole.LEARNER

@@ -43,7 +43,7 @@ def frame_headers(
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """What a tutor has filled in to set up a resource link."""
+    """The values that a tutor has entered to set up a resource link."""
 
     title: str
     search: str = ""
@@ -117,7 +117,10 @@ def refused_page(
 def landing_page(
     landing: "Landing", token: str, catalogue: Catalogue, assets: Assets, language: Language
 ) -> bytes:
-    """Return the page of a learner, a preview or a guest. No other page contains the token."""
+    """Return the page that a launch opens for a learner, a tutor's preview, or a guest.
+
+    The page calls the service with ``token``.
+    """
     assignment = landing.assignment
     if landing.learner and assignment is not None:
         return page(
@@ -199,7 +202,7 @@ def choosing_page(
 def found(
     catalogue: Catalogue, language: Language, search: str, chosen: Mapping[str, str]
 ) -> Sequence[tuple[Exercise, str]]:
-    """Return the chosen exercises, then the exercises that a search finds, each with points."""
+    """Return exercises with their points: first the chosen ones, then those that a search finds."""
     words = search.lower().split()
 
     def has_words(each: Exercise) -> bool:

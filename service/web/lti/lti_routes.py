@@ -132,7 +132,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
 
 
 class _Launching:
-    """The steps of a login and of a launch, up to a checked message."""
+    """Begins logins, and checks the messages with which platforms launch the service."""
 
     def __init__(self, assets: Assets, tutoring: Tutoring, platform_keys: "PlatformKeys") -> None:
         self._assets, self._store = assets, tutoring.store
@@ -184,7 +184,7 @@ class _Launching:
     def ask_to_bind(
         self, request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
     ) -> Response:
-        """Return ``binding_page`` for a browser that has not sent the cookie of the login.
+        """Return a page for a browser that has not sent the cookie of the login.
 
         Raises LtiError if the page already has its own window and the platform offers no storage.
         """
@@ -212,7 +212,7 @@ class _Launching:
     async def answered(
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
-        """Return the response from ``work``, or a page that explains its LtiError."""
+        """Call ``work`` and return its response. Return a page about an LtiError."""
         from service.lti.problems import LtiError
 
         try:
@@ -266,6 +266,6 @@ def cookie_name(known: "Registration", state: str) -> str:
 
 
 def set_cookie(answer: Response, begun: "NewLogin") -> None:
-    """Set the cookie of a login. From their own machine, browsers accept it without HTTPS, too."""
+    """Set the cookie with the secret of a login."""
     name = cookie_name(begun.registration, begun.state)
     answer.set_cookie(name, begun.browser, _AGE, secure=True, httponly=True, samesite="none")

@@ -37,7 +37,7 @@ _RegistrationId = Annotated[CourseName, Path(description="The id of a registrati
 
 
 class _Shown(NamedTuple):
-    """A registration as the page shows it."""
+    """A registered platform, with the data that the page shows about it."""
 
     registration: Registration
     deployments: list[str]

@@ -42,7 +42,7 @@ Answered = Callable[[Callable[[], Awaitable[Response]], Language], Awaitable[Res
 
 
 def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the routes of the forms; ``answered`` turns an LtiError into a page."""
+    """Return the routes of the forms. ``answered`` makes an error page from an LtiError."""
     router = APIRouter(prefix="/lti")
     store, keys = landings.store, landings.keys
 
@@ -117,11 +117,14 @@ def _course_address(course: str, learner: str, language: Language) -> str:
 
 
 class _NotYetError(Exception):
-    """The form is to be shown again, with this message."""
+    """The values of a form cannot be used. The form is shown again, with this message."""
 
 
 def _rows(connection: Connection, ticket: LtiTicket) -> tuple[Row[Any], Row[Any]]:
-    """Return the rows of a ticket's context and resource link. Raises LtiError."""
+    """Return the database rows of the course and the resource link that a ticket names.
+
+    Raises LtiError.
+    """
     of_context = (contexts.c.number == ticket.context) & (
         contexts.c.registration == ticket.registration
     )

@@ -36,7 +36,11 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
-        """Return the page of attempts. A restricted key sees one exercise at a time there."""
+        """Return the page with the list of attempts.
+
+        If the caller's key is restricted to some exercises, the page lists one of these exercises
+        at a time.
+        """
         caller = access.caller(request)
         require_reach(caller, exercise or None)
         shown = reachable_exercises(catalogue, caller)

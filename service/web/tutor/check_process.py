@@ -44,7 +44,10 @@ def main() -> None:
 
 
 def _read(bodies: "queue.SimpleQueue[bytes]") -> None:
-    """Queue each request. End the process, even during a check, when the service has ended."""
+    """Read requests from standard input, and queue them for the checks.
+
+    When the service has ended, end the process at once, even during a check.
+    """
     with suppress(EOFError):
         while True:
             bodies.put(received(sys.stdin.buffer)[1])

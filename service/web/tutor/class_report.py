@@ -39,7 +39,10 @@ _LONGEST_NAME: Final = 255
 
 
 class UploadedFile(BaseModel):
-    """A file of a student: its text, or its bytes if it is not text; neither if it is too large."""
+    """A file of a student.
+
+    A file has either a text or, if it is not text, its bytes. Too large a file has neither.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
@@ -92,7 +95,10 @@ def unpacked(body: bytes) -> ClassUpload:
 
 
 def _marks(content: bytes) -> int:
-    """Return the number of characters outside JSON strings, plus the number of quotation marks."""
+    """Return a measure of how many values JSON has, in order to refuse too many before parsing.
+
+    It is the number of characters outside JSON strings, plus the number of quotation marks.
+    """
     content = content.replace(rb"\\", b"").replace(rb"\"", b"")
     quotes = content.count(b'"')
     # With too many quotation marks, do not build the list of pieces between them.

@@ -30,7 +30,10 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
 
     @router.get("/class/report")
     async def class_frame() -> Response:
-        """Return the empty page for the frame of the reports; its policy allows their styles."""
+        """Return the empty page in which the browser shows reports.
+
+        The Content-Security-Policy of the page allows the style sheets of the reports.
+        """
         from service.formats.class_page.index import STYLE as INDEX_STYLE
         from service.formats.documents.html import STYLE as REPORT_STYLE
 

@@ -31,7 +31,7 @@ _NEW: Final = "my-exercise"
 
 
 class DraftRequest(CheckRequest):
-    """The text to preview; ``draft`` is the id of the draft that the text replaces."""
+    """The text of an exercise to preview; ``draft`` is the id of the draft that it replaces."""
 
     draft: Annotated[str, Field(max_length=64)] = ""
 

@@ -38,7 +38,10 @@ class SaveRequest(CheckRequest):
 
 @dataclass(frozen=True, slots=True)
 class OpenedFile:
-    """The text of a file; ``mark`` is its hash, or "" if the file is not in the editor's folder."""
+    """The text of an exercise file.
+
+    ``mark`` is the hash of the file, or "" if the file is not in the editor's folder.
+    """
 
     text: str
     mark: str

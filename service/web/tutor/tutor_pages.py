@@ -100,7 +100,10 @@ def editor_page(
     can_write: bool,
     copied: str = "",
 ) -> bytes:
-    """Return the page of the editor with the text of a file, or with a copy of ``copied``."""
+    """Return the page of the editor with this text.
+
+    ``copied`` is the id of the exercise from which the text was copied, or "".
+    """
     return _page(
         "editor",
         assets,

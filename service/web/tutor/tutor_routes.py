@@ -71,7 +71,10 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     @router.get("/tutor")
     async def home(request: Request) -> Response:
-        """Return the tutors' home page. A restricted key sees only that key's exercises there."""
+        """Return the tutors' home page.
+
+        If the caller's key is restricted to some exercises, the page shows only these.
+        """
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
         content = tutor_page(
@@ -117,7 +120,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:
-        """Return a drawing of the robot and of the frames of its reference table."""
+        """Return a drawing of the robot and of the frames of its correct table."""
         exercise = exercise_or_404(catalogue, exercise_id)
         if not isinstance(exercise.reference, Robot):
             raise ProblemError(HTTPStatus.NOT_FOUND, say("The exercise has no frames to draw."))

@@ -1,4 +1,4 @@
-"""Deep linking: what a tutor can choose, what the tutor has chosen, and the links made from it."""
+"""Deep linking: make links for the platform from what a tutor has chosen in a form."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,8 +30,9 @@ class NotYetError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """What a tutor can choose: the assignments that the course has already, if it exists.
+    """The choices of a tutor who makes links: exercises, or an assignment of the course.
 
+    ``assignments`` are the assignments of the course; they are empty if there is no course yet.
     ``zone`` is the time zone of the dates that the tutor enters.
     """
 
@@ -43,7 +44,7 @@ class Offer:
 
 @dataclass(frozen=True, slots=True)
 class Picked:
-    """The fields that a tutor has filled in.
+    """The values that a tutor has entered in the form.
 
     ``points`` has the points of each chosen exercise; ``message`` tells the tutor about an error.
     """

@@ -39,7 +39,7 @@ _REFERRER: Final = {"Referrer-Policy": "strict-origin"}
 
 
 def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the route; ``answered`` turns an LtiError into a page."""
+    """Return the route of the form. ``answered`` makes an error page from an LtiError."""
     router = APIRouter(prefix="/lti")
     store, secret = landings.store, landings.secret
 
@@ -62,7 +62,10 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
 
     @router.post("/links")
     async def pick(request: Request) -> Response:
-        """Search for exercises, or send the chosen links to the platform; none after a cancel."""
+        """Search for exercises, send the chosen links to the platform, or cancel.
+
+        A tutor who cancels also returns to the platform, but without links.
+        """
         fields = form_lists(await request.body())
         text = fields.get("ticket", [""])[0]
         language = language_of(request, fields.get("locale", [""])[0])
@@ -107,7 +110,7 @@ def _ask_for_notices(landings: Landings, known: Registration, url: str) -> None:
 
 
 def _offer(connection: Connection, ticket: LinkingTicket) -> Offer:
-    """Return the offer for a ticket. Raises LtiError."""
+    """Return what a tutor with this ticket can choose. Raises LtiError."""
     try:
         known = registration(connection, ticket.registration)
     except RegistrationError as error:

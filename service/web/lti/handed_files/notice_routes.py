@@ -47,7 +47,8 @@ def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> AP
     async def accept(token: str, refusals: dict[str, str]) -> None:
         """Queue the files of a notice. Raises LtiError.
 
-        If the notice names a registered platform, the error's name is added to ``refusals``.
+        If the notice is of a registered platform, store the name of an error in ``refusals``, at
+        the id of the registration.
         """
         key_id, now = key_id_of(token), datetime.now(UTC)
         parties = parties_of(token)
