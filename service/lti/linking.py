@@ -1,4 +1,6 @@
-"""Link launches to courses: a context is a course, a resource link an assignment, a user a learner.
+"""Find the course, the assignment and the learner of a launch, or make them.
+
+A context of the platform is a course here. A resource link is an assignment. A user is a learner.
 
 Everything is done on one connection, in the transaction that uses up the login.
 """
@@ -223,7 +225,7 @@ def check_deployment(connection: Connection, message: LaunchMessage, now: dateti
 
 
 def _visit(connection: Connection, message: LaunchMessage) -> Landing:
-    """Return what the launch of a preview or a guest opens; missing parts are empty."""
+    """Return what a launch opens for a preview or a guest, without recording anything."""
     context = known_context(connection, message)
     if context is None:
         return Landing(message.role, link_title=message.link_title)
@@ -311,7 +313,10 @@ def _assign_by_parameters(
     course: str,
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Set the link's assignment to the one that the custom parameters name, if it is usable."""
+    """Give a resource link the assignment that the message's custom parameters ask for.
+
+    Do nothing if they ask for none, or if it cannot be used.
+    """
     wanted = message.custom.get("assignment") or new_assignment_id(link.number)
     mine = (assignments.c.course == course) & (assignments.c.id == wanted)
     if connection.scalar(select(assignments.c.id).where(mine)) is None:

@@ -140,13 +140,19 @@ class LtiError(Exception):
 
 
 def short_value(value: object) -> str:
-    """Return a Sentence, or an error's Sentence, unchanged; return other values as short text."""
+    """Return a value for a message: a translatable Sentence, or else a text that is not too long.
+
+    If the value is an error whose message is a Sentence, return this Sentence.
+    """
     said = value.args[0] if isinstance(value, Exception) and value.args else value
     return said if isinstance(said, Sentence) else str(value)[:200]
 
 
 def cause_without_values(name: str) -> str:
-    """Return the cause of a refusal with "…" for its values; return an unknown ``name`` itself."""
+    """Return the cause of the refusal ``name``, with "…" in the place of each value.
+
+    If there is no such refusal, return ``name``.
+    """
     problem = LTI_PROBLEMS.get(name)
     if problem is None:
         return name

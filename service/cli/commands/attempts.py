@@ -172,7 +172,10 @@ def show_statistics(exercise: ExerciseArgument) -> None:
 
 
 def _nothing(exercise: str | None) -> str:
-    """The message that no attempts are recorded, with all exercises if the id is unknown."""
+    """Return the message that no attempts are recorded.
+
+    If ``exercise`` is not the id of an exercise, the message lists all ids.
+    """
     found = say("No attempts are recorded.")
     if exercise is None or exercise in (known := installed()):
         return spoken(found)

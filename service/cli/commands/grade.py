@@ -388,7 +388,7 @@ class _Run:
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:
-    """The problems of a submission's files, each once: a file may be for several exercises."""
+    """Return the problems of a submission's files, without repetition."""
     told = (f"{file.file}: {spoken(file.problem)}" for file in submission.files if file.problem)
     return [visible(line) for line in dict.fromkeys(told)]
 

@@ -23,9 +23,10 @@ class UnusableFolderError(Exception):
 
 
 def is_for_folder(output: Path, *, several: bool) -> bool:
-    """True if the output is an existing folder, or a new path without the suffix of an HTML file.
+    """True if reports are to be written into a folder, False if into a single file.
 
-    A single submission needs no folder: without ``several``, a new path is a file.
+    An existing ``output`` is a folder or a file already. A new one becomes a folder if there are
+    ``several`` submissions, unless its name ends like an HTML file.
     """
     if output.exists():
         return output.is_dir()
@@ -82,7 +83,7 @@ def _write(documents: Iterable[Document], folder: Path) -> None:
 
 
 def _within(path: str) -> PurePosixPath:
-    """Return the path. Raises ValueError if it leaves the folder or has more than 2 steps."""
+    """Return the path. Raises ValueError if it leaves the folder or has more than two parts."""
     within = PurePosixPath(path)
     if within.is_absolute() or len(within.parts) > 2 or ".." in within.parts or "\n" in path:
         raise ValueError(f"{path!r} does not stay in its folder")
@@ -114,7 +115,10 @@ def _written_before(folder: Path) -> set[Path]:
 
 
 def _foreign(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
-    """Yield the paths in ``found``, and directly below them, that are not in ``written``."""
+    """Yield files and folders in ``found`` that earlier runs did not write.
+
+    ``written`` are the files of earlier runs. The files in the folders are also checked.
+    """
     folders = {file.parent for file in written}
     for path in found:
         if path.is_symlink() or path not in (written if path.is_file() else folders):

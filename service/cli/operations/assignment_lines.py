@@ -12,7 +12,7 @@ from service.translations import Sentence, joined, say
 def assignment_lines(
     assignment: CourseAssignment, installed: Callable[[], Mapping[str, Exercise]]
 ) -> Iterator[Sentence]:
-    """Yield the lines on an assignment; ``installed`` returns the catalogue if it is needed."""
+    """Yield the lines about an assignment. ``installed`` returns all exercises of the service."""
     total = number(sum(each.points for each in assignment.exercises))
     title = visible(assignment.title)
     yield say("{id}: {title}, {points} points", id=assignment.id, title=title, points=total)

@@ -42,7 +42,10 @@ def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
 def deleted(
     name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
 ) -> None:
-    """Print what ``work`` would delete, ask the user, and delete it; ``name`` is printable."""
+    """Ask the user (unless ``yes``), let ``work`` delete data, and say what was deleted.
+
+    ``name`` is what the messages call the deleted thing.
+    """
     found = changed(lambda it: work(it, wanted))
     if not wanted.with_attempts:
         # They stay, or they prevent the deletion.

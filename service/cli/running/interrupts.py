@@ -41,7 +41,7 @@ def interruptible() -> Iterator[Callable[[], None]]:
     """Let SIGTERM end this process like Ctrl-C, so that files and processes are cleaned up.
 
     Yield a function that ends the process if the exception of a signal was lost. Call the function
-    between two pieces of work. No other exception replaces the exception of a signal.
+    between two pieces of work.
     """
     signals = _Signals()
     with _handled(signals.receive):

@@ -17,9 +17,9 @@ Result = TypeVar("Result")
 def mapped_in_threads(
     function: Callable[[Item], Result], items: Iterable[Item], jobs: int
 ) -> Iterator[Iterator[Result]]:
-    """Yield an iterator over the results in the order of the items, with few of them in memory.
+    """Yield an iterator over the results in the order of the items; keep few results in memory.
 
-    At the end of the context, waiting items are dropped, and no running call is waited for.
+    At the end of the context, no further call starts, and nothing waits for running calls.
     """
     # Import here: most runs need no threads. ThreadPoolExecutor would delay the end of the program
     # until its threads end; the threads of this pool are daemons.

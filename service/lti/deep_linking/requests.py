@@ -1,4 +1,4 @@
-"""What a platform asks for in a message of deep linking (LtiDeepLinkingRequest)."""
+"""Read the requests of platforms for links to exercises (LtiDeepLinkingRequest)."""
 
 from collections.abc import Mapping
 from datetime import datetime

@@ -29,7 +29,10 @@ _PASSED, _NOT_PASSED = "#1B7F4B", "#B45309"
 
 @dataclass(frozen=True, slots=True)
 class GradedFiles:
-    """The graded files of a submission; ``failures`` has the errors of other files, by file id."""
+    """The graded files of a submission.
+
+    ``failures`` has, by file id, the errors of the files that could not be graded.
+    """
 
     submission: GradedSubmission | None
     failures: Mapping[str, NoFileError]

@@ -38,9 +38,10 @@ class FileAtPlatform(_Stored):
 
 
 class HandedFiles(_Stored):
-    """The files of one submission, where the report goes, and the parameters of the grading.
+    """The files of one submission.
 
-    ``deployment`` and ``context`` identify the course at the platform; "" if the notice does not.
+    The reports are sent to ``report_url``. ``custom`` are the parameters of the grading.
+    ``deployment`` and ``context`` identify the course at the platform; both may be "".
     """
 
     assets: Annotated[list[FileAtPlatform], Field(min_length=1, max_length=MOST_FILES)]
@@ -81,7 +82,7 @@ def parties_of(token: str) -> tuple[str, str]:
 def notice_in(
     token: str, key: RSAPublicKey, registration: Registration, now: datetime
 ) -> SubmissionNotice | None:
-    """Return the notice in a token; None if it is only a greeting. Raises LtiError.
+    """Return the notice in a token; None if the platform only tests our address. Raises LtiError.
 
     A platform may send the same notice again, with the same id.
     """

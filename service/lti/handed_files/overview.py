@@ -35,9 +35,9 @@ class MissingReport:
 def missing_reports(
     connection: Connection, course: str, language: Language, learner: str | None = None
 ) -> list[MissingReport]:
-    """Return the reports that did not arrive, newest first, of one learner or of a whole course.
+    """Return the reports of a course that did not arrive at the platform, newest first.
 
-    A notice that names no course at the platform belongs to no course here.
+    With ``learner``, return only this learner's reports.
     """
     of_course = select(contexts).where(contexts.c.course == course)
     here = {

@@ -103,7 +103,10 @@ def next_due(connection: Connection) -> datetime | None:
 def files_of(
     connection: Connection, registration_id: str, submission: str, asset: str
 ) -> tuple[HandedFiles, str] | None:
-    """Return the files of a submission that has the file ``asset``, and their learner, or None."""
+    """Return all files of a submission, and the learner who has handed them in.
+
+    Return None if no such submission contains the file ``asset``.
+    """
     mine = (_OF.registration == registration_id) & (_OF.submission == submission)
     newest = select(_OF.content, _OF.learner).where(mine).order_by(_OF.number.desc())
     for row in connection.execute(newest.limit(10)):

@@ -149,7 +149,7 @@ def enrol_members(
 def _enrolled(
     connection: Connection, registration_id: str, course: str
 ) -> dict[str, tuple[str, str | None]]:
-    """Return, by id, the names and family names of a course's learners who are from the platform.
+    """Return the name and family name of each learner who came from the platform, by learner id.
 
     Learners whom a tutor has added are left out, so that a roster does not remove them.
     """

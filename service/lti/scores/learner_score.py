@@ -1,4 +1,4 @@
-"""A learner's score in an assignment, as the gradebook has it, and the message that sends it."""
+"""Compute a learner's score in an assignment, and make the message that sends it to a platform."""
 
 import json
 from datetime import datetime
@@ -13,7 +13,7 @@ _CANVAS: Final = "https://canvas.instructure.com/lti/submission"
 
 
 class LearnerScore(NamedTuple):
-    """The learner's points in all exercises of an assignment together; None if no attempt counts.
+    """The sum of a learner's points in an assignment. It is None if no attempt counts.
 
     ``submitted_at`` is the moment of the last attempt among those that count.
     """
@@ -53,7 +53,7 @@ def learner_score(connection: Connection, assignment: int, learner: str) -> Lear
 
 
 def score_message(score: LearnerScore, sub: str, stamp: datetime, address: str) -> dict[str, Any]:
-    """Return the message with a score; without points, it clears the score at the platform.
+    """Return the message with a score. If the score has no points, the platform deletes its score.
 
     ``address`` launches the assignment. Some fields of the message are only for Canvas.
     """

@@ -117,7 +117,7 @@ def _next(now: datetime, without: Collection[str]) -> Any:
 
 
 def _is_replaced(connection: Connection, row: Row[Any]) -> bool:
-    """True if a forgotten learner has come back, and has a score again."""
+    """True if a learner whose data were deleted has come back, and has a new score."""
     if not row.learner.startswith(FORGOTTEN):
         return False
     again = (scores.c.line_item == row.line_item) & (scores.c.sub == row.sub)

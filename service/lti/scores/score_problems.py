@@ -1,4 +1,4 @@
-"""Why a score did not arrive: what the tutor reads."""
+"""The reasons why a score did not reach a platform, as sentences for tutors."""
 
 import json
 from collections.abc import Mapping
@@ -88,7 +88,7 @@ def told(stored: str | None, language: Language = ENGLISH, *, of_report: bool = 
 
 
 def _packed(values: Mapping[str, SentenceValue]) -> dict[str, Any]:
-    """Return values for JSON: a sentence becomes its template and its values."""
+    """Return values as JSON can store them; replace each Sentence by its template and values."""
     return {
         key: [value.template, _packed(value.values)] if isinstance(value, Sentence) else value
         for key, value in values.items()

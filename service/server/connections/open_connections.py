@@ -59,11 +59,11 @@ class OpenConnections:
 
     @property
     def full(self) -> bool:
-        """True if only health checks are answered."""
+        """True if there are too many connections. The service then answers only health checks."""
         return len(self._connections) > self._limits.connections
 
     def enter(self, connection: OpenConnection, loop: asyncio.AbstractEventLoop) -> bool:
-        """Add a connection; return False if even the reserve is used up."""
+        """Add a connection; return False if there are too many, even after closing some."""
         if len(self._connections) >= self._limits.connections:
             self._close_waiting(_one, 1 + self._limits.connections // _CLOSED_SHARE)
         if len(self._connections) >= self._limits.connections + RESERVE:

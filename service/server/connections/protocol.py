@@ -193,7 +193,7 @@ class GuardedProtocol(HttpToolsProtocol):
         return self.url.partition(b"?")[0].decode("latin-1")
 
     def _arrived(self) -> None:
-        """Stop the client's time limit: its request is complete, and it waits for this process."""
+        """Stop the time limit of a client whose request is complete."""
         if self.cycle.response_complete:
             self._start_next()
         else:

@@ -119,10 +119,9 @@ class Server(uvicorn.Server):
 
 
 def _force_exit_later() -> None:
-    """Exit the process after the promised time, even if a thread is still running.
+    """Exit the process after some seconds, even if a thread is still running.
 
-    Python waits for its threads and cannot stop one. Attempts that the database has confirmed are
-    recorded.
+    Without this, Python would wait for the thread.
     """
 
     def end() -> None:

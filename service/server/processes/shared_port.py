@@ -88,7 +88,10 @@ class Acceptor:
         self._port.counts.stop_listening(self._port.index)
 
     def publish_count(self) -> int:
-        """Publish the number of connections; return the smallest number of other processes."""
+        """Publish how many connections this process has.
+
+        Return the number of the other process that has the fewest connections.
+        """
         here, counts = self._port.index, self._port.counts.numbers
         counts[here] = self._count()
         return min((n for index, n in enumerate(counts) if index != here), default=_AWAY)

@@ -75,7 +75,10 @@ class Metered:
 
 
 class _Lane:
-    """Counts the small responses since the sockets were read, and queues further requests."""
+    """A limit for small responses: their number, and the requests that wait beyond the limit.
+
+    The number starts at 0 whenever the process has read its sockets.
+    """
 
     def __init__(self) -> None:
         self.given = 0
@@ -228,7 +231,7 @@ class FairAdmission:
 
 
 def _wake(turn: asyncio.Future[None]) -> bool:
-    """Resume the request that awaits this future; return False if it has been given up."""
+    """Resume the request that awaits this future; return False if it no longer waits."""
     if turn.done():
         return False
     turn.set_result(None)

@@ -57,7 +57,7 @@ class Ticket:
 
 @dataclass(slots=True)
 class _Requests:
-    """One client's requests: how many are present, how many wait, and the bytes that wait."""
+    """The number of a client's requests, the number of waiting ones, and their bytes."""
 
     present: int = 0
     waiting: int = 0
@@ -69,8 +69,8 @@ class _Account:
     """The time that a connection has used, and its requests.
 
     ``spent`` is the time of the last request; up to ``allowed`` seconds of this time are not yet
-    charged to ``used``. ``excess`` is the factor by which time is charged. ``queue`` holds the
-    waiting requests of the connection.
+    charged to ``used``. Charged time is multiplied by ``excess``. ``queue`` has the waiting
+    requests of the connection.
     """
 
     used: float
@@ -136,7 +136,7 @@ class FairQueue:
         account.spent = 0.0
 
     def leave(self, ticket: Ticket) -> None:
-        """Note that a request has been answered, or given up."""
+        """Note that a request has been answered or cancelled."""
         self._accounts[ticket.key].present -= 1
         requests = self._clients[ticket.client.name]
         requests.present -= 1
@@ -158,7 +158,7 @@ class FairQueue:
         return ticket
 
     def remove(self, ticket: Ticket) -> None:
-        """Remove a request from the queue, because it has its turn or is given up."""
+        """Remove a request from the queue, because its turn has come or it was cancelled."""
         queue = self._accounts[ticket.key].queue
         if ticket in queue:
             queue.remove(ticket)

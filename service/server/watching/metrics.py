@@ -129,7 +129,7 @@ class Metrics:
         self._admission: FairAdmission | None = None
 
     def fair_admission(self, app: ASGIApp) -> ASGIApp:
-        """Wrap the application in fair admission, whose waiting requests are counted."""
+        """Wrap the application in a FairAdmission, and count the requests that wait there."""
         self._admission = FairAdmission(app)
         return self._admission
 
