@@ -34,10 +34,11 @@ class GradesFormat(StrEnum):
 class NewAttempt:
     """An attempt to be recorded; ``submission`` and ``report`` are JSON.
 
-    ``ordinal`` is None if the attempt does not count. ``owner`` is the client that sent the
-    attempt; idempotency keys are unique for each owner. ``assignment`` is the number of an
-    assignment of a course, or None. ``variant`` is the seed of a variant of the exercise, or None.
-    ``hint_price`` is the price of the hints before the attempt, as a share of the attempt's points.
+    ``ordinal`` is the attempt's number among the learner's counted attempts at the exercise; None
+    if the attempt does not count. ``owner`` is the client that sent the attempt; idempotency keys
+    are unique for each owner. ``assignment`` is the number of an assignment of a course, or None.
+    ``variant`` is the seed of a variant of the exercise, or None. ``hint_price`` is the price of
+    all hints that the learner has taken, as a share of the attempt's maximum points.
     """
 
     exercise: str
@@ -76,12 +77,13 @@ class RecordedAttempt(NewAttempt):
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """The state of a learner at an exercise before a new attempt.
+    """The attempts of a learner at an exercise, just before a new attempt.
 
-    ``counted`` is the number of counted attempts in the assignment, or outside of assignments;
-    ``earlier`` is the attempt that was already recorded under the same idempotency key, if any.
-    ``last`` is the highest ordinal of the attempts inside and outside of assignments.
-    ``hint_price`` is the price of all hints taken so far, as a share of the points.
+    ``counted`` is the number of attempts that count towards the limit: those in the assignment or,
+    without an assignment, those outside of all assignments. ``earlier`` is the attempt that was
+    already recorded under the same idempotency key, if any. ``last`` is the highest number
+    (``ordinal``) of all attempts. ``hint_price`` is the price of all hints taken so far, as a share
+    of the points.
     """
 
     counted: int
@@ -94,8 +96,8 @@ class Standing:
 class AttemptFilter:
     """A filter on attempts; None means no condition. ``since`` is inclusive, ``until`` is not.
 
-    ``assignment`` is the id of an assignment of ``course``. ``exercise`` may be the id of a
-    variant; an id without a seed selects all variants.
+    ``assignment`` is the id of an assignment of ``course``. ``exercise`` is the id of an exercise,
+    which selects all its variants, or the id of one variant.
     """
 
     exercise: str | None = None

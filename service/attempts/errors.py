@@ -4,7 +4,8 @@
 class StoreDownError(Exception):
     """The database cannot be reached, cannot write, or does not respond.
 
-    The operation was not done, unless only the database's reply to a commit was lost.
+    Nothing was written. There is one exception: the database may have committed, and only its reply
+    was lost.
     """
 
 

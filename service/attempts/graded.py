@@ -19,7 +19,10 @@ class AttemptReport:
 
 
 class AttemptGrading:
-    """Grades one request at most twice: for level ``full``, and for all lower levels together."""
+    """Grades the answers of one request, and makes reports at different feedback levels from them.
+
+    It grades at most twice: once for the level ``full``, and once for all lower levels.
+    """
 
     def __init__(self, exercise: Exercise, body: GradeRequest) -> None:
         self._exercise = exercise
@@ -28,11 +31,14 @@ class AttemptGrading:
         self._reports: dict[FeedbackLevel, AttemptReport] = {}
 
     def has(self, most: FeedbackLevel) -> bool:
-        """True if the report, limited to the level ``most``, needs no further grading."""
+        """True if ``at(most)`` can return the report without grading again."""
         return _grading_level(self._level(most)) in self._graded
 
     def at(self, most: FeedbackLevel) -> AttemptReport:
-        """Return the report, limited to the level ``most``, and its outcome."""
+        """Return the report and its outcome for statistics.
+
+        The feedback level is the one that the request asks for, but at most ``most``.
+        """
         level = self._level(most)
         if level not in self._reports:
             self._reports[level] = self._report(most, level)
@@ -55,5 +61,4 @@ class AttemptGrading:
 
 
 def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
-    """Return the level at which one grading gives both a report at ``level`` and its outcome."""
     return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS

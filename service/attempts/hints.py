@@ -82,9 +82,9 @@ def take(
 ) -> HintRefusedError | None:
     """Record that the learner took a step of a hint. A step that was taken before costs nothing.
 
-    Steps are counted for each place in the answers: another message at the same place does not
-    start the steps again. Return the error if the step is refused, else None. The error is not
-    raised, because raising it would run the other jobs of the transaction again.
+    Steps are counted for each cell, row or part: another message on the same cell does not start
+    the steps again. Return the error if the step is refused, else None. The error is not raised,
+    because that would roll back the transaction, in which other jobs run, too.
     """
     # Two requests for the same step wait for each other.
     attempt = connection.execute(

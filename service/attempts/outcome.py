@@ -11,10 +11,10 @@ from service.grading.report import PartReport
 
 @dataclass(frozen=True)
 class Outcome:
-    """Verdicts and codes of one report.
+    """The verdicts and message codes of one report.
 
-    ``content`` is JSON: for each part its verdict, the verdicts of its cells by "row/cell", and the
-    codes of all its messages, once each.
+    ``content`` is JSON. For each part (question) of the exercise it has the verdict, the verdicts
+    of the cells by "row/cell", and the codes of the messages, each code once.
     """
 
     exercise: str
@@ -27,7 +27,10 @@ class Outcome:
 
 
 def outcome_of(report: Report) -> Outcome:
-    """Return the outcome of a report, which must have rows (feedback level above ``score``)."""
+    """Return the outcome of a report.
+
+    The report must have rows, so its feedback level must be higher than ``score``.
+    """
     content = {part.part: _part(part) for part in report.parts}
     return Outcome(report.exercise.partition("~")[0], json.dumps(content, separators=(",", ":")))
 

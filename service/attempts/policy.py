@@ -21,7 +21,7 @@ class Ruling:
     """The terms on which an attempt is accepted.
 
     ``ordinal`` counts the learner's attempts from 1. The attempt's points are multiplied by
-    ``worth``, which is 1 unless the attempt is late.
+    ``worth``, which is 1 for an attempt in time, and less for a late attempt.
     """
 
     ordinal: int
@@ -30,7 +30,7 @@ class Ruling:
 
 
 def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
-    """Return the terms of a learner's next attempt after ``counted`` counted attempts.
+    """Return the terms of the next attempt of a learner who has already used ``counted`` attempts.
 
     Raises AttemptRefusedError.
     """

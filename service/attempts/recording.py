@@ -1,4 +1,4 @@
-"""Record each attempt exactly once, under the learner's next number."""
+"""Record each attempt exactly once, and number the attempts of each learner."""
 
 import secrets
 from collections.abc import Callable, Iterable
@@ -37,7 +37,6 @@ _ALL: Final = func.count(attempts.c.ordinal)
 
 
 def _standing(counted: ColumnElement[int]) -> Select[Any]:
-    """Return the SQL statement that reads a ``Standing``; several statements would be slower."""
     earlier = select(attempts.c.number).where(
         attempts.c.owner == bindparam("owner"),
         attempts.c.idempotency_key == bindparam("idempotency_key"),
@@ -102,7 +101,7 @@ def standing(
     idempotency_key: str | None,
     assignment: int | None = None,
 ) -> Standing:
-    """Return how many attempts of a learner count, and the attempt with this idempotency key.
+    """Return the number of a learner's attempts, and the attempt with this idempotency key.
 
     With ``assignment``, only attempts in this assignment count; without ``assignment``, only
     attempts outside of all assignments.
@@ -122,7 +121,10 @@ def standing(
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
-    """Write the attempt; return None if another attempt has its ordinal or idempotency key."""
+    """Write the attempt.
+
+    Return None if another attempt already has its number (``ordinal``) or its idempotency key.
+    """
     values: dict[str, Any] = {name: getattr(new, name) for name in _WRITTEN}
     values["id"] = secrets.token_hex(16)
     statement = _NEW_ATTEMPT[connection.dialect.name]
@@ -144,10 +146,11 @@ AttemptAfter = Callable[[Standing], tuple[NewAttempt, Outcome] | None]
 def record_next(
     connection: Connection, before: Standing, attempt_after: AttemptAfter
 ) -> RecordedAttempt | Standing:
-    """Write the attempt that ``attempt_after`` returns for the current standing.
+    """Write the attempt that ``attempt_after`` makes from the learner's earlier attempts.
 
-    If another attempt was written first, call ``attempt_after`` again with the new standing. If
-    ``attempt_after`` returns None, return the standing instead.
+    ``before`` has the earlier attempts as they were last read. If another attempt was recorded in
+    the meantime, read them again, and call ``attempt_after`` again. If ``attempt_after`` returns
+    None, write nothing, and return the earlier attempts.
     """
     now = before
     while (attempt := attempt_after(now)) is not None:
@@ -163,7 +166,7 @@ def record_next(
 
 
 def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:
-    """Return the row ids of the outcomes, after inserting those that are new."""
+    """Insert the outcomes that the database does not have; return the row ids of all ``wanted``."""
     # Always in the same order: otherwise two workers could deadlock.
     ordered = sorted(set(wanted), key=lambda each: (each.exercise, each.digest))
     ids = _written_outcomes(connection, ordered)

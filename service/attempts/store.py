@@ -104,7 +104,7 @@ class AttemptStore:
         idempotency_key: str | None,
         assignment: int | None = None,
     ) -> Standing:
-        """Count a learner's attempts, and find the attempt with this idempotency key."""
+        """Return the number of a learner's attempts, and the attempt with this idempotency key."""
         with self.measure("standing"):
             return await self._running.run(
                 lambda connection: standing(
@@ -115,10 +115,10 @@ class AttemptStore:
     async def record(
         self, before: Standing, attempt_after: AttemptAfter
     ) -> RecordedAttempt | Standing:
-        """Write the attempt that ``attempt_after`` returns for the current standing.
+        """Write the attempt that ``attempt_after`` makes from the learner's earlier attempts.
 
-        The result is that of ``record_next``. The writer thread calls ``attempt_after`` while other
-        jobs wait.
+        See ``record_next`` for the result. ``attempt_after`` must be quick: the writer thread calls
+        it, and other jobs wait meanwhile.
         """
         with self.measure("record"):
             return await self._running.run(

@@ -19,7 +19,10 @@ PartResults: TypeAlias = Mapping[str, tuple[str, float]]
 
 @dataclass(frozen=True, slots=True)
 class WrittenReport:
-    """The JSON of a report for the database, and the values that are needed without parsing it."""
+    """The JSON of a report for the database, with some values that are also in the JSON.
+
+    These values are stored separately, so that nobody has to parse the JSON again.
+    """
 
     text: str
     points: float
@@ -45,7 +48,10 @@ class MemoizedReports:
     def get(
         self, submission: str, level: FeedbackLevel, grade: Callable[[], WrittenReport]
     ) -> WrittenReport:
-        """Return the report on a submission at a level; call ``grade`` if it is not memoized."""
+        """Return the report on a submission at a feedback level, from the cache if possible.
+
+        Otherwise call ``grade``, and store its result in the cache.
+        """
         key = submission, level
         if (found := self._reports.get(key)) is not None:
             self._reports.move_to_end(key)

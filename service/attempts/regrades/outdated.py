@@ -66,9 +66,9 @@ class CountedPoints:
 class RegradedAttempt:
     """The points of an attempt before and after a regrade, on the scale of the exercise file.
 
-    ``reasons`` names the parts whose result has changed. If a tutor has ``awarded`` points, these
-    points stay and count. ``counted`` has the points on the scale of the assignment; None if no
-    assignment sets the exercise.
+    ``reasons`` names the parts whose result has changed. ``awarded`` are points with which a tutor
+    has overridden the report; a regrade does not change them. ``counted`` has the points on the
+    scale of the assignment; None if no assignment has the exercise.
     """
 
     id: str
@@ -117,7 +117,10 @@ class Regrading:
     def outdated_after(
         self, connection: Connection, place: TimePlace | None, most: int
     ) -> list[TimePlace]:
-        """Return at most ``most`` outdated attempts that follow ``place`` in time."""
+        """Return the times and numbers of at most ``most`` outdated attempts, the oldest first.
+
+        The attempts are later than ``place``, which is the time and number of an attempt.
+        """
         following = select(*BY_TIME).where(self._is_outdated())
         if place is not None:
             following = following.where(later_than(place))
@@ -151,8 +154,8 @@ class Regrading:
     def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
         """Regrade, in one transaction, some queued attempts that no other worker has taken.
 
-        The result is empty if no such attempts are left, if no attempt of the batch needs a
-        regrade, or, in SQLite, if another worker was faster.
+        The result is empty if no such attempts are left, or if none of them needs a regrade. In
+        SQLite, it is also empty if another worker was faster.
         """
         prepared = self._prepared(engine) if engine.dialect.name == "sqlite" else None
         return in_transaction(engine, partial(self.work, among=prepared))
@@ -188,7 +191,10 @@ class Regrading:
         return mine & regrade_queue.c.attempt.in_(select(attempts.c.number).where(self._condition))
 
     def _prepared(self, engine: Engine) -> list[int]:
-        """Grade the first batch of the queue and memoize its reports; return the batch."""
+        """Grade the first batch of the queue without locking it, and store the reports in memory.
+
+        Return the numbers of the graded attempts.
+        """
         with engine.connect() as connection:
             rows = self._rows(connection, connection.scalars(self._waiting()).all())
         return [row.number for row, _ in self._graded_in_time(rows)]
@@ -196,7 +202,7 @@ class Regrading:
     def _graded_in_time(
         self, rows: Sequence[Row[Any]]
     ) -> list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]]:
-        """Regrade rows until the time of a batch is over, but at least one row.
+        """Regrade the attempts in ``rows`` until a time limit is over, but at least one attempt.
 
         The result of a row is None if the row needs no regrade, for example because another worker
         has regraded it in the meantime.
@@ -312,9 +318,9 @@ class Regrading:
 
 
 def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
-    """Return the exercise or variant of an attempt; None if its variant has other values now.
+    """Return the exercise or variant of an attempt; None if the variant has other numbers now.
 
-    Learners who answered a question with old values are not graded by the new values.
+    Then the attempt is not regraded: the learner answered a question with the old numbers.
     """
     if row.variant is None:
         return exercise
@@ -327,7 +333,7 @@ def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
 
 
 def _counted(row: Row[Any], after: float, max_points: float) -> CountedPoints | None:
-    """Return the points in the assignment; None if no assignment sets the exercise."""
+    """Return the points in the assignment; None if no assignment has the exercise."""
     chosen = json.loads(row.exercises or "[]")
     assigned = next((it["points"] for it in chosen if it["exercise"] == row.exercise), None)
     if assigned is None:

@@ -25,7 +25,11 @@ _CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<lef
 
 @dataclass(frozen=True, slots=True)
 class RegradeStep:
-    """The attempts that one step has regraded, the number left, and the cursor of the next step."""
+    """The result of one step of a regrade.
+
+    ``regraded`` are the attempts of this step, ``left`` is the number of attempts that are still
+    outdated, and ``following`` is the cursor of the next step, or None.
+    """
 
     regraded: Sequence[RegradedAttempt]
     left: int

@@ -19,7 +19,10 @@ Counting = Literal["best", "last"]
 
 
 def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Counting]:
-    """Return a function from an exercise's id to its counting rule; unknown ids get the default."""
+    """Return a function that takes the id of an exercise and returns its rule, "best" or "last".
+
+    The rule chooses the attempt that counts. An unknown id gets the default rule.
+    """
 
     def rule(exercise_id: str) -> Counting:
         exercise = exercises.get(exercise_id)
@@ -41,8 +44,8 @@ def graded_attempts(
 ) -> Iterator[GradedAttempt]:
     """Yield the wanted attempts, sorted by exercise, learner and time.
 
-    ``counting`` returns the rule of an exercise. The attempt that counts is chosen among the wanted
-    attempts.
+    Of each learner and exercise, one of the wanted attempts counts. ``counting`` takes the id of an
+    exercise and returns the rule by which it is chosen.
     """
     ordered = (
         select(*LISTED)
@@ -58,9 +61,9 @@ def graded_attempts(
 
 
 def _counting_attempt(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:
-    """The attempt that counts by ``rule``; None if no attempt counts.
+    """Return the attempt that counts: the last one, or the first one with the most points.
 
-    It is the last attempt, or the first one with the most points.
+    Return None if no attempt counts.
     """
     counted = [each for each in of_learner if each.ordinal is not None]
     if not counted:

@@ -121,12 +121,12 @@ BY_TIME: Final = (attempts.c.at, attempts.c.number)
 
 
 def earlier_than(place: TimePlace) -> ColumnElement[bool]:
-    """The SQL condition that an attempt comes before a place in time."""
+    """Return the SQL condition for attempts earlier than the one with this time and number."""
     return tuple_(*BY_TIME) < _literal(place)
 
 
 def later_than(place: TimePlace) -> ColumnElement[bool]:
-    """The SQL condition that an attempt comes after a place in time."""
+    """Return the SQL condition for attempts later than the one with this time and number."""
     return tuple_(*BY_TIME) > _literal(place)
 
 
@@ -136,13 +136,16 @@ def _literal(place: TimePlace) -> Tuple:
 
 
 def cursor_of(place: TimePlace) -> str:
-    """The text of the cursor for a place in time."""
+    """Return the cursor of a page of a list, made of the time and number of an attempt."""
     at, number = place
     return f"{(at - _EPOCH) // _TICK:x}.{number:x}"
 
 
 def place_of(cursor: str) -> TimePlace:
-    """The place in time for the text of a cursor. Raises BadCursorError."""
+    """Return the time and number of the attempt that a cursor names.
+
+    Raises BadCursorError.
+    """
     if not _CURSOR.fullmatch(cursor):
         raise BadCursorError(cursor)
     try:

@@ -1,8 +1,8 @@
 """Recorded reports: JSON in English, with the sentences that can be translated.
 
 A recorded report begins with ``sentences``, a list of templates with their values; the rest is the
-report as it was sent. A text that is not in the list is its own template. Reports that older
-versions recorded without such a list stay in English.
+report as it was sent. A sentence without values is not in the list, because its text is its
+template. Reports that older versions recorded without such a list stay in English.
 """
 
 import json
@@ -55,7 +55,7 @@ def shown_report(recorded: str, language: Language) -> str:
 
 
 def sentence_in(report: Mapping[str, Any], text: str) -> str:
-    """Return the translatable sentence for a text of a recorded report."""
+    """Return the sentence that can be translated, given its English text in a recorded report."""
     sentences = report.get("sentences")
     return text if sentences is None else _known(sentences)(text)
 
@@ -69,7 +69,6 @@ def _divided(recorded: str) -> tuple[list[Any] | None, str]:
 
 
 def _known(sentences: list[Any]) -> Callable[[str], str]:
-    """Return a function that returns the sentence for a text of the report."""
     known = {str(each): each for each in map(_read, sentences)}
 
     def sentence(text: str) -> str:

@@ -1,4 +1,8 @@
-"""The statistics of an exercise, counted from its outcomes, which are far fewer than attempts."""
+"""The statistics of the attempts at an exercise.
+
+They are counted from outcomes (verdicts and message codes). Attempts with the same outcome share a
+row of the database, so this needs far less time than reading all reports.
+"""
 
 import json
 from collections import Counter, defaultdict
@@ -72,7 +76,7 @@ def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> Exerci
 
 
 def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Counter[str]]:
-    """The number of attempts by outcome and day (in UTC)."""
+    """Return the number of attempts by row id of their outcome, and by day (in UTC)."""
     is_postgresql = connection.dialect.name == "postgresql"
     # SQLite stores times as text that begins with the date; parsing it would take far longer.
     day: ColumnElement[str] = (
@@ -92,7 +96,7 @@ def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Co
 
 
 def _by_attempt(connection: Connection, chosen: ColumnElement[bool]) -> list[Counter[int]]:
-    """The number of learners by outcome: for first attempts, for second attempts, and so on.
+    """Return the number of learners by outcome: of their first attempts, their second, and so on.
 
     An attempt in which nothing could be read is not counted.
     """
@@ -120,7 +124,7 @@ def _curve(
     contents: Mapping[int, Mapping[str, Any]],
     slip: MisconceptionFigures,
 ) -> list[int]:
-    """The numbers of learners with a misconception in their first attempt, second attempt, etc."""
+    """Return how many learners have a misconception in their first attempt, second attempt, etc."""
     having = {
         number
         for number, content in contents.items()
@@ -142,8 +146,6 @@ def _contents(
 
 @dataclass(slots=True)
 class _RowCount:
-    """The counts of a row: the attempts with this row, and the verdicts of its cells."""
-
     seen: int = 0
     share: Share = field(default_factory=Share)
     cells: dict[str, Share] = field(default_factory=lambda: defaultdict(Share))
@@ -157,7 +159,7 @@ class _RowCount:
 
 @dataclass(slots=True)
 class _PartCount:
-    """The counts of a part; ``detailed`` is the number of attempts whose report has rows."""
+    """The counts of a part; ``detailed`` is the number of attempts whose report has table rows."""
 
     share: Share = field(default_factory=Share)
     detailed: int = 0
@@ -174,9 +176,9 @@ class _PartCount:
             self.rows[row].add(cells, times)
 
     def figures(self, name: str) -> PartFigures:
-        """Return the figures of the part, and of the rows that are in most reports with rows.
+        """Return the figures of the part and of its rows.
 
-        The other rows were added to the table by a few students.
+        Rows that are in at most half of the reports are left out: a few students added them.
         """
         rows = [
             RowFigures(
@@ -219,7 +221,7 @@ def _commonest(
 def _newest_reports(
     connection: Connection, chosen: ColumnElement[bool], among: Set[int]
 ) -> dict[int, Any]:
-    """The newest report with each outcome, because newer reports may say more."""
+    """Return the newest report with each outcome; older reports may lack some messages."""
     newest = (
         select(func.max(attempts.c.number))
         .where(chosen, attempts.c.outcome.in_(among))
@@ -230,7 +232,7 @@ def _newest_reports(
 
 
 def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
-    """The first message with ``code`` in a part; None if the report is too terse to have it."""
+    """Return the first message with ``code`` in a part; None if the report has no such message."""
     told = (each for each in report["parts"] if each["part"] == part)
     texts = (each["message"] for each in _messages(told) if each["code"] == code)
     text = next(texts, None)
@@ -247,7 +249,7 @@ def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]
 def _identical(
     connection: Connection, chosen: ColumnElement[bool], contents: Mapping[int, Mapping[str, Any]]
 ) -> Iterator[IdenticalAnswers]:
-    """Yield the wrong answers that several learners sent in exactly the same words."""
+    """Yield the wrong answers that several learners sent with exactly the same text."""
     learners = func.count(attempts.c.learner.distinct())
     same = (
         select(attempts.c.outcome, attempts.c.answers_digest, learners, func.count())

@@ -69,7 +69,10 @@ def copy_into(source: Path, target: Path) -> None:
 
 
 def is_in_use(path: Path) -> bool:
-    """True if another program has the SQLite database open; if not, empty the database's log."""
+    """True if another program has the SQLite database open.
+
+    If no program has it open, its write-ahead log is written into the database.
+    """
     with closing(sqlite3.connect(path, timeout=0, isolation_level=None)) as connection:
         try:
             # In WAL mode every open connection holds a lock that excludes this one.

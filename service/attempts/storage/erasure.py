@@ -40,7 +40,10 @@ def overwrite_deleted(engine: Engine, tries: int = _TRIES) -> bool | None:
 
 
 def finish_overwriting(engine: Engine) -> None:
-    """Truncate SQLite's log if possible, because other programs may have deleted rows, too."""
+    """Truncate SQLite's log if possible.
+
+    The log may contain rows that this or another program has deleted.
+    """
     if engine.dialect.name != "sqlite":
         return
     with suppress(SQLAlchemyError, OSError):

@@ -1,4 +1,7 @@
-"""Add variants to attempts and assignments, and count the variants dealt to each learner."""
+"""Add variants to attempts and assignments.
+
+Count how many variants each learner has been given.
+"""
 
 import sqlalchemy as sa
 from alembic import op

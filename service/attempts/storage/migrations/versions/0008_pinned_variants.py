@@ -1,4 +1,7 @@
-"""Store what an assignment's variants may vary, so that a corrected file changes no variant."""
+"""Store which numbers an assignment's variants may have.
+
+So a correction of the exercise file does not change the variants of learners.
+"""
 
 import sqlalchemy as sa
 from alembic import op
@@ -8,5 +11,5 @@ down_revision = "0007"
 
 
 def upgrade() -> None:
-    """Add the column ``choices``. An assignment gets its choices with the next hand-in."""
+    """Add the column ``choices``. It is filled in when a learner next hands in."""
     op.add_column("assignments", sa.Column("choices", sa.Text))
