@@ -1,4 +1,4 @@
-"""Check that the slip that an exercise file asks for fits a table of the robot."""
+"""Check that some table of the robot can contain the mistake that an exercise file names."""
 
 from collections.abc import Iterator
 

@@ -30,7 +30,10 @@ from service.translations import paragraph, say
 def add_assignment(
     connection: Connection, course: str, new: NewAssignment, known: Collection[str]
 ) -> CourseAssignment:
-    """Add an assignment of ``known`` exercises. Raises CourseError."""
+    """Add an assignment; ``known`` are the ids of the exercises that it may have.
+
+    Raises CourseError.
+    """
     zone = _zone(connection, course)
     values = {"late_worth": 0.5, "solution": "never", "course": course, "id": new.id}
     values |= _values(new, zone, known)
@@ -77,9 +80,10 @@ def change_assignment(
 def extend(
     connection: Connection, course: str, assignment: str, extension: Extension
 ) -> CourseAssignment:
-    """Give a learner other dates or another limit; without any, end the learner's extension.
+    """Give a learner other dates or another limit.
 
-    Attempts that are no longer late get their points back. Raises CourseError.
+    If the extension has neither dates nor a limit, end the learner's extension. Attempts that are
+    no longer late get their points back. Raises CourseError.
     """
     zone = _zone(connection, course)
     row = assignment_row(connection, course, assignment)

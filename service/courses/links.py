@@ -33,9 +33,10 @@ def issue_links(
     address: str,
     now: datetime,
 ) -> list[PersonalLink]:
-    """Return the links of learners; make links that are absent, expired or to be renewed.
+    """Return the personal links of learners.
 
-    ``address`` is the address of the service. Raises CourseError.
+    A learner without a valid link gets a new link. With ``wanted.renew``, all learners get new
+    links. ``address`` is the address of the service. Raises CourseError.
     """
     if not settle(connection, secret, now):
         raise CourseError("unusable", WRONG_SECRET)

@@ -84,7 +84,10 @@ class LearnerTerms:
         return "late" if self._is_past_due(now) else "open"
 
     def may_practise(self, now: datetime, *, is_full: bool) -> bool:
-        """True if unrecorded answers may be graded; ``is_full``: the learner has full marks."""
+        """True if the learner may practise: answers are graded, but not recorded.
+
+        ``is_full`` is True if the learner has full marks.
+        """
         if self.practice == "after":
             return is_full or self._is_past_due(now)
         return self.practice == "open"

@@ -19,9 +19,9 @@ def report_in(report: Report, language: Language) -> Report:
 
 
 def with_texts(report: Report, changed: ChangedText) -> Report:
-    """Return the report with all its texts for people changed.
+    """Apply ``changed`` to all sentences of the report, and return the new report.
 
-    These texts are messages, corrections in words, and the reasons of lost points. Formulas and
+    Sentences are messages, corrections in words, and the reasons of lost points. Formulas and
     labels do not change.
     """
     return replace(report, parts=tuple(_part(part, changed) for part in report.parts))

@@ -1,4 +1,5 @@
-"""Exercises about mistakes: a table with one slip, drawn from the misconceptions by seed.
+"""Exercises in which a student must find the one mistake in a table.
 
-This package does not know the grader. It gets the grader's judgement of a table as a function.
+A seed determines the mistake. This package does not import the grader: its callers pass a function
+that grades a table.
 """

@@ -1,8 +1,7 @@
-"""The slips that can be put into a table, by the code of the misconception that explains them.
+"""The mistakes that can be put into a correct table, by the code of the message about them.
 
-Each function yields changes of a model table: other texts for some of its cells. A change need not
-cause its code. ``find_slip`` asks the grader, and refuses changes that the grader explains by
-another code.
+Each function yields changes: other texts for some cells of the table. The grader may explain a
+change by another code; ``find_slip`` refuses such changes.
 """
 
 import math
@@ -271,7 +270,6 @@ def _joint_numbering_by_kind(table: ModelTable) -> Iterator[SlipChange]:
 
 
 def _numbered(joint: Joint, number: int, table: ModelTable) -> str:
-    """Return the name of a joint's variable with another number, as this robot names it."""
     letters = joint.variable.rstrip("0123456789")
     known = {each.variable for each in table.joints}
     name = f"{letters}{number}"

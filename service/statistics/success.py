@@ -32,7 +32,7 @@ class Share:
 
 
 class FrequentEntry(NamedTuple):
-    """A wrong entry of a cell in the reader's notation, and how often it occurs."""
+    """A wrong entry of a cell, as the grader prints the formula, and how often it occurs."""
 
     row: str
     cell: str

@@ -131,7 +131,10 @@ class Assignment:
 
     @property
     def part_names(self) -> frozenset[str]:
-        """The part ids of a single exercise; empty for several, whose part ids are ambiguous."""
+        """The ids of the parts if the assignment has only one exercise.
+
+        It is empty for several exercises, because their parts may have the same ids.
+        """
         if len(self.exercises) > 1:
             return frozenset()
         return frozenset(part.id for each in self.exercises for part in each.exercise.parts)
@@ -175,8 +178,8 @@ def assigned(
 def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
     """Return the exercise with only the chosen parts.
 
-    A part that follows a dropped part follows that part's predecessor instead, just as if the
-    dropped part had no answer.
+    A part may build on the answer to an earlier part (``follows``). If that part is dropped, it
+    builds on the part before it instead.
     """
     if isinstance(exercise, ExerciseOutline):
         kept = tuple(part for part in exercise.parts if part.id in chosen)

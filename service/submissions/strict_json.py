@@ -1,7 +1,7 @@
-"""Read untrusted JSON with limits, with the place of an error, and without dropping anything.
+"""Read untrusted JSON. Limit its size, and report the place of an error.
 
-A number that JSON or a float cannot represent (NaN, 1e999, a thousand digits) becomes text. The
-grader explains this text in its cell, and grades every other cell.
+A number that JSON or a float cannot represent (NaN, 1e999, a thousand digits) becomes text. So the
+grader can explain it in its cell, and still grade all other cells.
 """
 
 import json

@@ -27,7 +27,10 @@ _PER_LINE: Final = 8
 
 @dataclass(frozen=True, slots=True)
 class CheckedVariant:
-    """A variant, its form and difficulty, the points of a lazy answer, and the checks' remarks."""
+    """A variant, a description of its robot (form), its difficulty, and the remarks of the checks.
+
+    ``lazy`` is the number of points for an answer of only zeros and joint variables.
+    """
 
     seed: str
     title: str

@@ -1,6 +1,7 @@
-"""Exercises with the choices that ``[vary]`` had when an assignment got its variants.
+"""Keep the variants of an assignment when an exercise file is corrected.
 
-So a correction of an exercise file does not change the numbers in the learners' variants.
+The table ``[vary]`` of a file says which numbers its variants may have. An assignment stores a copy
+of this table, its "choices", and uses it instead of the table in the file.
 """
 
 import json
@@ -23,11 +24,10 @@ def choices_of(exercises: Mapping[str, Exercise]) -> Mapping[str, Any]:
 
 
 def pinned(exercise: Exercise, choices: str | None) -> Exercise:
-    """Return the exercise with the choices of an assignment.
+    """Return the exercise with the table ``[vary]`` that an assignment has stored.
 
-    ``choices`` is a JSON object with the choices for each exercise. The choices of the file apply
-    if the assignment has no choices for the exercise, or if the assignment's choices no longer fit
-    the texts of the file.
+    ``choices`` is a JSON object with the stored table of each exercise. The table of the file stays
+    if none is stored, or if the stored table no longer fits the texts of the file.
     """
     if exercise.vary is None or choices is None:
         return exercise

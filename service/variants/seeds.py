@@ -1,7 +1,8 @@
 """The seed of a learner. It is derived from a secret. Clients can neither compute nor choose it.
 
-If seeds are deployed, the learner's seed is the deployed seed with the largest keyed hash. So one
-more deployed seed changes the variants of only a few learners.
+If the exercise file lists seeds that a tutor has checked (deployed seeds), the learner gets the one
+with the largest keyed hash. So one more seed in the list changes the variants of only a few
+learners.
 """
 
 import hashlib

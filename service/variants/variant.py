@@ -44,7 +44,7 @@ def built(exercise: Exercise, seed: str) -> Exercise:
 
 
 class BuiltVariants:
-    """The variants that were used last, at most ``most``."""
+    """A cache of the ``most`` variants that were used last."""
 
     def __init__(self, most: int = MOST_BUILT) -> None:
         self._most = most

@@ -270,7 +270,6 @@ def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], lis
 
 
 def _section(met: Iterable[Template], code: str) -> str:
-    """Return the section of messages.md with ``code`` and most codes from the files of ``met``."""
     told = [use.code for use in messages_page.program() for each in met if use.file == each.file]
     listed: dict[str, set[str]] = {}
     for line in messages_page.LINES:

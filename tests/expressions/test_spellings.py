@@ -1,8 +1,8 @@
-"""A thousand spellings, each with its meaning, written by hand.
+"""A thousand formulas as people type them, each with its meaning, written by hand.
 
 The meaning is plain arithmetic, evaluated by ``reference``, which shares no code with the program.
-``corpus/spellings`` has one file for each program or habit that spellings come from.
-``test_corpus`` tests the other files of ``corpus``.
+``corpus/spellings`` has one file for each program or habit. ``test_corpus`` tests the other files
+of ``corpus``.
 """
 
 from collections.abc import Callable

@@ -93,7 +93,10 @@ class ClassSummary:
         return told(text, self._translation)
 
     def _listed(self, heading: str, slips: Sequence[CountedSlip]) -> Iterator[Text]:
-        """Yield a heading and a line for each slip: its count, its sentence, its code and parts."""
+        """Yield one heading, and then one line for each slip.
+
+        A line has the number of submissions with the slip, the message, its code and the parts.
+        """
         if slips:
             yield Text()
             yield Text(self._told(heading), "bold")

@@ -14,7 +14,7 @@ _ROUNDED = 5e-7
 
 @dataclass(frozen=True, slots=True)
 class AnsweredPart:
-    """A part of an assigned exercise, answered or not."""
+    """A part (one question) of an assigned exercise; the student need not have answered it."""
 
     id: str
     title: str

@@ -25,10 +25,10 @@ LONGEST: Final = 600
 
 @dataclass(frozen=True, slots=True)
 class PartResult:
-    """An assigned part with its report. If there is no report, the part's file has a problem.
+    """The result of one part (question) of an assigned exercise.
 
-    ``name`` is one line, and unique in the submission. Points are weighted as in the submission.
-    Texts are in ``language``.
+    ``report`` is None if the file could not be graded. ``name`` is one line, and unique in the
+    submission. Points are on the scale of the submission. Texts are in ``language``.
     """
 
     name: str

@@ -15,7 +15,10 @@ _UNBROKEN: Final = "\u00a0\u202f"
 
 
 def visible(text: str) -> str:
-    """Return the text in one line, without invisible characters and without build commands."""
+    """Return the text in one line, without invisible characters.
+
+    Signs that start a command in the log of a build, such as ``##[``, are separated by a blank.
+    """
     if not text.isprintable():
         text = "".join(
             c if c.isprintable() or c in _UNBROKEN else "\N{REPLACEMENT CHARACTER}" for c in text

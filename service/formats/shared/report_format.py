@@ -67,9 +67,9 @@ class ReportFormat:
 def single(
     document: Callable[[GradedSubmission, Setting], bytes],
 ) -> Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]:
-    """Return the function ``pieces`` for a format whose document holds exactly one submission.
+    """Make the function ``pieces`` of a format from a function that writes one submission.
 
-    The function raises UnusableSettingError for any other number of submissions.
+    The result raises UnusableSettingError for any other number of submissions.
     """
 
     def pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:

@@ -1,1 +1,1 @@
-"""Robots drawn by a grammar of axis relations: a level and a seed -> an exercise."""
+"""Exercises about generated robots. A level and a seed determine the robot."""

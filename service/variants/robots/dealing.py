@@ -39,7 +39,7 @@ def candidates(
 
 
 def has_situation(name: PracticeId, favour: Situation) -> bool:
-    """True if the robot has the situation."""
+    """True if the robot has the situation ``favour``, which a student wants to practise."""
     return favour in situations(generated(name.level, name.number).plan)
 
 

@@ -1,4 +1,4 @@
-"""A level and a number -> a robot: draw random robots until one is acceptable."""
+"""Find the robot of a level and a number: draw random robots until one is acceptable."""
 
 from dataclasses import dataclass
 from typing import Final

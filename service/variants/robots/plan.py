@@ -142,7 +142,6 @@ def _has_offset(level: Grammar, draws: Draws, *, sliding: bool) -> bool:
 
 
 def _row_back(owed: int, draws: Draws, lengths: "_Lengths", *, sliding: bool) -> PlannedRow:
-    """Return the row that leads back from an oblique axis: d is 0, and θ is 0° or 180°."""
     theta = draws.one_of((0, 0, 180))
     alpha = owed if theta == 0 else -owed
     a = lengths.next() if draws.chance(30) else 0

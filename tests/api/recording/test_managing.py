@@ -57,7 +57,6 @@ class Tutor:
             return client.request(method, path, json=body)
 
     def asked(self, path: str, **more: str) -> httpx.Response:
-        """Return the response of a route to the route's body in ``BODIES``."""
         body = BODIES[path]
         return self.ask("GET" if body is None else "POST", path, body, **more)
 

@@ -28,7 +28,6 @@ _LONGEST: Final = 90
 
 
 def kinds_in(page: str) -> Iterator[tuple[str, str]]:
-    """Each kind of cases whose records a table of the page lists, and the table's section."""
     for found in _MARKED.finditer(page):
         if found[2] == "records":
             section = _HEADING.findall(page, 0, found.start())[-1]
@@ -36,7 +35,6 @@ def kinds_in(page: str) -> Iterator[tuple[str, str]]:
 
 
 def records_in(names: list[str]) -> list[Record]:
-    """The records that have codes, for these kinds of cases and their base classes, in order."""
     kinds = {base for each in all_records() for base in each.of.__mro__}
     known = {kind.__name__: kind for kind in {record.of for record in all_records()} | kinds}
     bases = [base for name in names for base in known[name].__mro__]
@@ -76,7 +74,6 @@ def _example(records: list[Record], code: str) -> str:
 
 
 def _causes(example: Example, code: str, codes: tuple[str, ...]) -> bool:
-    """True if the example causes ``code``; the example's record has the codes ``codes``."""
     return len(codes) == 1 or code in trace_of(*example).codes
 
 

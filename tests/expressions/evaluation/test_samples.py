@@ -1,4 +1,4 @@
-"""Programs: all samples at once, undefined values, and the memo that expressions share."""
+"""Formulas at all samples at once: undefined values, and results that formulas share."""
 
 from math import cos, isinf, isnan
 

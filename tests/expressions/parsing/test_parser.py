@@ -55,8 +55,6 @@ TERMINALS = sorted(set(re.findall(r"\b[A-Z]+\b", str(GRAMMAR))))
 
 
 class Recogniser:
-    """Finds, for the start of a grammar part, the places in ``terminals`` where it may end."""
-
     def __init__(self, terminals: Sequence[str]) -> None:
         self.terminals = terminals
         self.rule = cache(self._rule)

@@ -186,7 +186,7 @@ def test_a_request_keeps_the_moment_of_its_arrival_while_it_waits() -> None:
 
 
 class ManyGradings(Application):
-    """An application that gives way after each of ten gradings in an attacker's request."""
+    """An application that lets other clients go first after each of an attacker's ten gradings."""
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         if scope["client"][0] == "attacker":

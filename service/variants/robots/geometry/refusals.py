@@ -1,4 +1,7 @@
-"""The reasons to refuse a planned robot, so that another random robot takes its number."""
+"""The reasons to refuse a random robot.
+
+If a robot is refused, another random robot gets its number.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

@@ -60,7 +60,6 @@ def _patterns(joints: int, most_sliding: int) -> tuple[tuple[bool, ...], ...]:
 
 
 def _sizes(level: Grammar) -> list[tuple[tuple[bool, ...], int]]:
-    """Return each pattern of joints with the number of its skeletons."""
     return [
         (sliding, 5 ** (joints - 1) * 4 * (1 if sliding[-1] else 2))
         for joints, _ in level.joints
