@@ -25,10 +25,10 @@ _CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<lef
 
 @dataclass(frozen=True, slots=True)
 class RegradeStep:
-    """The result of one step of a regrade.
+    """The result of one step of a regrade or of its preview.
 
-    ``regraded`` are the attempts of this step, ``left`` is the number of attempts that are still
-    outdated, and ``following`` is the cursor of the next step, or None.
+    ``regraded`` are the attempts of this step, ``left`` is the number of attempts that remain for
+    later steps, and ``following`` is the cursor of the next step, or None.
     """
 
     regraded: Sequence[RegradedAttempt]

@@ -111,8 +111,8 @@ class AttemptWriter:
     def _waiting(self, gather: float) -> tuple[list[_Job], bool]:
         """Wait for jobs; return them, and True if the writer was closed.
 
-        After the first job, wait ``gather`` seconds for other jobs. Return no jobs if the minute is
-        over in which the writer must clean up.
+        After the first job, wait ``gather`` seconds for other jobs. Return no jobs when the writer
+        must clean up, which it does once a minute.
         """
         jobs: list[_Job] = []
         try:
