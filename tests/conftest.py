@@ -46,7 +46,7 @@ FIGURE = "figure"
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """Return one more than the number of cores, because many tests only wait."""
+    """Return the number of processes: one more than the cores, because many tests only wait."""
     return (os.cpu_count() or 1) + 1
 
 

@@ -1,8 +1,8 @@
 """`python -m tests.attack`: attack a real process while honest clients use it.
 
 Exit with 1 if an honest client gets no response, if costly requests make the 99th percentile of the
-waiting times more than five times as long, if the memory grows by more than 100 MB, if a health
-check takes 0.3 s, or if the process does not end within ten seconds.
+waiting times more than five times as long as in a quiet run, if the memory grows by more than
+100 MB, if a health check takes 0.3 s, or if the process does not end within ten seconds.
 """
 
 import argparse
@@ -46,7 +46,11 @@ HONEST_ADDRESS = "127.0.0.2"
 
 @dataclass(frozen=True)
 class Attack:
-    """A flood, the pause of honest clients, and True to compare their waits with a quiet run."""
+    """An attack: a flood of requests, while honest clients pause between their requests.
+
+    If ``compared`` is true, the waiting times of honest clients must not be much longer than
+    without the flood.
+    """
 
     flood: Flood
     pause: float = 0.0
@@ -92,7 +96,7 @@ def attacks(scale: float) -> dict[str, Attack]:
 
 
 def attack(seconds: float, scale: float, only: str = "") -> list[str]:
-    """Run the attacks one after the other and print figures; return the missed limits."""
+    """Run the attacks one after the other and print times; return a line for each missed limit."""
     broken: list[str] = []
     with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
         running = opened.enter_context(service(Path(folder)))

@@ -43,7 +43,7 @@ SPOILERS: Final = (
 
 
 class Model(NamedTuple):
-    """An exercise, and for each of its parts an answer with full marks."""
+    """An exercise, and an answer with full marks to each of its parts."""
 
     exercise: Exercise
     answers: Mapping[str, Any]
@@ -115,7 +115,10 @@ def _entry(value: Any, random: Random) -> Any:
 
 
 def spoiled(value: Any, random: Random, share: float) -> Any:
-    """Return the value with random changes in a share of its entries, and sometimes in a list."""
+    """Return the value with random changes: about this share of its texts gets replaced.
+
+    Sometimes a list also loses or gains an item, or its order changes.
+    """
     if isinstance(value, dict):
         return {key: spoiled(each, random, share) for key, each in value.items()}
     if not isinstance(value, list):
@@ -152,7 +155,7 @@ def answers_of(model: Model, random: Random) -> dict[str, Any]:
 
 
 def submission(random: Random, number: int | None = None) -> Post:
-    """Return a random submission; a ``number`` in its texts makes these texts unique."""
+    """Return a request with random answers. A new ``number`` gives texts that no cache contains."""
     model = drawn_model(random)
     body: dict[str, Any] = {"answers": answers_of(model, random)}
     if random.random() < 0.3:
@@ -170,7 +173,7 @@ def submission(random: Random, number: int | None = None) -> Post:
 
 
 def _make_unique(answers: dict[str, Any], number: int) -> None:
-    """Append ``+ 0*number`` to one text of each part, unless the answer to the part is one text."""
+    """Append ``+ 0*number`` to one text in each answer that is a list or a table."""
     for part, answer in answers.items():
         if isinstance(answer, str):
             continue

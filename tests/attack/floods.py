@@ -25,7 +25,7 @@ Flood = Callable[[Service, ExitStack, float], str]
 
 
 def half_open(heads: int) -> Flood:
-    """Return a flood of ``heads`` connections that send half of the head of a request."""
+    """Return a flood of ``heads`` connections that send only half of the headers of a request."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         lines = [opened.enter_context(running.connect(HEAD, SOURCE)) for _ in range(heads)]
@@ -89,7 +89,7 @@ def dripping(lines: int) -> Flood:
 
 
 def costly_answers(number: int) -> dict[str, Any]:
-    """Return the costliest answers that a submission may have; they differ for each number."""
+    """Return the costliest answers that a submission may have. Each number gives other texts."""
     return {"answers": {"links": links_of("c12 " * 33, number)}}
 
 
@@ -114,7 +114,7 @@ _NAMES: Final = ("exercise", "part", "angle_unit", "quantity", "structure", "fig
 
 
 def _spelled(value: Any, number: int) -> Any:
-    """Return the body with blanks appended to each text, so that no cache knows the texts."""
+    """Return the body with blanks appended to each text, so that no cache contains the texts."""
     match value:
         case dict():
             return {
@@ -139,7 +139,7 @@ KINDS: Final = {
 
 
 def of_kind(kind: str) -> Callable[[int], bytes]:
-    """Return a function that makes requests of one kind; they differ for each number."""
+    """Return a function that makes a costly request of this kind, different for each number."""
     path, known = KINDS[kind]
 
     def numbered(number: int) -> bytes:
@@ -149,12 +149,12 @@ def of_kind(kind: str) -> Callable[[int], bytes]:
 
 
 def from_one_address(_: int) -> str:
-    """Return the address of an attacking connection: the same for all."""
+    """Return the address of the attacker, which is the same for all connections."""
     return SOURCE
 
 
 def from_addresses(number: int) -> str:
-    """Return the address of an attacking connection: a different one for each."""
+    """Return a different address of the attacker for each number of a connection."""
     return f"127.0.3.{number + 1}"
 
 
@@ -164,7 +164,7 @@ def costly(
     *,
     again: bool = True,
 ) -> Flood:
-    """Return a flood on 16 connections: each sends costly requests, one after each response.
+    """Return a flood on 16 connections. Each sends a costly request, waits, and sends the next one.
 
     If ``again`` is false, each request opens a new connection.
     """

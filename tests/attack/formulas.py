@@ -1,4 +1,4 @@
-"""Random formulas as trees, and their values. This module imports no code of the program.
+"""Draw random formulas as trees and evaluate them, without any code of the program.
 
     Number 0.5 | Ratio 1/2 | Turn 90 (degrees) | Name q1
     Sum of signed terms | Product of factors | Quotient | Power (an integer exponent) | Call
@@ -126,7 +126,7 @@ def _constant(tree: Number | Ratio | Turn) -> float:
 
 
 def numbers(random: Random, samples: int = 7) -> dict[str, Values]:
-    """Return a dictionary from each name to random values of shape (samples,)."""
+    """Return random values of shape (samples,) for each symbol."""
     return {name: np.array([random.uniform(0.25, 1.25) for _ in range(samples)]) for name in NAMES}
 
 

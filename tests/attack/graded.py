@@ -1,4 +1,4 @@
-"""Compare reports on an answer in many spellings with the report on its plain spelling."""
+"""Write an answer in many notations, and check that all get the same verdicts and points."""
 
 import json
 import re
@@ -86,7 +86,7 @@ def _refused(report: PartReport) -> bool:
 
 
 def _spoiled(random: Random, trees: Trees) -> tuple[Trees, tuple[int, int]] | None:
-    """Return the matrix with one sign changed, and its cell; None if no value changes."""
+    """Change a random sign. Return the matrix and the changed cell; None if no value changes."""
     i, j = random.randrange(len(trees)), random.randrange(len(trees[0]))
     changed = changed_sign(random, trees[i][j])
     values = numbers(random)
@@ -121,7 +121,7 @@ def _drawn(random: Random) -> Tree:
 
 
 def matrices(random: Random, suited: Suited) -> Iterator[Outcome]:
-    """Submit a correct matrix and a matrix with a changed sign in some formats; yield outcomes."""
+    """Submit a correct matrix and one with a wrong sign in some formats; yield the outcomes."""
     trees = [[_drawn(random) for _ in range(3)] for _ in range(random.randint(2, 3))]
     exercise = exercise_of(trees)
     spoiled = _spoiled(random, trees)
@@ -168,7 +168,7 @@ def _reasons(report: PartReport) -> set[str]:
 
 
 def _tree(text: str) -> Tree | None:
-    """Return a cell of a model table as a tree, or None if it is no sum of simple terms."""
+    """Parse a table cell; return None if it is not a sum of names, numbers and angles."""
     terms: list[tuple[int, Tree]] = []
     at = 0
     for match in _TERM.finditer(text):
@@ -186,7 +186,7 @@ def _tree(text: str) -> Tree | None:
 
 @memoized_by_exercise
 def _trees_of(exercise: Exercise) -> Trees | None:
-    """Return the model table as trees, or None if it has other cells or names q1, q2, …"""
+    """Parse the correct table; return None if ``_tree`` cannot read it or it contains q1, q2, …"""
     rows = model_of(exercise).answers["table"]["rows"]
     trees = [[_tree(str(row[column])) for column in COLUMNS] for row in rows]
     found = [[tree for tree in row if tree is not None] for row in trees]

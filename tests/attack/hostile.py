@@ -1,8 +1,8 @@
 """Generate texts, grids and whole requests, and check how the program reads them.
 
-The program reads all cases of a group; it reads every fifth case twice in a row. Then it reads each
-case again with empty caches. All readings of a case must be equal, and only documented errors may
-be raised.
+The program reads many texts one after the other, and every fifth text twice in a row. Then it reads
+each text again with empty caches. It must read the same text in the same way each time, and may
+raise only documented errors.
 """
 
 import json
@@ -50,7 +50,7 @@ class Case(NamedTuple):
 
 
 class Costly(NamedTuple):
-    """A case, and its processor time as a multiple of the floor (a fixed computation in numpy)."""
+    """A case and its cost: its processor time divided by that of a fixed computation in numpy."""
 
     ratio: float
     case: Case
@@ -123,9 +123,9 @@ class Reading:
         self.service.close()
 
     def outcome(self, case: Case) -> tuple[str, bytes, float]:
-        """Return the kind of the outcome, a digest of the outcome, and the processor time.
+        """Read a case; return "read" or why not, a digest of the result, and the processor time.
 
-        Raises AssertionError, and all undocumented exceptions of the program.
+        If the program raises an undocumented exception, this function raises it, too.
         """
         start = time.process_time()
         if isinstance(case.value, Post):
@@ -156,7 +156,7 @@ def _digest(data: bytes) -> bytes:
 
 
 def floor_seconds() -> float:
-    """Measure the processor time of the floor: the fixed computation in numpy of ``make bench``."""
+    """Measure the processor time of the fixed computation to which ``make bench`` compares."""
     spent = []
     for _ in range(100):
         start = time.process_time()
@@ -203,7 +203,7 @@ def group(chosen: Sequence[Case], reading: Reading) -> Found:
 
 
 def measured(case: Case, reading: Reading) -> Costly:
-    """Return the cost of a case with empty caches: the least of three measurements."""
+    """Measure the cost of a case three times with empty caches; return the least cost."""
     ratios = []
     for _ in range(3):
         clear_caches()
@@ -213,7 +213,7 @@ def measured(case: Case, reading: Reading) -> Costly:
 
 
 def groups(count: int, seed: str, size: int) -> Iterator[tuple[int, str]]:
-    """Yield the sizes and seeds of groups; all groups together have ``count`` cases."""
+    """Split ``count`` cases into groups of at most ``size``; yield size and seed of each group."""
     for number in range(0, count, size):
         yield min(size, count - number), f"{seed}.{number // size}"
 

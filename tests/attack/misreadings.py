@@ -50,7 +50,7 @@ _CANONICAL: Final = {f"q{index}": f"theta{index}" for index in TURNING} | {"q3":
 
 @dataclass
 class Tally:
-    """Counts the outcomes for each spelling or format, and keeps the misread texts."""
+    """Counts how often each spelling or format was read or misread; keeps the misread texts."""
 
     outcomes: dict[str, Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
     misread: list[str] = field(default_factory=list)

@@ -185,7 +185,7 @@ OPEN: Final = frozenset({
 
 
 class Writer:
-    """Writes formulas in one spelling; open choices are drawn at random."""
+    """Writes formulas in one spelling. If the spelling allows variants, it draws one at random."""
 
     def __init__(self, spelling: Spelling, random: Random) -> None:
         self._s = spelling
@@ -199,7 +199,7 @@ class Writer:
         return self._random.choice(self._s.blanks)
 
     def _text(self, tree: Tree, least: int, *, angle: bool = False) -> str:
-        """Return the formula, in brackets if its precedence is lower than ``least``."""
+        """Return the formula as text, in brackets if its operator binds less than ``least``."""
         if self._s.others and self._random.random() < 0.4:
             other = replace(self._random.choice(self._s.others), others=self._s.others)
             return Writer(other, self._random)._text(tree, least, angle=angle)

@@ -174,7 +174,7 @@ def test_an_ambiguous_name_gets_a_warning(name: str, said: str, make_exercise: M
 
 @pytest.mark.parametrize("name", ["c3", "theta2", "d1", "L", "width", "s"])
 def test_an_unambiguous_name_gets_no_warning(name: str, make_exercise: Make) -> None:
-    """These names mean nothing else: there is no joint 3, joint 2 slides, and joint 1 turns."""
+    """No joint variable has such a name: there is no joint 3, joint 2 slides, joint 1 turns."""
     remarks = remarks_on(make_exercise, HEAD + ROBOT + POSE, *named(name))
     expected = {"symbols.s"} if name == "s" else set()
     assert {each.field for each in remarks if each.field.startswith("symbols")} == expected
@@ -284,7 +284,7 @@ convention = "standard"
 
 
 def test_tables_with_given_and_free_frames_are_different_tasks(make_exercise: Make) -> None:
-    """With free frames, the correct answer for given frames is only one of many."""
+    """An exercise may ask for a table in given frames, and for one in free frames."""
     drawn, free = TABLE.format("drawn", ""), TABLE.format("free", 'frames = "free"')
     assert remarks_on(make_exercise, HEAD + ROBOT + POSE + drawn + free + CHECKS) == []
     again = HEAD + ROBOT + POSE + drawn + TABLE.format("again", "") + CHECKS
@@ -292,7 +292,7 @@ def test_tables_with_given_and_free_frames_are_different_tasks(make_exercise: Ma
 
 
 def test_an_angle_without_a_unit_is_radians_in_the_model_answer_too(make_exercise: Make) -> None:
-    """In a submission with degrees, the number 0.7 would be a different angle."""
+    """The author's 0.7 must stay 0.7 rad. In a submission in degrees it would mean 0.7°."""
     text = HEAD + robot("R", '[["a1", 0.7, "0", "q1 + 0.4"]]') + TABLE.format("table", "") + POSE
     assert [each for each in remarks_on(make_exercise, text) if each.level is Level.FAILED] == []
 

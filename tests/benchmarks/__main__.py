@@ -1,4 +1,4 @@
-"""Print every figure with its budget, both as multiples of the floor, a computation in numpy.
+"""Print every measured time with its budget, as multiples of a fixed computation in numpy.
 
 With ``--against DIR``, compare this checkout with another one: measure both in turn, and exit with
 1 if a figure is worse here by more than 3 %.

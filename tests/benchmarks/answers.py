@@ -76,15 +76,15 @@ def in_other_convention() -> Rows:
 
 
 def standing_still() -> list[list[str]]:
-    """Return T_06 with joint 2 fixed at 0."""
+    """Return the pose of the tool with joint 2 fixed at 0, so that the answer is wrong."""
     return [[re.sub(r"\bs2\b", "0", re.sub(r"\bc2\b", "1", text)) for text in row] for row in T06]
 
 
 def distinct(texts: list[list[str]], i: int, point: str = ".") -> list[list[str]]:
-    """Return the matrix with ``+ 0*number`` appended to each text, so that no cache knows the text.
+    """Append ``+ 0*number`` to each text of the matrix, so that no cache contains the texts.
 
-    The numbers are decimals, or integers if ``point`` is empty. With integers, the grader
-    never takes a wrong entry for a rounded one.
+    The numbers are decimals, or integers if ``point`` is empty. The grader tries to explain a
+    wrong entry with decimals as a rounded one; with integers it does not.
     """
     return [
         [f"{text} + 0*{abs(i) + 2}{point}{j}{k}" for k, text in enumerate(row)]

@@ -1,4 +1,4 @@
-"""Write a folder with the submissions of a class; a few broken ones must not affect the others.
+"""Write a folder with the submissions of a class, of which a few are broken.
 
 ``python -m tests.benchmarks.class_folder --count 1000`` grades such a folder as a tutor would, and
 prints the time and the memory.

@@ -1,7 +1,8 @@
 """Measure one checkout once, and print the figures of its benchmark as JSON.
 
-``paired.py`` runs this file with the Python and in the folder of the measured checkout. The
-checkout may be older, so this file uses the ``tests.benchmarks`` there for all but the timing.
+``paired.py`` runs this file in the folder of the measured checkout, with the Python of that
+checkout. The benchmarks come from the measured checkout, which may be older; only the timing comes
+from the checkout of this file.
 """
 
 import json

@@ -146,7 +146,7 @@ def posts_per_second(body: Callable[[int], bytes]) -> dict[str, float]:
 
 
 def recorded_per_second() -> dict[str, float]:
-    """Return how many POSTs a server with SQLite grades, or records, in a second."""
+    """Return the number of POSTs per second on a server with SQLite: only graded, and recorded."""
     with tempfile.TemporaryDirectory() as folder:
         database = str(Path(folder) / "attempts.db")
         graded, recorded = _in_turn({GRADE: tables, RECORD: attempts}, DH_GRADER_DATABASE=database)
@@ -154,7 +154,7 @@ def recorded_per_second() -> dict[str, float]:
 
 
 def handed_in_per_second() -> dict[str, float]:
-    """Return how many POSTs a server with SQLite grades, or takes as hand-ins, in a second."""
+    """Return the number of POSTs per second on a server with SQLite: only graded, and handed in."""
     with tempfile.TemporaryDirectory() as folder:
         database = str(Path(folder) / "attempts.db")
         _set_up_course(database)
@@ -189,10 +189,11 @@ def _set_up_course(database: str) -> None:
 
 
 def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> Iterator[float]:
-    """Yield the number of POSTs per second for each path, measured in turn on one server.
+    """Measure the paths in turn on one server; yield the number of POSTs per second for each path.
 
-    For the first path, this number is the median of all rounds. For another path, it is that median
-    times the median ratio to the first path in a round: a slow machine hardly changes this ratio.
+    The number of the first path is the median of all rounds. Every other path is compared with the
+    first path in the same round, because a slow machine hardly changes their ratio. Its number is
+    the median ratio times the number of the first path.
     """
     messages = {
         path: [body(i) for i in range(100 + ROUNDS * MOST)] for path, body in bodies.items()

@@ -14,7 +14,7 @@ VARIANTS = BundleVariants("s" * 64, {"reach": ["a", "b", "c"], "wrist": []})
 
 
 def seeds(folder: Path, submission: object) -> dict[str, str]:
-    """Return the seeds for a submission, which a platform describes by this JSON value."""
+    """Return the seeds that a bundle derives from the platform's JSON about a submission."""
     described, variants = folder / "described.json", folder / "variants.json"
     described.write_text(json.dumps(submission), encoding="utf-8")
     variants.write_bytes(VARIANTS.file().content)
@@ -22,7 +22,7 @@ def seeds(folder: Path, submission: object) -> dict[str, str]:
 
 
 def users(*numbers: object) -> object:
-    """Return the JSON with which Gradescope describes a submission by these accounts."""
+    """Return Gradescope's JSON about a submission by the accounts with these ids."""
     return {"id": 5, "users": [{"id": each, "email": "a@b.c", "name": "A"} for each in numbers]}
 
 

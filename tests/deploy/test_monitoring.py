@@ -27,7 +27,7 @@ OF_PROMETHEUS = {"instance", "job", "le"}
 
 
 def samples() -> dict[str, set[str]]:
-    """Return the labels of each sample that the service can report, by the name of the sample."""
+    """Return the names of all metrics that the service reports, each with its labels."""
     endings = {
         "counter": ("_total",),
         "gauge": ("",),

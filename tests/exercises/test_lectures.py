@@ -193,7 +193,7 @@ def test_the_pitch_of_the_spatial_arm_is_printed_with_the_wrong_sign(
 def test_the_pitch_by_the_formula_that_the_lecture_prints_with_it(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """For c23 < 0, β = Atan2(−r31, √(r11² + r21²)) gives another triple of the same rotation."""
+    """For c23 < 0, β = Atan2(−r31, √(r11² + r21²)) leads to other, also correct angles."""
     r11, r21, r31, r32, r33 = "c1 c23", "s1 c23", "s23", "c23", "0"
     beta = f"atan2(-({r31}), sqrt(({r11})^2 + ({r21})^2))"
     by_formula = [
@@ -255,7 +255,7 @@ def test_the_parallel_axes_of_the_lecture_notes_read_literally_are_left_handed(
 
 
 def test_the_task_space_vector(catalogue: Mapping[str, Exercise]) -> None:
-    """The lecture prints cos θ_12. This is refused with a repair: θ_12 could mean joint 12."""
+    """The lecture prints cos θ_12. The grader refuses it, because θ_12 could also mean joint 12."""
     printed = [
         r"l_1 \cos \theta_1 + l_2 \cos \theta_{12} + l_3 \cos \theta_{123}",
         r"l_1 \sin \theta_1 + l_2 \sin \theta_{12} + l_3 \sin \theta_{123}",

@@ -95,7 +95,7 @@ def graded(
 
 
 def _hostile_words() -> GradedSubmission:
-    """Return a made-up report with only hostile texts: the grader repeats little of an answer."""
+    """Return a submission whose report has hostile text in every field."""
     correction = Correction(WRITTEN, WRITTEN)
     told = [
         Feedback(
@@ -120,7 +120,7 @@ def _hostile_words() -> GradedSubmission:
 
 
 def _assignment() -> GradedSubmission:
-    """Return a submission to two exercises: one is correct (3 points), one has no file (1)."""
+    """Return a submission to two exercises. One answer is correct; the other file is missing."""
     right = graded({"table": {"rows": ROWS}, "pose": POSE}).files[0].report
     exercise = answered(planar(), worth=3.0)
     missing = AnsweredExercise(

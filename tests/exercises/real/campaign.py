@@ -1,8 +1,8 @@
-"""Random tables of the real robots: valid ones in other frames, and wrong ones.
+"""Grade random tables of the real robots: valid tables in other frames, and wrong tables.
 
-``python -m tests.exercises.real`` draws 1,000 tables of each kind for every robot; the suite draws
-a few. The tables are drawn under the robot's own policy: with base, tool and directions given or
-free.
+``python -m tests.exercises.real`` draws 1,000 valid and 1,000 wrong tables of every robot; the
+suite draws a few. Base frame, tool frame and joint directions vary if the exercise leaves them to
+the student.
 """
 
 import zlib
@@ -58,7 +58,7 @@ class Found:
 
 
 def policy_of(exercise: Exercise) -> Policy:
-    """Return the policy in which the same choices are free as in the exercise."""
+    """Return which of base, tool and joint directions the exercise leaves to the student."""
     [spec] = [part for part in exercise.parts if isinstance(part, DhTableSpec)]
     free = tuple(each == "free" for each in (spec.base, spec.tool, spec.directions))
     [policy] = [each for each in POLICIES if (each.base, each.tool, each.directions) == free]

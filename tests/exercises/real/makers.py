@@ -1,4 +1,4 @@
-"""The real robots whose makers publish URDF files, and how the files count the joints.
+"""List the real robots whose makers publish URDF files, and compare tables with these files.
 
 ``python -m tests.exercises.real.makers FOLDER`` compares the exercises with files of your own, such
 as ``FOLDER/ur16e.urdf``: expand the xacro file of the maker's repository first.

@@ -1,9 +1,8 @@
 """Compare the tables of the real robots with other published tables of the same robots.
 
-Frames, signs and home configurations differ between sources, but not the distances and angles
-between neighbouring joint axes: |a| and α (modulo 180°) of two axes, and |d| along an axis between
-the common normals to its neighbours. Each table below was typed from its source, not from the
-exercise. The first and the last row have further freedom in d, α and θ.
+Sources choose different frames, signs and home configurations. But they must agree in |a|, in α
+modulo 180°, and in |d|, because these are distances and angles between neighbouring joint axes.
+Each table below was typed from its source, not from the exercise.
 """
 
 from collections.abc import Mapping, Sequence

@@ -17,10 +17,10 @@ POSES = 100
 
 @dataclass(frozen=True)
 class Difference:
-    """The largest differences of the poses, and the distances of the bases and of the tools in mm.
+    """How far the poses of a table and of a URDF file differ at most.
 
-    Before the comparison, the poses of the file are multiplied by two constant transforms that fit
-    best, one at the base and one at the tool.
+    The comparison ignores that table and file may use other base and tool frames. ``base_apart``
+    and ``tool_apart`` are the distances (in mm) between these frames.
     """
 
     millimetres: float
@@ -124,10 +124,9 @@ def moved(rotations: Numbers, places: Numbers) -> Numbers:
 
 
 def fitted(reference: Numbers, poses: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Return the best transform at the base, the unchanged ``poses``, and the best one at the tool.
+    """Find the constant transforms for which ``base @ poses @ tool`` is closest to ``reference``.
 
-    From one pose to another, the reference moves by A and the file by B, with A base = base B. The
-    axes of these motions give the rotation of the base; linear equations give its position.
+    Return ``base``, ``poses`` (unchanged) and ``tool``.
     """
     a = reference @ np.linalg.inv(reference[0])
     b = poses @ np.linalg.inv(poses[0])

@@ -110,7 +110,7 @@ def test_a_message_has_the_mark_and_the_names_of_its_places() -> None:
 
 
 def said(*places: Place, correction: Correction | None = None) -> str:
-    """Return the line for a message with these places, from a report on a matrix of three rows."""
+    """Return the report's line about an error in these cells of a matrix with three rows."""
     cells = tuple(CellReport(str(j), V.INCORRECT) for j in (1, 2, 3))
     rows = [RowReport(label, V.INCORRECT, 0, 1, cells) for label in ("1", "2", "3")]
     message = Feedback("x", Severity.ERROR, "Bad.", places, correction=correction)
