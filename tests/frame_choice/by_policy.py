@@ -1,8 +1,9 @@
 """``python -m tests.frame_choice.by_policy --robots N``: random robots under the eight policies.
 
-A policy says which of base, end-effector frame and joint directions the student may choose. Draw
-tables of random robots under each policy and in each convention. Valid tables must get full marks,
-tables with a slip must not, and no verdict may depend on the random samples.
+A policy says which of base, end-effector frame and joint directions the student may choose. The
+campaign draws tables of random robots under each policy and in each convention. A valid table must
+get full marks, and a table with a wrong cell must not. No verdict may depend on the random numbers
+at which the grader compares poses.
 """
 
 import argparse
@@ -71,7 +72,7 @@ class Counts:
 
 
 def full_marks(table: Table, seed: int) -> bool:
-    """True if the table gets full marks with the random samples that ``seed`` gives."""
+    """True if the table gets full marks; ``seed`` draws the values at which poses are compared."""
     compiled = exercise(table.robot, table.policy)
     redrawn = replace(compiled, version=f"{compiled.version} {seed}")
     report = grade_rows(redrawn, table.texts, table.convention)

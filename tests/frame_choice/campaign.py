@@ -1,4 +1,4 @@
-"""The campaign: many tables of every robot in random frames, valid ones and ones with slips.
+"""The campaign: grade many valid and wrong tables of every robot in random frames.
 
 ``python -m tests.frame_choice`` runs the campaign and prints its figures. ``pytest -m campaign``
 runs all of it, too; every run of pytest runs a sample (``test_properties``).
@@ -83,7 +83,7 @@ def total(found: Sequence[Tally]) -> Tally:
 
 @dataclass(frozen=True)
 class Figure:
-    """A share of tables; ``least`` is its least allowed value, None if it is only reported."""
+    """A share of tables, such as those graded correctly. Below ``least``, the campaign fails."""
 
     name: str
     part: int
@@ -124,7 +124,7 @@ FREE_FIGURES = (
 
 
 def figures(given: Tally, free: Tally) -> Iterator[Figure]:
-    """Yield the figures of the campaign, including those of the misconceptions."""
+    """Yield the results of the campaign as shares of tables."""
     for tally, rows in ((given, GIVEN_FIGURES), (free, FREE_FIGURES)):
         for name, part, whole, least in rows:
             yield Figure(name, tally.counts[part], tally.counts[whole], least)

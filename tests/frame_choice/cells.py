@@ -75,7 +75,7 @@ def _whole(value: float) -> float:
 
 
 def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence[Term]) -> Cell:
-    """Return the cell that has ``values`` at K sets of lengths: a sum with letters, or a root."""
+    """Return a sum of letters, or a root, that has these values at all K sets of lengths."""
     basis = np.array([*letters.values(), np.ones(len(values))]).T
     solution = np.linalg.lstsq(basis, values, rcond=None)[0]
     if np.abs(basis @ solution - values).max() < SAME:
@@ -92,7 +92,7 @@ def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence
 
 
 def angle_cell(values: Numbers, arcs: Sequence[Term]) -> Cell:
-    """Return the cell that has ``values`` (mod 2π): a constant plus at most two of the arcs."""
+    """Return a constant plus at most two of the arcs that has these values modulo 2π."""
     for count in range(3):
         for chosen in combinations(arcs, count):
             for signs in product((1.0, -1.0), repeat=count):

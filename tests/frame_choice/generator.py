@@ -125,7 +125,7 @@ class _Reassignment:
         return -1 if self._bold() else 1
 
     def _length(self) -> Numbers:
-        """Return a random shift that a cell can express: a number, a letter, or their sum."""
+        """Return a random length: a number, a letter, or their sum."""
         number = np.full(K, round(self.rng.uniform(0.1, 0.8), 2) * self.rng.choice([-1, 1]))
         if not self.letters or self.rng.random() < 0.5:
             return number
@@ -210,7 +210,7 @@ class _Reassignment:
         self._end_directly(target)
 
     def _end_directly(self, target: Numbers) -> None:
-        """Append a row to the tool's frame, whose x axis must meet the last z axis at 90°."""
+        """Append the last row, which ends in the tool frame; raise an error if no row does."""
         theta = np.arctan2(target[:, 1, 0], target[:, 0, 0])
         alpha = np.arctan2(target[:, 2, 1], target[:, 2, 2])
         a = target[:, 0, 3] * np.cos(theta) + target[:, 1, 3] * np.sin(theta)
@@ -236,7 +236,7 @@ class _Reassignment:
         self._end_directly(inverse(pose) @ self.tool)
 
     def _end_on_tool_axis(self, pose: Numbers) -> None:
-        """Append a row to a frame on the end effector's z axis, and the fixed row e."""
+        """Append the row that leads to the end effector's z axis, and the fixed row e along it."""
         z, x = self._row_to_axis(pose, self.tool, 1)
         rest = inverse(pose @ screw_z(*z) @ screw_x(*x)) @ self.tool
         self.z.append(z)
@@ -260,7 +260,7 @@ class _Reassignment:
     def _row_to_axis(
         self, pose: Numbers, link: Numbers, z_sign: int
     ) -> tuple[Constants, Constants]:
-        """Return (d, θ) and (a, α) that lead from ``pose`` to the z axis of ``link``'s frame."""
+        """Return (d, θ) and (a, α) of a row from frame ``pose`` to the z axis of frame ``link``."""
         target = inverse(pose) @ link
         axis, point = z_sign * target[:, :3, 2], target[:, :3, 3]
         if np.hypot(axis[:, 0], axis[:, 1]).max() > SMALL:
@@ -276,7 +276,7 @@ class _Reassignment:
     def _common_normal(
         self, target: Numbers, axis: Numbers, point: Numbers
     ) -> tuple[Constants, Constants]:
-        """Return (d, θ) and (a, α) of the common normal of z and ``axis`` through ``point``."""
+        """Return (d, θ) and (a, α) of a row from z to the line ``axis`` through ``point``."""
         z = np.tile([0.0, 0.0, 1.0], (K, 1))
         x = np.cross(z, axis)
         x /= np.linalg.norm(x, axis=1, keepdims=True)
@@ -287,7 +287,7 @@ class _Reassignment:
         return (d, np.arctan2(x[:, 1], x[:, 0])), (a, np.arctan2(sine, axis[:, 2]))
 
     def _across(self, pose: Numbers, link: Numbers, point: Numbers) -> Constants:
-        """Return a and θ of the common normal between parallel axes."""
+        """Return a and θ of a row from the z axis to the parallel axis through ``point``."""
         sign = self._sign()
         across = point[:, :2]
         _, sizes, directions = np.linalg.svd(across, full_matrices=False)

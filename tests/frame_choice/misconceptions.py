@@ -1,7 +1,6 @@
-"""Apply each misconception about DH tables to every robot, and count those that are named.
+"""Apply each misconception to the tables of all robots, and count how often reports name it.
 
-Independent forward kinematics decide whether the table is wrong; a misconception that does not
-change the mechanism is left out.
+A table is left out if independent forward kinematics find it correct despite the misconception.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -46,7 +45,7 @@ def codes(part: PartReport) -> set[str]:
 
 @dataclass(frozen=True)
 class Named:
-    """The number of tables whose misconception was named, and the other tables with their codes."""
+    """How often reports named a misconception. ``missed`` has the other tables and their codes."""
 
     named: int
     missed: list[tuple[str, Rows, list[str]]]
@@ -160,7 +159,7 @@ def degrees_everywhere(robot: Robot, rows: Rows) -> Iterator[Rows]:
 
 
 def columns_shifted(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """Yield the table with a and α taken from the row before, as if conventions were mixed."""
+    """Yield the table with a and α moved down by one row: the conventions are mixed."""
     link = [("0", "0"), *((row[A], row[ALPHA]) for row in rows[:-1])]
     yield [(a, alpha, row[D], row[THETA]) for (a, alpha), row in zip(link, rows, strict=True)]
 
@@ -179,7 +178,7 @@ def rows_exchanged(robot: Robot, rows: Rows) -> Iterator[Rows]:
 
 
 def column_signs(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """Yield the table with the wrong sign at every α."""
+    """Yield the table with the signs of all α reversed."""
     yield [(a, f"-({alpha})", d, theta) for a, alpha, d, theta in rows]
 
 

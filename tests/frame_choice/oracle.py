@@ -135,7 +135,7 @@ def _base_from_screws(robot: Robot, signs: tuple[int, ...], written: Numbers) ->
 
 
 def _align(source: Numbers, target: Numbers) -> Numbers:
-    """Return the rigid motion that best moves screws ``(n, 6)`` onto others."""
+    """Return the rigid motion that moves the screws ``source`` ``(n, 6)`` closest to ``target``."""
     turning = np.linalg.norm(source[:, :3], axis=1) > 0.5
     directions = [np.where(turning[:, None], s[:, :3], s[:, 3:]) for s in (source, target)]
     u, sizes, vt = np.linalg.svd(directions[1].T @ directions[0])
@@ -152,7 +152,7 @@ def _align(source: Numbers, target: Numbers) -> Numbers:
 
 
 def _turn_in_plane(source: Numbers, target: Numbers, rotation: Numbers) -> Numbers:
-    """Return the rotation about parallel axes that moves one pattern of lines to the other."""
+    """Return the rotation about the parallel axes ``source`` that moves them to ``target``."""
     axis = target[0, :3] / max(float(np.linalg.norm(target[0, :3])), 1e-12)
     moved = np.concatenate([source[:, :3] @ rotation.T, source[:, 3:] @ rotation.T], axis=1)
     points = [np.cross(s[:, :3], s[:, 3:]) for s in (moved, target)]

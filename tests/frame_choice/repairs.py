@@ -1,7 +1,7 @@
 """Find the cells in which a wrong table can be repaired.
 
-On parallel axes, and next to prismatic joints, a slip can often be repaired in another cell as
-well. Then no grader can know which cell was intended.
+Next to parallel axes and prismatic joints, a change of another cell can often make the table
+correct, too. Then no grader can know which cell the student got wrong.
 """
 
 from collections.abc import Sequence
@@ -103,7 +103,7 @@ def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[in
 def _fills(
     robot: Robot, texts: Texts, row: int, column: int, wanted: Numbers, values: Values
 ) -> bool:
-    """True if some value of this cell gives the factor ``wanted`` at all samples."""
+    """True if the cell can have a value at which its screw motion is ``wanted`` at all samples."""
     axis = 0 if column in (A, ALPHA) else 2
     first, second = (axis + 1) % 3, (axis + 2) % 3
     other = evaluate(texts[row][{A: ALPHA, ALPHA: A, D: THETA, THETA: D}[column]], values)

@@ -1,8 +1,9 @@
 """``python -m tests.frame_choice.rounded --robots N``: grade tables with rounded numbers.
 
 Write the tables of random robots in random frames with three to six digits. These tables must get
-full marks. A table with a changed digit must not, unless the oracle finds that the digit does not
-matter: all decimals of the table can be rounded or cut off from numbers that make it valid.
+full marks. A table with one changed digit must not get them. An exception is a digit that does not
+matter: there are exact numbers that make the table valid, and rounded or cut off they give all its
+decimals.
 """
 
 import argparse
@@ -103,15 +104,15 @@ def changed(table: Table, rng: np.random.Generator) -> tuple[Table, tuple[int, i
 
 
 def _matters(other: Table, printed: Table) -> bool:
-    """True if rounding can explain ``printed``, but not ``other``, in which a digit is changed."""
+    """True if rounding explains the table ``printed``, but not ``other`` with a changed digit."""
     return least_error(other) > CLEARLY and least_error(printed) < CLEARLY / 10
 
 
 def least_error(table: Table) -> float:
-    """Return the error of the pose that remains if the numbers before rounding are chosen best.
+    """Return how far the pose is from a valid one if rounding explains as much as it can.
 
-    The error is a multiple of the smallest error that one unit in a last place causes. It is
-    computed to first order, by coordinate descent.
+    The table's decimals may come from any numbers that round to them; the closest are taken. An
+    error of 1 is the smallest effect of one unit in the last place of a decimal.
     """
     cells = [
         (i, j, cell)

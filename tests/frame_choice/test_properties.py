@@ -75,7 +75,7 @@ def test_nothing_raises(either: Tally) -> None:
 
 
 def test_a_slip_between_axes_that_are_not_parallel_is_blamed_on_its_cell(given: Tally) -> None:
-    """Only slips that no other single cell would repair are counted."""
+    """Slips that a change of another cell would repair as well are not counted."""
     assert given.counts["skew unshared"] >= 25
     assert given.share("skew unshared exact", "skew unshared") >= 0.99, first_misses(
         given, lambda what: what.startswith("one slip, skew")
@@ -97,7 +97,7 @@ def test_two_independent_slips_are_both_found(given: Tally) -> None:
 
 
 def test_of_slips_that_could_be_repaired_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
-    """In 31,000 tables the shares were 98.7 % and 90.5 %; each bound is three deviations lower."""
+    """The required shares are three standard deviations below those measured in 31,000 tables."""
     assert given.counts["skew"] >= 30
     assert given.share("skew exact", "skew") >= 0.95
     assert given.counts["two slips"] >= 80

@@ -33,7 +33,7 @@ DRAWS = 60
 
 @dataclass(frozen=True)
 class Grading:
-    """The report on a table; ``blamed`` are the rows (from 0) and columns of the wrong cells."""
+    """A graded table; ``blamed`` has row and column (from 0) of each cell that is marked wrong."""
 
     report: PartReport
     blamed: frozenset[Place]
@@ -117,7 +117,7 @@ def has_parallel_neighbour(table: Table, row: int, column: int) -> bool:
 def _joins_parallel_axes(table: Table, link: int) -> bool:
     """True if the α of this row is 0 or 180°.
 
-    A link beyond the table counts as parallel, because it ends in the last joint's own frame.
+    A row number beyond the table also counts as parallel.
     """
     if link >= len(table.rows):
         return True
@@ -192,10 +192,11 @@ def run(
     slips: int | None = None,
     explain: bool = True,
 ) -> Tally:
-    """Grade ``tables`` random tables of a robot, and some of them with one slip and with two.
+    """Grade random valid tables of a robot; grade some of them again with one and with two slips.
 
-    ``slips`` is the number of tables that are also graded with slips, None for all. If ``explain``
-    is True, check for each miss whether the blamed cells could repair the table, which takes long.
+    ``slips`` is the number of tables that are also graded with slips; None means all. If
+    ``explain`` is True, check whether new values in the cells that are marked wrong could repair
+    the table. This takes long.
     """
     tally = Tally(explain=explain)
     in_turn = policies(only_given)
@@ -275,7 +276,7 @@ def _try_one_slip(table: Table, tally: Tally, rng: np.random.Generator) -> None:
 
 
 def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
-    """True if at most ``at_most`` cells are blamed, and other values in them repair the table."""
+    """True if at most ``at_most`` cells are marked wrong, and new values there repair the table."""
     if not 0 < len(blamed) <= at_most or any(
         row < 0 or row >= len(table.rows) for row, _ in blamed
     ):
@@ -284,7 +285,7 @@ def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
 
 
 def _is_unshared(table: Table, edit: Edit) -> bool:
-    """True if the cell of the slip is the only single cell that could repair the table."""
+    """True if no change of another single cell would make the table valid."""
     wrong = table.edited(edit.row, edit.column, edit.cell)
     return len(repairing_cells(table.robot, wrong.texts, table.convention)) == 1
 

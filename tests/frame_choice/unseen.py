@@ -1,6 +1,6 @@
 """Random robots of one to seven joints.
 
-Axes are skew, parallel, intersecting or coincident; lengths are letters, decimals, or both.
+Neighbouring axes are skew, parallel, intersecting or equal. Lengths are letters or decimals.
 """
 
 import numpy as np

@@ -157,7 +157,7 @@ def test_gradebooks_contain_only_the_attempt_that_counts(
 
 @pytest.fixture
 def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Serve the exercise with another marking rule; a learner's last attempt counts."""
+    """Change the marking rule of the exercise, so that a regrade gives other points."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     text = text.replace('kind = "dh_table"\n', 'kind = "dh_table"\nmarking = "rows"\n', 1)
     text = text.partition("[[checks]]")[0]  # they give the points of the other rule

@@ -1,8 +1,8 @@
 """``python -m tests.frame_choice.rows.blanking --tries 20000``: empty cells must not earn more.
 
 Empty a row or a cell in wrong tables of all kinds, under each policy. This should never raise the
-points, but does in a few tables with several wrong rows: an empty cell in a correct row can lead
-the search to a better reading, and the work budget limits the readings of a table with extra rows.
+points, but it does in a few tables with several wrong rows. In these tables, the empty cell leads
+the grader to another interpretation of the other rows, which earns more.
 """
 
 import argparse
@@ -43,7 +43,7 @@ SYSTEMATIC = (
 
 @dataclass
 class Found:
-    """Counts of tries and of raised points by kind of table, and the tables with raised points."""
+    """How often cells of each kind of table were emptied, and how often this raised the points."""
 
     tries: Counter[str] = field(default_factory=Counter)
     gains: Counter[str] = field(default_factory=Counter)
@@ -56,7 +56,7 @@ class Found:
 
 
 def spoiled(robot: Robot, texts: Texts, rng: np.random.Generator) -> Iterator[tuple[str, Texts]]:
-    """Yield the table with slips of each kind."""
+    """Yield wrong tables, each with the name of its kind of mistake."""
     rows = len(texts)
     for count in (1, 2, 3, 4):
         one = wrong_row(robot, texts, int(rng.integers(rows)), count, rng)
@@ -143,7 +143,7 @@ def described(
     report: PartReport,
     written: PartReport,
 ) -> str:
-    """Return the table as text, with its points with and without the empty place."""
+    """Return the table as text, with its points before and after cells were emptied."""
     pairs = zip(texts, empty, strict=True)
     return "\n".join(
         [

@@ -1,9 +1,9 @@
 """``python -m tests.frame_choice.rows.careless``: ``blanking`` with other robots and slips.
 
 The robots are put together from the rows of textbook arms. Their tables have the reference's frames
-or reversed x axes. The slips concern whole rows: rows are exchanged, in degrees, extra, missing or
-copied, or have a and α of the other convention from some row on. As in ``blanking``, an empty row
-or cell must not raise the points.
+or reversed x axes. Whole rows are wrong: rows are exchanged, in degrees, extra, missing or copied,
+or from some row on, a and α follow the other convention. As in ``blanking``, an empty row or cell
+must not raise the points.
 """
 
 import argparse
@@ -115,7 +115,7 @@ def run(robots: range, tries: int, seed: int) -> Found:
 
 
 def main() -> int:
-    """Run the campaign and print the figures; return 1 if too many empty places earned more."""
+    """Run the campaign and print the figures; return 1 if empty cells raised points too often."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.careless")
     parser.add_argument("--robots", type=int, default=40)
     parser.add_argument("--tries", type=int, default=50, help="tries with each robot")

@@ -1,11 +1,10 @@
 """``python -m tests.frame_choice.rows.one_row --tables 5000``: grade tables with one wrong row.
 
 One row of a valid table is wrong in one to four cells, as students write them. The correct cells of
-the other rows must stay correct, and frames that only the wrong row implies must not be praised. An
-exception is a table that can also be explained by fewer wrong cells, or by as many in another row:
-the oracle checks this for the blamed cells. A table gets full marks only if it is valid, or if its
-decimals may be rounded from the numbers of a valid table. Another oracle, ``true_numbers``, checks
-the decimals.
+the other rows must stay correct, and the report must not praise frames that only the wrong row
+implies. The grader may mark other cells as wrong if these are fewer, or equally many in another
+row, and if other values in them make the table valid. A table gets full marks only if it is valid,
+or if its decimals may be rounded from the numbers of a valid table (see ``true_numbers``).
 """
 
 import argparse
@@ -48,8 +47,7 @@ PRAISE = "own_frame_choice"
 class WrongRow:
     """A table with ``count`` wrong cells in one row.
 
-    ``valid`` is the table without the wrong cells; ``usual`` is True if the table has the
-    reference's frames.
+    ``valid`` is the correct table; ``usual`` is True if it has the same frames as the reference.
     """
 
     robot: Robot
@@ -75,7 +73,7 @@ class WrongRow:
 
 @dataclass
 class Found:
-    """Counts by name, and the misjudged tables."""
+    """Counts how many tables were judged correctly or not, and keeps the misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -117,7 +115,7 @@ def praises(report: PartReport) -> set[str]:
 
 
 def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
-    """Return the cells that are not correct; (-1, -1) if the rows were read in another order."""
+    """Return the cells that are marked as wrong, or {(-1, -1)} if the grader reordered rows."""
     labels = [row.label for row in report.rows]
     if table.robot.labels(len(labels)) != labels:
         return {(-1, -1)}
@@ -130,10 +128,10 @@ def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
 
 
 def is_as_good(table: WrongRow, blamed: set[Place]) -> bool:
-    """True if the blamed cells are few enough, and other values in them repair the table.
+    """True if the report marks few enough cells as wrong, and new values in them repair the table.
 
-    There must be fewer blamed cells than wrong ones. An equal number is enough if all blamed cells
-    are in one row, or if the frames are the student's own.
+    ``blamed`` are these cells. They must be fewer than the cells that are really wrong. An equal
+    number is allowed if they are all in one row, or if the table has the student's own frames.
     """
     rows = {row for row, _ in blamed}
     most = table.count - (len(rows) > 1 and table.usual)
@@ -204,7 +202,7 @@ def total(found: Found, said: str) -> int:
 
 
 def lines(found: Found) -> list[str]:
-    """Return the counts and the figures as lines."""
+    """Return the results as lines of text."""
     graded, told = total(found, ""), [f"{name}: {n}" for name, n in sorted(found.counts.items())]
     for said, most in (("accepted", 0.0), ("reddened", MOST), ("praised", MOST)):
         count = total(found, said)

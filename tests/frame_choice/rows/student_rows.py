@@ -46,7 +46,7 @@ def entries(robot: Robot, texts: Texts, row: int, column: int) -> Iterator[str]:
 def wrong_row(
     robot: Robot, texts: Texts, row: int, count: int, rng: np.random.Generator
 ) -> Texts | None:
-    """Return the table with ``count`` wrong entries in a row, or None if no draw is wrong."""
+    """Return the table with ``count`` wrong entries in a row, or None if all attempts fail."""
     columns = rng.permutation(4)[:count].tolist()
     for _ in range(DRAWS):
         spoiled = [list(each) for each in texts]

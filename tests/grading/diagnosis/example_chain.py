@@ -1,4 +1,4 @@
-"""A numeric chain of four links, its pose, and functions that make cases of wrong matrices."""
+"""An arm of four links in numbers, its pose, and wrong answers to it for tests."""
 
 from functools import reduce
 
@@ -30,12 +30,12 @@ POSE = product(A1, A2, A3, A4)
 
 
 def wrong_pose(matrix: Numbers, chain: Chain | None = CHAIN) -> MatrixCase:
-    """Return a case in which the student's pose is ``matrix`` ``(COUNT, 4, 4)``, not ``POSE``."""
+    """Return the test case of a student who wrote the pose ``matrix`` instead of ``POSE``."""
     return wrong_matrix(matrix, POSE, chain)
 
 
 def wrong_matrix(matrix: Numbers, right: Numbers, chain: Chain | None = None) -> MatrixCase:
-    """Return a case in which the student wrote ``matrix``, but ``right`` is expected.
+    """Return the test case of a student who wrote ``matrix`` instead of ``right``.
 
     Both have the shape ``(COUNT, rows, columns)``.
     """

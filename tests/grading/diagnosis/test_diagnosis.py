@@ -1,6 +1,6 @@
-"""Each record of a misconception or check is used, and its examples are correct.
+"""Each registered misconception or check is used, and its examples are correct.
 
-A record explains its example, and it does not explain its counterexample.
+A misconception explains its example, and it does not explain its counterexample.
 """
 
 import subprocess
@@ -24,7 +24,7 @@ WITHOUT_CODE = [record for record in all_records() if record.function and not re
 
 
 def complaint_about(record: Record) -> str:
-    """Return an error message that names the record; it is empty if the examples are correct."""
+    """Return an error message if an example of this misconception is wrong, else ""."""
     if record.example is None or not record.means:
         return f"{record.name}: give it an example, and say what its code means"
     exercise, part, answer, *unit = record.example
@@ -63,7 +63,7 @@ def test_a_record_explains_only_its_example(record: Record) -> None:
 
 @cache
 def traces() -> list[Trace]:
-    """Grade the example of each record, and return the traces of grading."""
+    """Grade the example of each misconception; return which misconceptions were tried each time."""
     return [trace_of(*record.example) for record in all_records() if record.example]
 
 
@@ -102,7 +102,7 @@ def test_the_order_of_imports_changes_no_record(first: str) -> None:
 
 
 class UnusedCase:
-    """A class of wrong answers that no grading uses."""
+    """A kind of wrong answer that the grader never looks for."""
 
 
 REVERSED = "[-a1 c1 - a2 c12, -a1 s1 - a2 s12]"
@@ -111,7 +111,7 @@ EXCHANGED = "[a1 s1 + a2 s12, a1 c1 + a2 c12]"
 
 @pytest.fixture
 def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Let a test add records of misconceptions, and remove them afterwards."""
+    """Let a test register misconceptions; remove them afterwards."""
     monkeypatch.setattr(engine, "_RECORDS", list(all_records()))
     yield
     engine.records_of.cache_clear()

@@ -66,7 +66,7 @@ def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
 
 
 def matrix(angle: str, length: str, of_length: str) -> list[list[Any]]:
-    """Return a link transform of a planar arm, written with these indices and this length."""
+    """Return a link transform of a planar arm, such as c1, -s1, 0, a1 c1 for ("1", "a1", "1")."""
     return [
         [f"c{angle}", f"-s{angle}", 0, f"{length} c{of_length}"],
         [f"s{angle}", f"c{angle}", 0, f"{length} s{of_length}"],
