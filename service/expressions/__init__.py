@@ -1,4 +1,4 @@
-"""Formula as typed -> syntax tree -> numbers, text, LaTeX, MathML.
+"""Read a formula as typed into a syntax tree. Convert the tree to numbers, text, LaTeX or MathML.
 
 This package knows nothing about robots.
 """

@@ -64,7 +64,7 @@ class ExpressionError(TextError):
         self.tried = 0
 
     def without_traceback(self) -> "ExpressionError":
-        """Return an equal error without a traceback; a memoized error is raised in this way."""
+        """Return a copy of this error without a traceback. Memoized errors are raised as copies."""
         error = ExpressionError(self.code, self.message, self.span, self.suggestion)
         error.tried = self.tried
         return error

@@ -1,1 +1,1 @@
-"""Text as typed -> plain characters, each with its place in the text as typed."""
+"""Convert typed text to plain characters, each with its position in the typed text."""

@@ -13,11 +13,11 @@ _BETWEEN_ARGUMENTS: Final = re.compile(r";(?=[^();]*(?:\([^()]*\)[^();]*)*\))")
 
 
 def with_points(text: str) -> str:
-    """Return the text with points for decimal commas. Every character keeps its place."""
+    """Replace each decimal comma by a point: 1,5 becomes 1.5. All other characters stay."""
     return _NUMBER.sub(r"\1.\2", text) if "," in text else text
 
 
 def with_points_and_commas(text: str) -> str:
-    """Return a formula with points for decimal commas, and with commas for semicolons."""
+    """Replace decimal commas by points, and semicolons between arguments by commas."""
     text = with_points(text)
     return _BETWEEN_ARGUMENTS.sub(",", text) if ";" in text else text

@@ -79,7 +79,10 @@ def known_prefix(name: str) -> str | None:
 
 
 def brace_partners(source: str) -> dict[int, int]:
-    """Map the place of each opening brace to the place of its closing brace, if it has one."""
+    """Map the position of each opening brace to the position of its closing brace.
+
+    Braces without a partner are left out.
+    """
     partners: dict[int, int] = {}
     opened: list[int] = []
     for match in _BRACE.finditer(source):

@@ -1,4 +1,4 @@
-r"""Characters as typed -> plain characters, each with its place in the text as typed.
+r"""Convert typed text to plain characters, each with its position in the typed text.
 
 Unambiguous characters (× · − ² ₁ ½ ° π, variants of Greek letters) and LaTeX are converted. A
 look-alike or invisible character is an error that names the character; nothing is guessed.
@@ -182,7 +182,10 @@ class _Normaliser(CharacterWriter):
         raise UnreadableError(causes.get(name, "command"), (at, after), name=name)
 
     def _without_meaning(self, name: str, at: int, after: int, end: int) -> int | None:
-        """Return the end of a command that is skipped with its argument, else None."""
+        """Return the end of a command that means nothing in a formula, including its argument.
+
+        Return None for any other command.
+        """
         if name in latex_commands.IGNORED:
             return self._argument(at, after, end)[2]
         environment = latex_commands.ENVIRONMENT.match(self.source, after, end)
@@ -242,7 +245,7 @@ class _Normaliser(CharacterWriter):
             self._emit(*place)
 
     def _switch(self, at: int, after: int, end: int, depth: int) -> int:
-        r"""Read {\rm cos} as \mathrm{cos}; skip a switch that does not begin a group."""
+        r"""Read {\rm cos} as \mathrm{cos}. Skip a command such as \rm elsewhere."""
         if not self.letters or self.letters[-1] != "{" or self.source[self.starts[-1]] != "{":
             return self._emit(" ", at, after)
         opener = self.starts[-1]

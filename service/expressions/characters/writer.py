@@ -1,4 +1,4 @@
-"""Write plain characters with their places in the typed text; read subscripts and superscripts."""
+"""Write plain characters with their positions in the typed text; read raised or lowered digits."""
 
 import re
 from collections.abc import Mapping
@@ -29,7 +29,7 @@ class Characters:
 
 
 class CharacterWriter:
-    """The plain characters written so far, with helpers to read LaTeX arguments and indices."""
+    """Collects plain characters, and has helpers to read LaTeX arguments and indices."""
 
     def __init__(self, source: str, partners: dict[int, int] | None = None) -> None:
         self.source = source
@@ -110,7 +110,7 @@ class CharacterWriter:
             self._emit(table[self.source[place]], place, place + 1)
 
     def _argument(self, at: int, after: int, end: int) -> tuple[int, int, int]:
-        """Return the [start, stop) of a command's argument, and the place after it."""
+        """Return the start and the end of a command's argument, and the position after it."""
         start = self._skip_blanks(after, end)
         if start >= end or self.source[start] in "}+-*/)]":
             raise UnreadableError("argument", (at, after), name=self.source[at:after])

@@ -1,7 +1,7 @@
-"""Evaluate many trees that share most of their nodes at one point, in plain floats.
+"""Evaluate many trees at one point, in plain floats.
 
-The memoized values of one tree's nodes are used for all trees built from these nodes. To evaluate
-one tree at many samples, see ``samples``.
+The trees share most of their nodes, so the value of a shared node is computed once. To evaluate one
+tree at many samples, use ``samples``.
 """
 
 import math
@@ -33,7 +33,10 @@ _OPERATORS: Final[dict[str, Callable[[float, float], float]]] = {
 
 
 def known_values(tree: Node, at: Mapping[str, float]) -> Known:
-    """Map the id of each node of ``tree`` to its value, valid as long as the tree exists."""
+    """Map the id of each node of ``tree`` to its value at the point ``at``.
+
+    The ids are valid only as long as the tree exists.
+    """
     known: Known = {}
     _learn(tree, at, known)
     return known

@@ -70,10 +70,10 @@ _FUNCTIONS.update({strict: _strict(_FUNCTIONS[name]) for name, strict in _STRICT
 
 
 class Program:
-    """The program of one expression with at least one symbol. Immutable.
+    """The compiled form of one expression with at least one symbol. Immutable.
 
-    ``whole`` is the place of the whole expression in ``steps``. If the expression is a single
-    symbol, ``symbol`` is its name; else None.
+    ``steps[whole]`` is the beginning of the step that computes the whole expression. If the
+    expression is a single symbol, ``symbol`` is its name; else None.
     """
 
     __slots__ = ("steps", "symbol", "whole")
@@ -134,7 +134,10 @@ def _sine_or_cosine_key(function: str, symbol: str) -> str:
 
 
 class _Compiler:
-    """The steps of one tree, and the places of constants and of parts that may be non-finite."""
+    """Compiles one tree to a list of steps.
+
+    It also has the indices of constants, and of parts whose value may be infinite or undefined.
+    """
 
     __slots__ = ("constants", "maybe_non_finite", "steps")
 
@@ -144,7 +147,7 @@ class _Compiler:
         self.maybe_non_finite: set[int | None] = set()
 
     def part(self, node: Node) -> int:
-        """Append the steps of ``node``; return their place."""
+        """Append the steps that compute ``node``. Return the index at which the last one begins."""
         # Comparing types takes a third of the time of ``match``, and this is on the grading path.
         kind = type(node)
         if kind is Binary:
@@ -189,7 +192,10 @@ class _Compiler:
         return at
 
     def _apply(self, name: str, left: int, right: int | None = None) -> int:
-        """Append a function of parts, or its value if the parts are constants; return its place."""
+        """Append the step that applies a function to one or two operands. Return its index.
+
+        If the operands are constants, append the result as a constant.
+        """
         constants, steps = self.constants, self.steps
         if constants:
             if name == "^" and right is not None and constants.get(right) == 2.0:
@@ -212,7 +218,7 @@ class _Compiler:
         return at
 
     def _remove(self, *places: int | None) -> list[float]:
-        """Remove the constants at these places, which are the last steps; return their values."""
+        """Remove the last steps, which are constants. Return their values."""
         taken = [at for at in places if at is not None]
         self.maybe_non_finite.difference_update(taken)
         del self.steps[taken[0] :]

@@ -1,1 +1,1 @@
-"""Plain characters -> tokens -> a syntax tree."""
+"""Parse plain characters into tokens, and tokens into a syntax tree."""

@@ -11,14 +11,14 @@ _MOST_PARTS: Final = 64
 
 
 def check_unit(operand: Node, span: Span) -> None:
-    """Raise UnreadableError if ``operand``, which has the unit of degrees, contains π."""
+    """Raise UnreadableError if ``operand`` contains π. It is followed by the unit of degrees."""
     if _is_of_pi(operand):
         inside = (operand.start, operand.end)
         raise UnreadableError("ambiguous_unit", span, opens=False, of_pi=True, inside=inside)
 
 
 def check_divisor(left: Node, right: Unit) -> None:
-    """Raise UnreadableError for a quotient whose divisor, but not its dividend, is in degrees."""
+    """Raise UnreadableError if the divisor of a quotient is in degrees but the dividend is not."""
     inside = right.operand
     # The unit of deg2rad(2) belongs to the divisor.
     if right.unit != "deg" or inside.start != right.start or _has(left, Unit):

@@ -1,6 +1,6 @@
 """Build functions such as sec, pow and hypot from the functions that a tree may contain.
 
-This way, a formula has the same tree in all its spellings.
+For example, sec(x) gets the same tree as 1/cos(x).
 """
 
 from collections.abc import Sequence
@@ -15,7 +15,7 @@ _OPERATORS: Final[dict[str, Operator]] = {
 
 
 def build_function(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
-    """Return the tree of a function in ``BUILT``, given the correct number of arguments."""
+    """Return the tree of a function such as sec. The number of arguments must be correct."""
     if name in RECIPROCALS:
         one = Number(1.0, "1", start, start)
         return Binary("/", one, Call(RECIPROCALS[name], tuple(arguments), start, end), start, end)

@@ -118,7 +118,7 @@ class _Conversion:
         return Unit(self.plain(node), "deg", node.start, node.end)
 
     def _product(self, node: Node, left: Node, right: Node) -> Node:
-        """Add degrees in the factor that is an angle: q1 + 45 in 2*(q1 + 45), 90 in k*90."""
+        """Add degrees in the one factor that is an angle: q1 + 45 in 2*(q1 + 45), or 90 in k*90."""
         one, other = self.facts[id(left)], self.facts[id(right)]
         angles = one.angle, other.angle
         if angles == (False, False):

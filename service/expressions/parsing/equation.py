@@ -1,6 +1,7 @@
-r"""Equations whose left side is a name or empty: x = l1 c1, T(1,4) := l1 c1, = cos(q1).
+"""Equations whose left side is a name or empty: x = l1 c1, T(1,4) := l1 c1, = cos(q1).
 
-Only the right side is read. The left side is replaced by blanks, so that all places are unchanged.
+Only the right side is read. The left side is replaced by blanks, so that the positions of the other
+characters do not change.
 """
 
 import re
@@ -39,7 +40,7 @@ _OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 class LeftSide(NamedTuple):
-    """The name before an equals sign, with single blanks between words.
+    """The name before an equals sign. Between its words are single blanks.
 
     ``span`` includes the equals sign.
     """

@@ -1,1 +1,1 @@
-"""Characters -> tokens."""
+"""Split plain characters into tokens."""

@@ -22,7 +22,7 @@ class Brackets:
         self.opened: list[tuple[str, Span, int]] = []
 
     def open(self, bracket: str, span: Span, token: int) -> None:
-        """Push the bracket of the token at index ``token``.
+        """Add an opening bracket, which is the token at index ``token``.
 
         Raises UnreadableError if the bracket is nested too deep.
         """

@@ -16,10 +16,11 @@ _STEM: Final = re.compile(rf"[A-Za-z{greek.CLASS}]+$")
 
 
 class Indexed(NamedTuple):
-    """A run of letters and its index in brackets, read together.
+    """A name and its index in brackets, read together.
 
-    ``pieces`` are the pieces of the run with its index, or None if these have no meaning.
-    ``digits`` is the index, counted as in declared names; ``end`` is the place after the brackets.
+    ``pieces`` are the names in this text, or None if it has no meaning: ``[q1]`` for q[0].
+    ``style`` is the kind of brackets. ``digits`` is the index as the exercise counts it, here "1".
+    ``end`` is the position after the brackets.
     """
 
     pieces: tuple[Piece, ...] | None
@@ -31,9 +32,10 @@ class Indexed(NamedTuple):
 def indexed(
     run: str, text: str, end: int, vocabulary: Vocabulary, *, from_one: bool = False
 ) -> Indexed | None:
-    """Return ``run``, which ends at ``text[end]``, with the index in brackets that follows.
+    """Read the letters ``run``, which end at ``text[end]``, and the index in brackets after them.
 
-    Return None if no index follows. With ``from_one``, indices in square brackets also start at 1.
+    Return None if no index follows. With ``from_one``, indices in square brackets count from 1, not
+    from 0.
     """
     match = INDEX.match(text, end)
     if match is None or _STEM.search(run) is None:
@@ -50,7 +52,7 @@ def indexed(
 
 
 def is_family(run: str, vocabulary: Vocabulary) -> bool:
-    """True if ``run`` with some index is a name: q, if q1 is declared."""
+    """True if the letters ``run`` with some index are a known name: q, if q1 is declared."""
     return any(split(f"{run}{index}", vocabulary) for index in {1, 2, *vocabulary.joints})
 
 

@@ -1,6 +1,6 @@
 """Names in another letter case than declared: l1 if only L1 is declared.
 
-Such a name is read if it has no other reading and fits only one symbol.
+Such a name is accepted if it has no other meaning and fits only one symbol.
 """
 
 from dataclasses import replace
@@ -17,9 +17,10 @@ _PLAIN: Final = frozenset(ascii_letters + digits)
 
 
 def split_in_other_case(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """Split a run that has no reading as written, ignoring letter case. Return its pieces or None.
+    """Split a run of letters and digits into known names, ignoring letter case.
 
-    A single letter of another case is a name only if it is the whole run.
+    Return None if this is impossible. A single letter of another case is a name only if it is the
+    whole run.
     """
     pieces = split(run, _with_other_capitals(vocabulary))
     if pieces is None:
@@ -39,7 +40,7 @@ def split_in_other_case(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] |
 
 @lru_cache(maxsize=256)
 def _with_other_capitals(vocabulary: Vocabulary) -> Vocabulary:
-    """Return the vocabulary with extra names: those of each symbol in other letter cases."""
+    """Return the vocabulary, extended by the names of its symbols in other letter cases."""
     owners: dict[str, dict[str, Symbol]] = {}
     for name, symbol in vocabulary.by_name.items():
         for other in {name.lower(), name.upper(), name[0].swapcase() + name[1:]}:

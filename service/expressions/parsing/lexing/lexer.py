@@ -55,10 +55,9 @@ class Lexer(WordLexer):
         return self.tokens
 
     def _plain_run(self, text: str) -> int:
-        """Read an unchanged text quickly, split into strings that usually are one token each.
+        """Read a text in which no character was converted, as far as a fast and simple split works.
 
-        Stop at a string that is not exactly one token; ``_run_from`` reads the rest. Return the
-        place after the text that was read.
+        Return the position up to which the text was read. ``_run_from`` reads the rest.
         """
         tokens, operands, end = self.tokens, self.vocabulary.operands, 0
         for string in _STRING.findall(text):
@@ -84,7 +83,11 @@ class Lexer(WordLexer):
         return end
 
     def _run_from(self, position: int, text: str) -> int:
-        """Read tokens until one is longer than its regex match; return the end of this token."""
+        """Read tokens from ``position`` on. Return the position up to which the text was read.
+
+        Stop after a token that is longer than the regular expression's match, such as a function
+        with its power.
+        """
         tokens, in_place = self.tokens, self.starts is None
         # The last alternative takes any character, so no character is skipped.
         for found in _TOKEN.finditer(text, position):
@@ -195,7 +198,10 @@ class Lexer(WordLexer):
             self.brackets.open(bracket, span, len(self.tokens) - 1)
 
     def _bar(self, span: Span) -> None:
-        r"""Read a bar of |x|. A bar after an operand closes; any other bar, and \left|, opens."""
+        r"""Read a bar of |x|.
+
+        A bar after an operand closes the pair. Any other bar opens one, and so does \left|.
+        """
         closes = self.last in OPERAND_ENDS and self.brackets.in_bars()
         if closes and not _LEFT_BAR.search(self.source, max(0, span[0] - _LEFT_REACH), span[1]):
             self.brackets.close("|", span)
@@ -222,7 +228,10 @@ class Lexer(WordLexer):
                 self.fraction_end = len(self.tokens) - 1
 
     def _star(self, start: int, end: int, span: Span) -> None:
-        """Read the * after a joint variable: its marker, or a product."""
+        """Read the * after a joint variable.
+
+        It is a product, or marks the variable as in tables: θ1*.
+        """
         typed = self.source[slice(*span)]
         star = read_star(self.text, start, end, typed, first=self._is_first_factor())
         if star == "ambiguous":
@@ -241,7 +250,10 @@ class Lexer(WordLexer):
         return not before or before[-1] in _TERM_STARTS
 
     def _marker(self, span: Span) -> None:
-        """Read a raised star. Raises UnreadableError unless it marks a joint variable."""
+        """Read a raised star, which marks a joint variable as in θ1*.
+
+        Raises UnreadableError after anything else.
+        """
         if not self._is_joint():
             raise UnreadableError("character", span)
         self.notes.star("marker", span)

@@ -23,7 +23,7 @@ _DOTS: Final = ("·", "⋅", "∙", "•")
 
 
 def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
-    """Return the note on θ1 + 90, whose 90 was read in radians, or None."""
+    """Return a note if θ1 + 90 was read in radians but may mean degrees; else None."""
     for one, other in ((left, right), (right, left)):
         number = _number(other)
         if number is not None and not degrees and _is_large(number) and _is_angle(one):
@@ -34,7 +34,7 @@ def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
 def on_shorthand(
     source: str, left: Node, right: Node, turning: Mapping[int, Symbol]
 ) -> Note | None:
-    """Return the note on s1+2, whose 2 may belong to the index as in s12, or None."""
+    """Return a note on a sum such as s1+2, which may mean s12; else None."""
     if type(right) is not Number or not _DIGIT.fullmatch(right.literal):
         return None
     last, digit = left, right.literal
@@ -66,7 +66,7 @@ def on_shorthand(
 
 
 def on_product(source: str, left: Number, right: Number) -> Note | None:
-    """Return the note on 0·5 and 2⋅5, whose dot may be a decimal point, or None."""
+    """Return a note on a product such as 0·5, whose dot may be a decimal point; else None."""
     if source[left.end : right.start] not in _DOTS or "." in left.literal + right.literal:
         return None
     message = say(
@@ -80,7 +80,10 @@ def on_product(source: str, left: Number, right: Number) -> Note | None:
 def on_call(
     function: str, argument: Node, turning: Mapping[int, Symbol], *, degrees: bool
 ) -> Note | None:
-    """Return the note on cos(1) or cos(90), which may mean joint angle 1 or 90°, or None."""
+    """Return a note on cos(1), which may mean joint angle 1, or cos(90), which may mean 90°.
+
+    Return None for any other call.
+    """
     number = _number(argument)
     if number is None or function not in TRIGONOMETRIC:
         return None
@@ -132,6 +135,6 @@ def _is_angle(node: Node) -> bool:
 
 
 def _last_joint(argument: Node) -> int | None:
-    """Return the joint of the last angle in the argument of a shorthand, or None."""
+    """Return the number of the last joint in c12 and the like, or None."""
     last = argument.right if type(argument) is Binary else argument
     return last.symbol.joint if type(last) is SymbolNode else None

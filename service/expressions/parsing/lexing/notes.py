@@ -1,4 +1,4 @@
-"""Notes on single words that have another possible reading."""
+"""Add notes on single words that could also mean something else."""
 
 from typing import Final
 
@@ -17,7 +17,7 @@ _PRODUCT: Final = say(
 
 
 class WordNotes:
-    """Writes the notes of one text."""
+    """Collects the notes on the words of one text."""
 
     __slots__ = ("notes", "source", "vocabulary")
 
@@ -31,14 +31,14 @@ class WordNotes:
             self.notes.append(Note(code, message, span))
 
     def star(self, star: Star, span: Span) -> None:
-        """Note a star that marks a joint variable, or that might mark it."""
+        """Add a note if a star marks a joint variable (θ1*), or may mark it."""
         if star == "product":
             return
         code = "joint_marker" if star == "marker" else "marker_or_product"
         self._add(code, _PRODUCT if star == "noted_product" else _MARKER, span)
 
     def index(self, style: str, symbol: Symbol, span: Span) -> None:
-        """Note whether the index of q[0] or q(1) was counted from 0 or 1."""
+        """Add a note that the index of q[0] or q(1) was counted from 0 or from 1."""
         if style == "[":
             message = say(
                 "This was read as {name}, counting from 0 as Python does. If you count from 1, "
@@ -51,7 +51,7 @@ class WordNotes:
         self._add("one_based_index", message, span)
 
     def shorthand(self, piece: Piece, a: int, b: int) -> None:
-        """Note a shorthand that has another reading: sin12, C1."""
+        """Add a note on a shorthand that could also mean something else: sin12, C1."""
         if piece.ambiguous or self.source[a] in "CS":
             names = "+".join(symbol.name for symbol in piece.symbols)
             message = say(
@@ -88,7 +88,10 @@ class WordNotes:
             self._add("letter_case", say("This was read as the number pi."), (a, b))
 
     def function(self, name: str, a: int, b: int) -> None:
-        """Note a function in capitals, a function of degrees, or acos if ``a`` is a symbol."""
+        """Add a note on a function in capitals, or on a function of degrees such as sind.
+
+        If ``a`` is a symbol, also add one on acos, which could mean a·cos.
+        """
         written = self.source[a:b]
         # Mathematica writes Cos[q1], and C# Math.Cos(q1).
         of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 1] == "["

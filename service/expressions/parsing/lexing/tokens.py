@@ -1,4 +1,4 @@
-"""Tokens, and a writer that inserts a product token where a product sign is omitted."""
+"""Tokens, and a writer that adds the missing product sign in texts such as 2q1."""
 
 from typing import Any, Final
 
@@ -21,7 +21,7 @@ _TIGHT_STARTS: Final = frozenset({"NAME", "LEFT", "OPEN"})
 
 
 class TokenWriter:
-    """The tokens of one text so far, and the places of its characters in ``source``."""
+    """Collects the tokens of one text and their positions in ``source``."""
 
     __slots__ = (
         "brackets", "degrees", "ends", "fraction_end", "from_one", "has_separators", "indices",

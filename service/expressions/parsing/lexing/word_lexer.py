@@ -1,4 +1,4 @@
-"""Words -> tokens: names, functions with their powers, units, indices in brackets."""
+"""Turn words into tokens: names, functions with their powers, units, and indices in brackets."""
 
 import re
 from dataclasses import replace
@@ -41,7 +41,10 @@ class WordLexer(TokenWriter):
         return end
 
     def _split_word(self, run: str, start: int, end: int) -> int:
-        """Read a run of any number of pieces; return the place after it."""
+        """Read a run of letters and digits that may contain several names, as in l1c1.
+
+        Return the position after it.
+        """
         if run in MODULES and (member := MEMBER.match(self.text, end)):
             return self._after_module(member.end())
         pieces = split(run, self.vocabulary)
@@ -76,9 +79,10 @@ class WordLexer(TokenWriter):
             self.notes.product(run[before.start : before.end], angle.symbols[0], a, b)
 
     def _piece(self, piece: Piece, start: int, end: int) -> int:
-        """Emit a piece (a constant, number or unit) of the run that begins at ``start``.
+        """Emit the token of a constant, number or unit, which is a part of the run at ``start``.
 
-        Return the place after the text read: ``end``, or later if brackets after the run were read.
+        Return the position up to which the text was read. It is ``end``, or later if brackets after
+        the run were read as well.
         """
         kind, word, stop = piece.kind, piece.word, start + piece.end
         a, b = self._span(start + piece.start, stop)
@@ -116,7 +120,11 @@ class WordLexer(TokenWriter):
         )
 
     def _unsplit(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
-        """Read a run that ``split`` cannot read; return its pieces and the place after it."""
+        """Read a run of letters that is no known name by itself.
+
+        It may have another letter case, or an index in brackets. Return its parts and the position
+        after it.
+        """
         if len(run) > LONGEST_RUN:
             raise self._unknown(run, start, end)
         if run == "Subscript" and (found := subscripted(self.text, end)):
@@ -128,7 +136,7 @@ class WordLexer(TokenWriter):
         return (other, end) if other else self._index(run, start, end)
 
     def _index(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
-        """Read q[0], q(1) or q{1}; return the pieces and the place after it."""
+        """Read q[0], q(1) or q{1}. Return the names that it contains and the position after it."""
         if self.from_one is None:
             self.from_one = counts_from_one(self.text)
         found = indexed(run, self.text, end, self.vocabulary, from_one=self.from_one)
@@ -172,7 +180,6 @@ class WordLexer(TokenWriter):
         self._sole_operand((piece.word, piece.symbols), a, b)
 
     def _sole_operand(self, operand: Operand, a: int, b: int) -> None:
-        """Emit a symbol or a shorthand as one token."""
         function, symbols = operand
         first = symbols[0]
         node: Node = SymbolNode(first, a, b)
@@ -205,7 +212,10 @@ class WordLexer(TokenWriter):
         return end
 
     def _function_power(self, name: str, at: int, a: int, b: int) -> tuple[int | None, int]:
-        """Return the power after a function's name, or None, and the place after it."""
+        """Read the power after a function's name, as in sin^2. Return it and the position after it.
+
+        The power is None if there is none.
+        """
         raised = _FUNCTION_POWER.match(self.text, at)
         if raised is None:
             return None, at

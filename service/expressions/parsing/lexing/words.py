@@ -43,12 +43,12 @@ _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEG
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """One part of a run, ``run[start:end]``.
+    """One name, function, number or unit in a run of letters and digits, ``run[start:end]``.
 
     ``word`` is the canonical name of a function or unit, or the digits of a number. ``symbols`` has
-    one symbol, or the joint angles that a shorthand adds. ``ambiguous`` is True for a shorthand
-    with another reading, such as sin12, or s2 in s2θ1. ``joint`` is the wrong index of an invalid
-    shorthand.
+    one symbol, or the joint angles that a shorthand such as c12 adds. ``ambiguous`` is True for a
+    shorthand that could also mean something else, such as sin12. ``joint`` is the joint number in a
+    shorthand whose joint has no angle.
     """
 
     kind: PieceKind
@@ -62,7 +62,7 @@ class Piece:
 
 @lru_cache(maxsize=8192)
 def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """Return the pieces of ``run`` (plain characters), or None if it has no reading."""
+    """Split ``run`` into names, functions, numbers and units; return None if this is impossible."""
     # The longest reading wins, so try the whole run first.
     if (symbol := vocabulary.by_name.get(run)) is not None:
         return (Piece("symbol", 0, len(run), symbols=(symbol,)),)
@@ -86,9 +86,9 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 
 
 def sole_operand(run: str, vocabulary: Vocabulary) -> Operand | None:
-    """Return the meaning of a run that is one symbol or one shorthand, or None.
+    """Return the meaning of ``run`` if it is a single symbol or shorthand such as c12; else None.
 
-    Return None also if the run is the name of a module, or if its shorthand may get a note. A
+    Return None also if ``run`` is the name of a module, or if its shorthand may get a note. A
     meaning that is found is stored in ``vocabulary``.
     """
     pieces = None if run in functions.MODULES else split(run, vocabulary)
@@ -134,7 +134,7 @@ def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 
 
 def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
-    """Return the pieces of the whole run, given the pieces that begin at each position."""
+    """Join the pieces that begin at each position. Return None if there is a gap."""
     found: list[Piece] = []
     at = 0
     while at < len(first):
