@@ -1,4 +1,4 @@
-"""The rules for recorded attempts in an exercise file: their limit, times and late marks."""
+"""The rules for recorded attempts in an exercise file: how many, when, and the marks if late."""
 
 from typing import Annotated, Literal
 

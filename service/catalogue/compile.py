@@ -96,7 +96,10 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
 def _formulas(
     parts: Sequence[PartSpec], reference: Reference | None, reader: FormulaReader
 ) -> Mapping[str, FormulaGrid]:
-    """Map each part whose answer is in the file to its formulas, by part id. Raises FieldError."""
+    """Read the answers that the file gives in formulas. Map the ids of their parts to the formulas.
+
+    Raises FieldError.
+    """
     found: dict[str, FormulaGrid] = {}
     for i, part in enumerate(parts):
         written = part.formulas()
@@ -108,7 +111,10 @@ def _formulas(
 
 
 def _check_checks(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> None:
-    """Raise FieldError if a check names an unknown part or expects too many points."""
+    """Raise FieldError if a check of the file names an unknown part or expects too many points.
+
+    A check is an answer with the result that the author expects for it.
+    """
     most = {part.id: part.points for part in parts}
     for i, check in enumerate(checks):
         for field, named in (("answers", check.answers), ("expect", check.expect)):
@@ -237,7 +243,7 @@ def _vocabulary(variables: tuple[Variable, ...], *, decimal_comma: bool) -> Voca
 
 
 def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
-    """The usual names of a joint variable, without those of other symbols of the exercise."""
+    """The usual names of a joint variable, without names that another symbol has."""
     if variable.joint is None:
         return ()
     letters = ("q", "d") if variable.kind == "length" else ("q", "theta", "th")

@@ -80,7 +80,7 @@ def numbered(count: int) -> list[str]:
 
 
 def choices(**stated: str) -> Iterator[str]:
-    """Yield a clause that lists the free choices, and a clause that lists the given choices."""
+    """Yield a clause with the names whose value is "free", and one with those that are "given"."""
     for choice in ("free", "given"):
         names = [_NAMES.get(name, name) for name, value in stated.items() if value == choice]
         if names:

@@ -210,7 +210,7 @@ def _number_as_text(number: int | float) -> str:
 
 
 def _explained(text: str, error: UnreadableError, vocabulary: Vocabulary) -> ExpressionError:
-    """Return the error for a text that is refused before parsing."""
+    """Return the error for a text that is refused before it is parsed."""
     return explain(Failure(text, vocabulary, error, lambda _: None))
 
 
@@ -229,7 +229,7 @@ _memoized: Final = [lru_cache(maxsize=number)(_read) for number in _CACHED_TEXTS
 
 
 class _Reading:
-    """Reads a text, with a limited number of attempts to read repaired texts."""
+    """Reads a text, and tries a limited number of corrections if it is unreadable."""
 
     def __init__(self, options: ReadingOptions, attempts: int) -> None:
         self.options = options
@@ -245,7 +245,7 @@ class _Reading:
         return Expression(text, parsed.tree, parsed.notes, parsed.symbols, self.options)
 
     def repaired(self, text: str) -> str | None:
-        """Return ``text`` if it can be read, else its own repaired text, else None."""
+        """Return ``text`` if it can be read, else a suggested correction of it, else None."""
         if not self.attempts or len(text) > LIMITS.repaired:
             return None
         symbols = symbols_in(text)

@@ -47,8 +47,6 @@ _LONGEST_CACHED: Final = 500
 
 
 class _Count(NamedTuple):
-    """The number of symbols in a text, and the extra cost of expensive symbols."""
-
     symbols: int
     extra: int
 
@@ -90,14 +88,17 @@ def _by_words(text: str) -> _Count:
 
 
 def _of_numbers(text: str) -> int:
-    """Return the extra cost of functions of numbers such as cos(0.3)."""
+    """Return the extra cost of sines and other functions of a plain number, such as cos(0.3)."""
     if "n(" in text or "s(" in text:
         return _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text))
     return 0
 
 
 def _packed(word: str) -> int:
-    """Return the count of a word packed into one integer, so that counts can be summed at once."""
+    """Return the number of symbols in a word and their extra cost, packed into one integer.
+
+    So the counts of many words can be summed at once.
+    """
     # A fast path: numbers are the words that are new most often.
     symbols, extra = (1, 1) if _NUMBER.fullmatch(word) else _scanned(word)
     return symbols + _PACKED * extra

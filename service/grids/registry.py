@@ -69,7 +69,7 @@ def read_grid(text: str) -> Grid:
 def read_robot(text: str) -> RobotTable | None:
     """Return the DH table of the robot that a pasted script describes; None for any other text.
 
-    Raises GridError for a script whose table is not certain. Takes linear time.
+    Raises GridError for a script that does not determine the table. Takes linear time.
     """
     if describes_print(text) and not describes_robot(text):
         return read_print(_limited(text))

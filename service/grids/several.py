@@ -73,7 +73,10 @@ def read_grids(text: str) -> tuple[NamedGrid, ...]:
 
 
 def _is_made_later(each: NamedGrid, later: Sequence[NamedGrid]) -> bool:
-    """True if ``each`` is a formula whose value follows: ``A1 = trotz(q1)`` above ``A1 = […]``."""
+    """True if a later matrix has the same name, and ``each`` is only a formula for it.
+
+    ``A1 = trotz(q1)`` above ``A1 = […]`` is an example.
+    """
     name = each.name.text
     if not isinstance(each.grid, GridError) or each.grid.code != "no_grid" or not name:
         return False

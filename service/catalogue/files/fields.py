@@ -50,7 +50,10 @@ def _showable(text: str) -> str:
 
 
 def _as_sentence(value: object, checked: ValidatorFunctionWrapHandler) -> object:
-    """Return a valid text. A ``Sentence`` stays a ``Sentence``, so it can still be translated."""
+    """Return the validated text.
+
+    If it was a ``Sentence``, it stays one and can still be translated.
+    """
     text = checked(value)
     return value if isinstance(value, Sentence) and value == text else text
 

@@ -21,7 +21,10 @@ _SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
 
 
 def with_line(field: str, line: int | None) -> str:
-    """Return the text with which messages name a field and its line."""
+    """Return the field with its line, as in "points (line 12)".
+
+    Without a line, return the field.
+    """
     return field if line is None else say("{field} (line {line})", field=field, line=line)
 
 
@@ -88,7 +91,7 @@ class _LineFinder:
     def _keys(self, prefix: str, *, tables: bool = False) -> str:
         """Read a dotted key; return its path.
 
-        With ``tables``, the key of an array of tables means the array's last table so far.
+        With ``tables``, the key of an array of tables means the last table that was read.
         """
         path = prefix
         while match := _KEY.match(self._text, self._at):

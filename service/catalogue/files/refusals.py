@@ -86,7 +86,10 @@ def refusals(
 
 
 def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
-    """The reason why a value is refused; ``details`` has a finding for each possible type."""
+    """The reason why a value is refused.
+
+    If the value may have several types, ``details`` has a finding of pydantic for each type.
+    """
     known = [
         choice
         for detail in details
@@ -141,7 +144,7 @@ def _path(location: _Location) -> str:
 
 
 def _advised(detail: _Detail, table_at: TableAt) -> str:
-    """The message of a pydantic finding with advice."""
+    """The message of a pydantic finding, followed by advice how to correct the value."""
     reason = _message(detail)
     location: _Location = detail["loc"]
     last = location[-1] if location else ""
@@ -175,7 +178,7 @@ def _advised(detail: _Detail, table_at: TableAt) -> str:
 
 
 def _message(detail: _Detail) -> str:
-    """The message of a pydantic finding; for a validator's error, the error's own message."""
+    """The message of a pydantic finding, without advice."""
     if detail["type"] == "value_error":
         reason: str = detail["ctx"]["error"].args[0]
         return reason

@@ -32,7 +32,7 @@ TOOL_ROW = "e"
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One joint: its index (the label of its row), its variable and its type."""
+    """One joint: its index, variable and type. The index is also the label of its row."""
 
     index: int
     variable: str
@@ -46,7 +46,7 @@ class Joint:
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """A table of formulas in one convention; the rows after the joints' rows are fixed."""
+    """A DH table of formulas in one convention: a row for each joint, then fixed rows if any."""
 
     convention: Convention
     joints: tuple[Joint, ...]
@@ -54,7 +54,7 @@ class ReferenceTable:
 
     @property
     def lazy_rows(self) -> list[dict[str, str]]:
-        """The answer that needs no knowledge: the joint variables in their columns, and zeros."""
+        """The answer that needs no knowledge: joint variables in their columns, and 0 elsewhere."""
         rows = [dict.fromkeys(COLUMNS, "0") for _ in self.rows]
         for row, joint in zip(rows, self.joints, strict=False):
             row["d" if joint.prismatic else "theta"] = joint.variable
@@ -64,7 +64,8 @@ class ReferenceTable:
     def labels(self) -> tuple[str, ...]:
         """The row labels: joint numbers, and "e" for the fixed row after the last joint.
 
-        A standard table with a row "e" has two fixed rows in the modified convention, "e" and "e2".
+        When a standard table with a row "e" is rewritten in the modified convention, it gets two
+        fixed rows, "e" and "e2".
         """
         joints = tuple(str(joint.index) for joint in self.joints)
         fixed = (TOOL_ROW, f"{TOOL_ROW}2")

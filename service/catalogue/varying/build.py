@@ -1,4 +1,4 @@
-"""Exercises from the content of a file, with the values of a seed if the file has ``[vary]``."""
+"""Build an exercise from a file's content, with the values of a seed if the file has ``[vary]``."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,7 +11,7 @@ from service.catalogue.varying.vary import Vary
 
 
 def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
-    """Return the exercise of a file's content; if it has ``[vary]``, the exercise with no seed.
+    """Return the exercise of a file's content. If it has ``[vary]``, use the exercise's own values.
 
     Raises ValidationError or FieldError.
     """

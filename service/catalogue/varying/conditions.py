@@ -78,9 +78,9 @@ class Condition:
     right: Expression
 
     def holds(self, values: Mapping[str, NDArray[np.float64]], count: int) -> NDArray[np.bool_]:
-        """Return a mask ``(count,)`` of the draws that meet the condition.
+        """Return a mask ``(count,)`` that is True where the values meet the condition.
 
-        A draw with an undefined value does not meet the condition.
+        Undefined values do not meet it.
         """
         difference = np.broadcast_to(
             np.asarray(self.left.evaluate(values)) - np.asarray(self.right.evaluate(values)), count

@@ -82,9 +82,9 @@ class Vary:
         self.base_version = _digest({**graded, "vary": kept}, 6)
 
     def with_choices(self, table: Mapping[str, Any]) -> "Vary":
-        """Return this content with ``table``, an earlier ``[vary]``, but with the current version.
+        """Return this content with the table ``[vary]`` of an earlier version of the file.
 
-        If the texts need names that the table lacks, these names get the choices of the file.
+        If a text needs a name that the earlier table lacks, the name keeps its present choices.
         Raises FieldError if the texts do not fit even then.
         """
         try:
@@ -109,7 +109,7 @@ class Vary:
     def values(self, seed: str) -> Mapping[str, VaryValue]:
         """Return the value of each name for a seed. The seed "" gives the exercise's own values.
 
-        If no draw of the seed meets the conditions, the result is the exercise's own values, too.
+        A seed whose values never meet the conditions also gives the exercise's own values.
         """
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}
@@ -147,7 +147,7 @@ class Vary:
         return None
 
     def _meet(self, draws: Sequence[Mapping[str, int]]) -> NDArray[np.bool_]:
-        """Return a mask of the draws that meet all conditions."""
+        """Return a mask of the combinations of choices that meet all conditions."""
         values = {
             name: np.array([numbers[draw[name]] for draw in draws])
             for name, numbers in self._numbers.items()
@@ -176,7 +176,10 @@ class Vary:
                 return node
 
     def _written(self, place: str, values: Mapping[str, VaryValue], field: str) -> str:
-        """Return the text to replace ``{{place}}``: a name, a field of a group, or a formula."""
+        """Return the text that replaces ``{{place}}`` in the file.
+
+        ``place`` is a name, a field of a group of values, or a formula.
+        """
         place = place.strip()
         name, dot, key = place.partition(".")
         found = values.get(name)

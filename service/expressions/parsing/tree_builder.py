@@ -231,7 +231,7 @@ class Builder:
         return self._called(("FUNCTION", ("atan2", power), start, stop), (y, x), end)
 
     def _may_be_degrees(self, base: Node) -> bool:
-        """True if ``base`` consists of numbers, and is not the ten of 3*10^0."""
+        """True if ``base`` has only numbers. The ten of 3*10^0 does not count."""
         if type(base) is Number and base.literal == "10":
             times = ("*", "×", "·", "⋅", r"\cdot", r"\times")
             return not self.source[: base.start].rstrip().endswith(times)
@@ -298,7 +298,10 @@ class Builder:
 
 
 def _outside_calls(node: Node) -> Iterator[Node]:
-    """Yield the parts of ``node`` that are not inside a function other than abs."""
+    """Yield the nodes in ``node`` that are not an argument of a function.
+
+    Functions abs do not count.
+    """
     pending = [node]
     while pending:
         part = pending.pop()
@@ -308,7 +311,10 @@ def _outside_calls(node: Node) -> Iterator[Node]:
 
 
 def _names(node: Node) -> set[str]:
-    """Return the functions, and the last letters of symbols, in the first 64 parts of ``node``."""
+    """Return the names of functions in ``node``, and the last letter of each symbol.
+
+    Only the first 64 nodes are examined.
+    """
     found: set[str] = set()
     pending = [node]
     # The arguments of atan2 may be long and nested.

@@ -58,7 +58,7 @@ class Spelling:
         return self.names.get(symbol.name, symbol.name)
 
     def in_shorthand(self, call: Call) -> str | None:
-        """Return a sine or cosine of joint angles in shorthand, or None if it has no shorthand."""
+        """Return a sine or cosine of joint angles in shorthand such as c12; None if it has none."""
         if not self.shorthand or call.function not in ("sin", "cos"):
             return None
         joints = _added_joints(call.arguments[0])
@@ -115,10 +115,10 @@ def _added_joints(node: Node) -> list[int]:
 
 
 class Habits(NamedTuple):
-    """The spelling that one formula shows.
+    """How one formula writes angles, names and shorthand.
 
-    ``unit`` is how constant angles are written ("pi", "π", "deg", "°", ""), or None without such
-    angles. ``names`` maps canonical names of symbols to typed names.
+    ``unit`` is how it writes constant angles ("pi", "π", "deg", "°", ""), or None if it has none.
+    ``names`` maps canonical names of symbols to typed names.
     """
 
     unit: str | None
@@ -127,7 +127,7 @@ class Habits(NamedTuple):
 
 
 def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
-    """Return the spelling that one formula shows."""
+    """Return how a formula writes angles, names and shorthand."""
     has_shorthand = any(_is_short(node, formula) for node in _nodes(formula.tree))
     return Habits(_unit(formula), _names(formula, vocabulary), has_shorthand)
 

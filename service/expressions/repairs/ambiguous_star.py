@@ -1,4 +1,4 @@
-"""A star after a joint variable, which may be a marker or a product: k*q1*+s1."""
+"""A star after a joint variable that may mark the variable or be a product: k*q1*+s1."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.translations import say

@@ -1,4 +1,4 @@
-"""e, i and j, which are not constants here."""
+"""The letters e, i and j in a formula, where they are no constants."""
 
 import re
 

@@ -15,8 +15,8 @@ Repair = ExpressionError | None
 class Failure:
     """A text that could not be read, and the ``error`` that stopped the reader.
 
-    ``repaired`` tries another text. It returns this text if it is readable, else its own repaired
-    text, else None.
+    ``repaired`` is a function that tries another text. It returns that text if it is readable, else
+    a readable correction of it, else None.
     """
 
     __slots__ = ("cause", "details", "repaired", "source", "span", "vocabulary")
@@ -101,7 +101,7 @@ def error(
 
 
 def undeclared(failure: Failure) -> str:
-    """Return the sentence that says that the name at the failure is not declared."""
+    """Return a sentence which says that the unknown name is not declared."""
     name = quoted(failure.written)
     if failure.vocabulary.of_books:
         return say("There is no {name} here.", name=name)

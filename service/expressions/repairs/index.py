@@ -54,7 +54,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _of_shorthand(failure: Failure, name: str) -> str:
-    """Return the sentence on a shorthand whose index is in brackets: c[1], s(2)."""
+    """Return a sentence about a shorthand whose index is in brackets: c[1], s(2)."""
     written = quoted(failure.written)
     if failure.details["style"] == "[":
         return say(

@@ -11,7 +11,7 @@ _COMMAND = re.compile(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
 
 @for_causes("mismatch")
 def repair(failure: Failure) -> Repair:
-    """Name both brackets and their places; suggest the closing bracket that fits."""
+    """Name both brackets and say where they are. Suggest the closing bracket that fits."""
     opener, wanted = failure.details["opener"], failure.details["wanted"]
     first = quoted(failure.source[slice(*opener)])
     if wanted == CLOSE or failure.span[0] == failure.span[1]:

@@ -9,7 +9,7 @@ _BEFORE_VALUE = OPERATORS | {"LEFT", "OPEN", "COMMA", "TIGHT", "JOIN"}
 
 @for_causes("grammar", "ambiguous_unit")
 def repair(failure: Failure) -> Repair:
-    """Name the place of the missing value; suggest pi for PI()."""
+    """Say where a value is missing. Suggest pi for PI()."""
     before, terminal = failure.terminal(1), failure.terminal()
     if before and before not in _BEFORE_VALUE:
         return None

@@ -9,7 +9,7 @@ OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})
 
 @for_causes("grammar")
 def repair(failure: Failure) -> Repair:
-    """Suggest the text before the operator."""
+    """Suggest the text without the operator."""
     if failure.terminal() != END or failure.terminal(1) not in OPERATORS:
         return None
     start, end = span = failure.place(1)

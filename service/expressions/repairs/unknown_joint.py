@@ -44,7 +44,7 @@ def repair(failure: Failure) -> Repair:
 
 
 def _place(failure: Failure, goes_on: bool) -> Span:
-    r"""Return the place of the name alone: \theta_{12} in \theta_{12}\cos."""
+    """Return the span of the unknown name, without a function that follows it directly."""
     start, end = failure.span
     found = _AS_TYPED.match(failure.source, start, end) if goes_on else None
     return (start, found.end()) if found else (start, end)

@@ -55,7 +55,10 @@ def _written(piece: Piece, run: str) -> str:
 
 
 def _names(name: str, vocabulary: Vocabulary) -> str:
-    """Return a sentence that lists names: those with this letter, else of this kind, else all."""
+    """Return a sentence that lists the names which the student may mean.
+
+    These are the names with the same letter, else those of the same kind, else all names.
+    """
     siblings = _siblings(name, vocabulary)
     if name in _OF_JOINTS:
         siblings = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]
@@ -79,7 +82,7 @@ def _all_names(symbols: list[Symbol], vocabulary: Vocabulary) -> str:
 
 
 def _names_of_kind(kind: Kind, constants: list[Symbol], vocabulary: Vocabulary) -> str:
-    """Return a sentence on the lengths or the angles that are not joint variables."""
+    """Return a sentence that lists the lengths or the angles which are not joint variables."""
     names = _joined(constants)
     if vocabulary.of_books:
         if kind == "length":

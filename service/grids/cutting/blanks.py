@@ -27,7 +27,10 @@ _MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 
 @dataclass(frozen=True, slots=True)
 class BlankSeparated:
-    """The elements of a row. ``signs`` are the words with a sign (-s1) that begin an element."""
+    """The elements of a row.
+
+    ``signs`` are the words such as -s1 that were read as a new element because of their sign.
+    """
 
     elements: tuple[SourceText, ...]
     signs: tuple[SourceText, ...]

@@ -80,7 +80,7 @@ def too_many_rows(whole: Span, found: int | None = None) -> GridError:
 
 
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
-    """Return the grid of tidied cells, without empty rows and empty outer columns.
+    """Return a grid of these rows. Tidy its cells; leave out empty rows and empty outer columns.
 
     Raises GridError if all cells are empty or the grid exceeds ``GRID_LIMITS``.
     """
@@ -123,7 +123,10 @@ def tidy(cell: GridCell) -> GridCell:
 
 
 def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
-    """Return the rows without empty last columns and, if equally long, without empty first ones."""
+    """Remove empty columns at the end of the rows.
+
+    If all rows have the same length, remove empty columns at the beginning, too.
+    """
     while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
         widest = max(map(len, rows))
         rows = [row[:-1] if len(row) == widest else row for row in rows]

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class GridLimits:
-    """Bounds on one pasted text. ``rows`` is twelve rows and a header.
+    """Bounds on one pasted text. ``rows`` allows twelve rows and a header.
 
     ``separators`` bounds the number of commas, bars, tabs, line ends and the like in the text,
     including those between empty cells of a spreadsheet.

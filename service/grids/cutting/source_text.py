@@ -71,13 +71,16 @@ class SourceText:
         return [*pieces, self.cut(start, len(self.text))]
 
     def spelled(self, text: str) -> "SourceText":
-        """Return ``text`` as a piece; each character has the place of this whole piece."""
+        """Return a piece with another ``text``.
+
+        Each of its characters has the place of this whole piece.
+        """
         start, end = self.whole
         return SourceText(text, (start,) * len(text), (end,) * len(text), start)
 
 
 def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
-    """Return the pieces joined into one; ``at`` is the place of an empty result."""
+    """Join the pieces into one. ``at`` is the place of the result if it is empty."""
     kept = [piece for piece in pieces if piece.text]
     if len(kept) == 1:
         return kept[0]

@@ -52,7 +52,6 @@ def _cell(
 
 
 def _end(plain: re.Pattern[str], text: str, start: int) -> int:
-    """Return the place after the plain characters that begin at ``start``."""
     found = plain.match(text, start)
     return found.end() if found else start
 

@@ -162,7 +162,10 @@ def _raise_or_lower(source: SourceText, table: _Table, name: str, start: int, en
 
 
 def _text(source: SourceText, table: _Table, start: int) -> int:
-    """Process an entity, or the text before the next tag or entity; return the place reached."""
+    """Read the text up to the next tag or entity, or one entity.
+
+    Return the end of what was read.
+    """
     text = source.text
     if entity := _ENTITY.match(text, start):
         end = entity.end()

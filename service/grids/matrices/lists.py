@@ -20,7 +20,7 @@ _COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMat
 
 
 def lines_of(content: SourceText) -> list[SourceText] | None:
-    """Return the contents of each bracket; None if ``content`` is not a list of lists.
+    """Return the content of each inner bracket; None if ``content`` is not a list of lists.
 
     Raises GridError for unbalanced brackets, and for more brackets than a grid may have rows.
     """

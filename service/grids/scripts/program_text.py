@@ -94,7 +94,7 @@ def without_title(source: SourceText) -> SourceText:
 
 
 def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
-    """Return the matrix in a text; at most ``calls`` nested calls are around the matrix.
+    """Return the matrix in a text. At most ``calls`` function calls may enclose it.
 
     Raises GridError if brackets are unbalanced, or if there is other text beside the matrix.
     """
@@ -172,9 +172,9 @@ def _remark_end(text: str, start: int, last: int) -> int:
 
 
 def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
-    """Return the place where a matrix begins, and the call around the matrix, if any.
+    """Return the position where a matrix begins, and the function call around the matrix or None.
 
-    Return None if the text has no matrix.
+    Return None instead of both if the text has no matrix.
     """
     at = after_names(text)
     at += len(text[at:]) - len(text[at:].lstrip())

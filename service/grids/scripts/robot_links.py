@@ -91,8 +91,8 @@ Vector = Callable[[SourceText], Sequence[SourceText] | None]
 def read_link(source: SourceText, vector: Vector) -> RobotLink | None:
     """Return the link that a call makes; None for any other text.
 
-    ``vector`` returns the values of a row in brackets or of a named row. Raises GridError if the
-    row of the link is not certain.
+    ``vector`` is a function that finds the values of a row, in brackets or by its name. Raises
+    GridError if the text does not determine the row of the link.
     """
     call = split_call(source)
     if call is None or call[0] not in _CLASSES:

@@ -194,7 +194,7 @@ class _Script:
                 self.given.append(GivenValue(name, value.text, statement))
 
     def _alters(self, text: str) -> bool:
-        """True if a statement changes known links in a way that this class does not process."""
+        """True if a statement may change known links, but this class cannot tell how."""
         found = _ALTERED.match(text)
         return found is not None and (found["name"] or found["deleted"]) in self.names.links
 
@@ -313,7 +313,10 @@ class _Script:
 
 
 def _number(found: re.Match[str]) -> int | None:
-    """Return the number of the link in ``L(2) = `` (from 1), or 0 for the next number."""
+    """Return the number of the link, from 1, in ``L(2) = ``.
+
+    Return None without brackets, and 0 if the index is not a number (the link is the next one).
+    """
     index = found["index"]
     if index is None:
         return None
