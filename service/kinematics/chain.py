@@ -88,8 +88,9 @@ def z_links(rows: Table) -> Matrices:
 def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Matrices:
     """Return the frames on the joint axes and the last frame: ``(rows + 1, ..., 4, 4)``.
 
-    If ``wanted`` is the standard convention, these frames are before each row's Z, that is Rot_z(θ)
-    Trans_z(d); if it is the modified one, after Z. The table may be in either convention.
+    The frame of a joint is placed by the convention ``wanted``: before Rot_z(θ) Trans_z(d) of its
+    row in the standard convention, after it in the modified one. The table may be in either
+    convention.
     """
     reached = frames(table, convention)
     if wanted is convention is Convention.STANDARD:

@@ -73,7 +73,7 @@ class Factors:
 
     @cached_property
     def inverse_after(self) -> Matrices:
-        """The inverses of ``after``."""
+        """The inverses of the products of the factors from the k-th on: ``(K + 1, L, 4, 4)``."""
         return inverse(self.after)
 
     def around(self, factor: int) -> tuple[Matrices, Matrices]:

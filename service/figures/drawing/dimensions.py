@@ -20,7 +20,7 @@ _PLAIN_ANGLE = 0.5
 
 
 class Drawing(NamedTuple):
-    """The SVG of a dimension: the part drawn below the mechanism, and the part above it."""
+    """The SVG of a dimension line: what the mechanism may cover, and what is drawn over it."""
 
     below: list[str]
     above: list[str]

@@ -53,7 +53,7 @@ def mechanism_solids(
 
 
 def joint_solid(sheet: Sheet, centre: Numbers, axis: Numbers, fill: str, *, slides: bool) -> Solid:
-    """Return the solid of a joint, and draw the joint axis below the solid."""
+    """Return the solid of a joint, and draw the joint axis behind it."""
     camera, size = sheet.camera, sheet.size
     half, radius = JOINT_LENGTH / 2 * size, JOINT_RADIUS * size
     ends = centre + np.array([[-1.0], [1.0]]) * (half + _AXIS_BEYOND * size / 2) * axis

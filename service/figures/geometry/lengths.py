@@ -62,7 +62,7 @@ def _decimals(statement: str) -> dict[str, float]:
 
 
 def _stated(step: Numbers, numbers: Mapping[str, float]) -> str | None:
-    """Return the spelling of the number that is a piece's constant length, or None."""
+    """Return the number in the statement that is the constant length of a piece, or None."""
     length = np.linalg.norm(step, axis=1)
     return next((text for text, n in numbers.items() if np.abs(length - n).max() < _EXACT), None)
 

@@ -155,7 +155,7 @@ def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableM
 
 
 def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
-    """Return the track with the largest parts for which there is enough room.
+    """Return the track in which the joints are drawn as large as the room on their axes allows.
 
     If possible, the first joint stands on the ground at the origin, so that no column below the
     origin suggests a length.
@@ -276,10 +276,7 @@ class _Track:
 
     @property
     def _across(self) -> NDArray[np.bool_]:
-        """True for joints that a link reaches from the side, where their own piece begins.
-
-        False if the previous joint can only be at the same place.
-        """
+        """True for joints that a link reaches from the side."""
         only = np.where(np.ptp([self.first, self.last], axis=0) > _SAME, -np.inf, self.last)
         before = np.concatenate([[-np.inf], only[:-1]])
         return np.asarray(self.first > self.own[:, 0] - _SAME) & (before < self.own[:, 0] - _SAME)

@@ -67,9 +67,9 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_])
 
 
 def _known_to_first(joints: int) -> NDArray[np.bool_]:
-    """Return a mask ``(n, 2 n + 1)``, whose row k shows what is known if k + 1 axes are known.
+    """Return a mask ``(n, 2 n + 1)``; row k is True for what the first k + 1 axes determine.
 
-    The columns are the n directions, the n points, and an arbitrary x, which is always known.
+    The columns are the n directions, the n points, and an arbitrary x, which is always True.
     """
     first = np.tri(joints, dtype=np.bool_)
     return np.concatenate([first, first, np.ones((joints, 1), np.bool_)], axis=1)

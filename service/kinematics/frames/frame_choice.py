@@ -60,10 +60,11 @@ _Path = tuple[tuple[Numbers, Matrices], ...]
 
 @dataclass(frozen=True, slots=True)
 class _Beam:
-    """H hypotheses: relative poses ``(H, L, 4, 4)``, costs ``(H,)`` and the paths to them.
+    """The H hypotheses of the search: relative poses ``(H, L, 4, 4)``, costs and paths.
 
-    ``lost`` ``(H,)`` are the units of marks that the hypotheses lose. ``begun`` has the counts of
-    the table row whose a and α, but not yet d and θ, have been compared.
+    ``lost`` ``(H,)`` counts the cells for which the student loses points. If only a and α of a
+    table row have been compared yet, ``begun`` counts the wrong, unread and nonzero cells among
+    these two.
     """
 
     pose: Matrices
@@ -217,7 +218,7 @@ def _counts(
     *,
     free_angle: bool,
 ) -> tuple[_RowCounts, _RowCounts]:
-    """Return the counts for the cells a and α, and for the cells d and θ, of N rows."""
+    """Count wrong, unread and nonzero cells in N rows: first among a and α, then among d and θ."""
     of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
     of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
     # A constant beside a wrong joint variable does not count.

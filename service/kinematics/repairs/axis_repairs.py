@@ -108,7 +108,7 @@ def _turns(
 
 
 def _turn(u: Numbers, v: Numbers, axes: Integers) -> tuple[Numbers, NDArray[np.bool_]]:
-    """Return the turns ``(K, n, L)`` from ``u`` to ``v`` ``(K, n, L, 3)``, and which exist."""
+    """Return the turns ``(K, n, L)`` from ``u`` to ``v``, and a mask of the turns that exist."""
     k = np.arange(len(axes))
     one, two = (axes + 1) % 3, (axes + 2) % 3
     u1, u2, v1, v2 = (w[k, :, :, across] for w in (u, v) for across in (one, two))

@@ -20,5 +20,5 @@ def answer(part: PositionSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(part: PositionSpec, _exercise: Exercise) -> list[object]:
-    """Return zeros for all coordinates."""
+    """Return the answer that needs no knowledge: all coordinates are 0."""
     return [["0"] * len(part.coordinates)]
