@@ -98,7 +98,8 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
             yield Example(name, given, "degrees" if unit else "radians")
     for each in _written()["answers"]:
         unit = each.get("angle_unit", "radians")
-        yield Example(each["exercise"], {each["part"]: each["answer"]}, unit)
+        given = each["answers"] if "answers" in each else {each["part"]: each["answer"]}
+        yield Example(each["exercise"], given, unit)
     for exercise in catalogue.values():
         for check in exercise.checks:
             yield Example(exercise.id, check.answers, check.angle_unit)
