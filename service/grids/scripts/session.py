@@ -26,7 +26,8 @@ _ASKED: Final = re.compile(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?!
 def session_outputs(source: SourceText, *, named: bool = False) -> SourceText:
     """Return the outputs of a session, and the matrices in inputs that have no output.
 
-    With ``named``, an input that is only a name becomes a line with this name above the output.
+    With ``named``, the name in an input such as ``A1`` or ``simplify(A1)`` becomes a line above the
+    output.
     """
     marks = list(_MARK.finditer(source.text))
     if not marks:

@@ -62,9 +62,9 @@ _Path = tuple[tuple[Numbers, Matrices], ...]
 class _Beam:
     """The H hypotheses of the search: relative poses ``(H, L, 4, 4)``, costs and paths.
 
-    ``lost`` ``(H,)`` counts the cells for which the student loses points. If only a and α of a
-    table row have been compared yet, ``begun`` counts the wrong, unread and nonzero cells among
-    these two.
+    ``lost`` ``(H,)`` are the marks that the student loses: 1 for each wrong or unread cell, with a
+    limit for each row. If only a and α of a table row have been compared yet, ``begun`` counts the
+    wrong, unread and nonzero cells among these two.
     """
 
     pose: Matrices
