@@ -50,7 +50,7 @@ UNREAD = WRONG_CELL / 10
 
 @dataclass(frozen=True, slots=True)
 class NearestTable:
-    """The table nearest to a submitted table that describes the robot.
+    """The valid table, which describes the robot, that is nearest to the submitted table.
 
     ``frames`` ``(joints, samples, 4, 4)`` are the frames of the valid table on the joint axes, as
     seen from the reference's frames. ``cost`` is explained in ``frame_choice``; if it is below 1,
