@@ -123,12 +123,12 @@ def imports() -> Mapping[str, frozenset[str]]:
 
 
 def room(module: str, house: str) -> str:
-    """Return the name of the module or package directly below ``house`` that contains a module."""
+    """Return the part of a module's dotted name that follows the package ``house``."""
     return module.removeprefix(f"{house}.").partition(".")[0]
 
 
 def against_the_order(place: Mapping[str, int], house: str) -> list[str]:
-    """Return the imports below ``house`` by which a package imports another of a higher place."""
+    """Return the imports in ``house`` by which a package imports one that is later in the order."""
     return [
         f"{module} imports {target}"
         for module, targets in imports().items()

@@ -172,7 +172,7 @@ def test_no_verdict_depends_on_the_draw(
 
 @pytest.mark.parametrize("blanks", range(20))
 def test_no_verdict_depends_on_blanks(blanks: int, arm: Exercise) -> None:
-    """0.051 has two figures, so it is not 0.05; whole turns of q2 must not hide that."""
+    """0.051 is wrong for 0, and stays wrong if blanks are added to another cell."""
     rows = [*ROWS[:1], ["0", "pi", "1000" + " " * blanks, "q2 + 0.051"]]
     assert list(not_correct(graded_table(arm, rows))) == [("2", "theta")]
 
@@ -233,7 +233,7 @@ def test_a_wrong_short_length_is_found_beside_a_long_one(
 def test_decimals_beyond_the_limit_count_as_written(
     behind: bool, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """A table with two right rows and ten rows of four decimals is graded, as wrong."""
+    """Two correct rows and ten rows of random decimals are graded, and do not get full marks."""
     garbage = [("0.371", "0.613", "0.829", "1.273")] * 10
     right = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
     rows = [*right, *garbage] if behind else [*garbage, *right]

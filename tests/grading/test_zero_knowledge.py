@@ -44,7 +44,7 @@ def padded(rows: Rows) -> Iterator[Rows]:
 
 
 def dressed_up(rows: Rows) -> Iterator[Rows]:
-    """Yield the rows with numbers added that may cancel each other, or with all signs changed."""
+    """Yield the rows with d or θ raised and lowered in turn, or with all signs changed."""
     for column in ("d", "theta"):
         for first in range(len(rows) - 1):
             changed = [dict(row) for row in rows]
@@ -112,7 +112,7 @@ def sliding(exercise: Exercise) -> list[list[str]]:
 
 
 def best_of(part: PartSpec, exercise: Exercise) -> float:
-    """Return the largest share of a part that one answer without knowledge earns alone."""
+    """Return the largest share of a part's points that an answer without knowledge earns."""
     graded = (
         grade(exercise, Submission({part.id: answer}))
         for answer in without_knowledge(part, exercise)
@@ -126,7 +126,7 @@ def best_of(part: PartSpec, exercise: Exercise) -> float:
 
 
 def best_together(exercise: Exercise) -> dict[str, float]:
-    """Return each part's largest share if all parts get answers without knowledge at once."""
+    """Answer all parts without knowledge; return the largest share of points for each part."""
     best = dict.fromkeys((part.id for part in exercise.parts), 0.0)
     answers = {part.id: without_knowledge(part, exercise) for part in exercise.parts}
     for k in range(0, max(map(len, answers.values())), 2):
@@ -172,7 +172,7 @@ def test_the_given_transform_is_not_its_own_inverse(catalogue: Mapping[str, Exer
 
 
 def slips(exercise: Exercise, part: PartSpec) -> Iterator[tuple[float, float]]:
-    """Yield two shares for each cell of the table: the cost of a slip, and the worth of its row."""
+    """For each cell, yield the points that a slip costs and those of its row, as shares."""
     right: Any = solve(exercise).answers[part.id]
     for i, row in enumerate(right["rows"]):
         for column in ZERO_ROW:

@@ -89,7 +89,7 @@ def test_prairielearn_gets_a_valid_result(
 
 
 def check_question(question: Path, image: Path) -> None:
-    """Check that the question uses the image and shows the statement; check the image's files."""
+    """Check that a PrairieLearn question shows the statement, and that its image can be built."""
     info = json.loads((question / "info.json").read_text(encoding="utf-8"))
     assert info["gradingMethod"] == "External"
     options = info["externalGradingOptions"]

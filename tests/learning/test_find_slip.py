@@ -82,7 +82,7 @@ def elsewhere(drawn: DrawnSlip, count: int) -> Iterator[tuple[int, int]]:
 
 
 def covers_all(drawn: DrawnSlip, count: int) -> bool:
-    """True if each cell is wrong, or has two wrong cells in its row or column.
+    """True if every cell is wrong, or lies in a row or column with two or more wrong cells.
 
     Then the student may mark all rows at once.
     """

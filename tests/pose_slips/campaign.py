@@ -126,7 +126,7 @@ def _is_same(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def outcome(report: PartReport, slip: TableSlip, *, alone: bool) -> str:
-    """Return whether and how the report names the slip."""
+    """Return "named" if the report has one message, about this slip; else what it has instead."""
     if report.verdict is Verdict.UNREADABLE:
         return "unread"
     said = [m for m, _, _ in messages_of(report) if m.severity is Severity.ERROR]

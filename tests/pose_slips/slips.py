@@ -16,10 +16,10 @@ A, ALPHA, D, THETA = range(4)
 
 @dataclass(frozen=True)
 class TableSlip:
-    """A wrong cell: its row, its column, its content, and the codes of the slip.
+    """A slip: the row, column and wrong formula of a cell, or a whole wrong table (``rows``).
 
-    ``joint`` is the number of the row's joint; for a fixed row, the number of the last joint.
-    ``label`` is the label of the row. If ``rows`` is set, the slip is a whole wrong table.
+    A message with one of ``codes`` names the slip. ``joint`` is the number of the row's joint; for
+    a fixed row, it is the number of the last joint. ``label`` is the label of the row.
     """
 
     row: int

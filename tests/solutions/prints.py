@@ -1,4 +1,4 @@
-"""Submit model solutions as programs print them: one matrix, or all link transforms in one text.
+"""Submit model solutions in the notation of other programs: one matrix, or all link transforms.
 
 ``python -m tests.solutions.prints`` submits all of them, ``test_printers`` a sample. Printers that
 SymPy lacks are written here; they imitate the programs.
@@ -252,7 +252,7 @@ IN_BRACKETS: Mapping[str, Join] = {
 
 
 class Print(NamedTuple):
-    """A printed model answer, which must get full marks in a part of an exercise."""
+    """A model answer as another program prints it. It must get full marks."""
 
     exercise: str
     part: str
@@ -283,9 +283,9 @@ def matrices(exercise: Exercise) -> Iterator[tuple[str, list[sp.Matrix]]]:
 
 
 def ways_around(name: str) -> Mapping[str, Callable[[str], str]]:
-    """Return the ways to put text around one matrix.
+    """Return functions that put text around a matrix, such as a name or a product in front of it.
 
-    A matrix that is drawn over several lines must begin on a new line.
+    A matrix that is drawn over several lines must begin on a new line; it gets fewer functions.
     """
     left_out = {"named", "product"} if name in DRAWN else set()
     return {way: AROUND[way] for way in AROUND if way not in left_out}
@@ -334,7 +334,7 @@ _RIGHTLY_REFUSED = {
 
 
 def refused(each: Print, exercise: Exercise) -> str:
-    """Return why a print gets no full marks; "" if it gets them, or is refused on purpose."""
+    """Return why a printed answer gets no full marks, or "" if it gets them or may be refused."""
     text = each.text
     report = part(handed_in(exercise, {each.part: text}), each.part)
     codes = {message.code for message in report.feedback}

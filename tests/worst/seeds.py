@@ -14,7 +14,7 @@ LONG_TABLE = ["=", "=", "=", {}, "=", ["0^-1", "sqrt(q1)", "theta1", "atan2(0,0)
 
 
 def halves(i: int, runs: int = 6) -> str:
-    """Return an unreadable text, different for each ``i``, that a repair almost makes readable."""
+    """Return an unreadable text that looks repairable but is not. Each ``i`` gives another text."""
     return "//".join([HALVES] * runs) + str(i)
 
 

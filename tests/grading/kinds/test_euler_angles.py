@@ -189,7 +189,7 @@ def test_the_angles_of_another_sequence_are_named(make_exercise: Make) -> None:
 def test_the_nearest_triple_keeps_two_of_three_angles(
     sequence: str, fixed: bool, angles: tuple[float, float, float], slipped: int
 ) -> None:
-    """If two angles are correct, they stay correct, whichever triple the rotation itself gives."""
+    """If one of three angles is wrong, the nearest correct triple keeps the other two angles."""
     name = sequence.lower() if fixed else sequence
     rotation = Rotation.from_euler(name, angles).as_matrix()[None]
     written = np.array(angles)[:, None].copy()

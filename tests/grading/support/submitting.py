@@ -65,7 +65,7 @@ def codes(cell: CellReport) -> list[str]:
 
 
 def codes_at(report: PartReport, row_label: str, cell_label: str) -> list[str]:
-    """Return the codes of the messages on a cell, in the cell or in the part."""
+    """Return the codes of all messages in the report that are about this cell."""
     return [
         message.code
         for message, places, _ in messages_of(report)

@@ -177,7 +177,7 @@ class Thief:
 
 
 def worth(report: PartReport) -> tuple[float, int]:
-    """Return the thief's measure of success: the points, and the number of correct cells."""
+    """Return the points and the number of correct cells, by which the thief measures success."""
     cells = [cell.verdict for row in report.rows for cell in row.cells]
     return report.points, cells.count(Verdict.CORRECT)
 
@@ -194,7 +194,7 @@ def thief(exercise: Exercise, part: PartSpec, level: FeedbackLevel, grid: Grid) 
 
 
 def lazy(exercise: Exercise, part: PartSpec) -> Grid:
-    """Return the lazy answer: a table of bare joint variables and zeros, the identity, or zeros."""
+    """Return an answer without knowledge: joint variables and zeros, the identity, or zeros."""
     sheet = sheet_of(part, exercise)
     grid = sheet.filled("0")
     if part.kind == "dh_table":

@@ -8,12 +8,12 @@ from tests.grading.support.robots import Robot
 
 
 def worth_of_rows(robot: Robot) -> list[float]:
-    """Return the worth of each row: 1 for each cell that needs knowledge, and 0.2 for the row."""
+    """Return a weight for each row: 0.2, and 1 for each cell that a student must know."""
     return [0.2 + sum(is_known(robot, i, j) for j in range(4)) for i in range(len(robot.rows))]
 
 
 def is_known(robot: Robot, row: int, column: int) -> bool:
-    """True if the cell needs knowledge: it is neither 0 nor the bare joint variable."""
+    """True if the cell is neither 0 nor only the joint variable, so that a student must know it."""
     cell = robot.rows[row][column]
     return cell != "0" and not cell.endswith("*")
 
@@ -34,8 +34,8 @@ UNREAD = {"stanford-arm": 0.25, "scara": 0.25, "rrrp": 0.25, "planar-rrr": 0.5}
 def points(robot: Robot, wrong: Iterable[int], unread: Iterable[int] = ()) -> list[float]:
     """Return the points of each row of a table.
 
-    ``wrong`` has the row of each cell that costs a unit. ``unread`` has the rows in which other
-    cells were not read.
+    ``wrong`` has the row number of each wrong cell. ``unread`` has the numbers of rows in which a
+    cell that is 0 or only the joint variable was not read.
     """
     wrong, unread, name = list(wrong), set(unread), robot.exercise
     worth = [

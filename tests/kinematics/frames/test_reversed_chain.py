@@ -48,7 +48,7 @@ OFFSETS = z_links(cells_of(REFERENCE)[1:])
 
 
 def seen_from_tool(table: Rows) -> tuple[float, Numbers]:
-    """Return the cost and the rows of the nearest valid table, searched for from the tool."""
+    """Search for the nearest valid table from the tool to the base; return its cost and rows."""
     targets = reversed_targets(TARGETS, OFFSETS)
     match = nearest_table(reversed_rows(rows_of(table)), targets, 0.5)
     return match.cost, -reversed_cells(match.rows)

@@ -35,8 +35,8 @@ REQUESTS: Final[Mapping[str, tuple[int, float]]] = {
 class Waits:
     """The waits in seconds for responses to hand-ins in the last hour, and the greatest load.
 
-    ``busiest`` is the processor time that requests of the busiest minute need, as a share of what
-    all processes have in a minute.
+    ``busiest`` is the load of the processes in the busiest minute: 1 means that all are busy for
+    the whole minute.
     """
 
     median: float

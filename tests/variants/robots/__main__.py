@@ -1,7 +1,7 @@
 """The campaign of generated robots: ``python -m tests.variants.robots --seeds 10000 --level 1``.
 
-A robot is not dealt if zeros and joint variables earn more than a quarter of its points. The
-campaign counts such robots.
+Students never get a robot if a table of zeros and joint variables earns more than a quarter of its
+points. The campaign counts such robots.
 """
 
 import argparse

@@ -85,9 +85,9 @@ def is_the_robot_of_its_statement(exercise: Exercise, seed: int) -> bool:
 
 
 def form(exercise: Exercise) -> tuple[object, ...]:
-    """Return the axes and the tool at home as numbers, equal for robots that differ in sizes only.
+    """Return axes and tool at home as numbers. They are equal if robots differ only in lengths.
 
-    The n-th length that the statement names counts as √(n + 1).
+    For this, the n-th length that the statement names gets the value √(n + 1).
     """
     words = exercise.statement
     names = re.findall(r"(?<![\w.{])(?:[adh]\d+|\d+\.\d+|[1-9]\d*)(?![\w.}°])", words)
@@ -112,7 +112,7 @@ def share(exercise: Exercise, answer: object) -> float:
 
 
 def model_share(exercise: Exercise, *, solved: bool) -> float:
-    """Return the share that the model solution earns (slow), or else the table that was drawn."""
+    """Return the share of points for the model solution if ``solved``, else for the known table."""
     if solved:
         return share(exercise, solve(exercise).parts[0].answer)
     rows = [dict(zip(("a", "alpha", "d", "theta"), row, strict=True)) for row in cells(exercise)]
@@ -120,7 +120,7 @@ def model_share(exercise: Exercise, *, solved: bool) -> float:
 
 
 def lazy_share(exercise: Exercise) -> float:
-    """Return the largest share that a lazy answer earns."""
+    """Return the largest share of points for an answer of only zeros and joint variables."""
     return max(lazy_shares(exercise).values())
 
 

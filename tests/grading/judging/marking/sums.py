@@ -1,8 +1,8 @@
 """``python -m tests.grading.judging.marking.sums --answers 1000``: check that points add up.
 
 Submit random wrong answers to every part of every shipped exercise, or with ``--tables`` only to
-the tables. Check three things: the points of the rows add up to the points of the part, the lost
-points are the missing points, and all points are multiples of a quarter or a hundredth.
+the tables. Check that the points of the rows add up to the points of the part, that earned and lost
+points together are the maximum, and that all points are multiples of 0.25 (tables) or of 0.01.
 """
 
 import argparse
