@@ -129,12 +129,15 @@ def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     unlike="l2, 0, l1, q1 ↵ l3, 180deg, 0, q2 ↵ q3, l4, 0, 0 ↵ 0, 0, q4, 0",
 )
 def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
-    """One of the columns has the wrong sign in all rows."""
+    """One of the columns has the wrong sign in all rows, with or without its joint variables."""
     for column in range(len(COLUMNS)):
+        constants, motion = table.constants.copy(), table.motion.copy()
+        constants[:, column] *= -1
+        motion[:, column] *= -1
         if table.constants[:, column].any():
-            constants = table.constants.copy()
-            constants[:, column] *= -1
             yield Repaired(table.changed(constants), partial(_turned_sign, column))
+        if table.motion[:, column].any():
+            yield Repaired(table.changed(constants, motion), partial(_turned_sign, column))
 
 
 def _turned_sign(column: int) -> Finding:

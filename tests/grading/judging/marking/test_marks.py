@@ -7,8 +7,8 @@ import pytest
 from service.catalogue import Exercise
 from service.grading import CellReport, PartReport, RowReport, Verdict
 from service.grading.lost_points import lost_in_row
-from tests.grading.support.robots import EXACT, SCARA, STANFORD, Row
-from tests.grading.support.submitting import graded_table
+from tests.grading.support.robots import COLUMNS, EXACT, SCARA, STANFORD, Row
+from tests.grading.support.submitting import graded_table, not_correct
 from tests.grading.support.worth import worth_of_rows
 
 # Content cells of the SCARA, by hand: a1; a2 and the half turn; none; d4. Each row has a fifth
@@ -35,6 +35,19 @@ def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exerc
     assert codes(report) == ["column_sign"]
     assert report.points == pytest.approx(12 * 3 / 4)
     assert sum(row.points for row in report.rows) == pytest.approx(9, abs=1e-5)
+
+
+@pytest.mark.parametrize(("column", "rows"), [("d", "236"), ("theta", "12456")])
+def test_the_wrong_sign_of_a_column_with_joint_variables_is_charged_once(
+    column: str, rows: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    """The signs of all offsets or angles are wrong, those of the joint variables included."""
+    j = COLUMNS.index(column)
+    turned = [(int(i) - 1, j, f"-({EXACT.rows(STANFORD)[int(i) - 1][j]})") for i in rows]
+    report = graded_table(catalogue[STANFORD.exercise], stanford(*turned))
+    assert codes(report) == ["column_sign"]
+    assert set(not_correct(report)) == {(row, column) for row in rows}
+    assert report.points == pytest.approx(12 * 3 / 4)
 
 
 def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> None:
