@@ -201,11 +201,15 @@ def exchanged_columns(one: int, other: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two rows are exchanged, or all rows are in reverse order."""
+    """Two rows are exchanged, or all rows are in reverse order, with or without the last row."""
     rows = range(len(table.constants))
     exchanges = [{i: j, j: i} for i, j in combinations(rows, 2)]
     orders = [[exchange.get(row, row) for row in rows] for exchange in exchanges]
-    for order in [*orders, list(reversed(rows))] if len(rows) > 2 else orders:
+    if len(rows) > 2:
+        orders.append([*reversed(rows)])
+    if len(rows) > 3:
+        orders.append([*reversed(rows[:-1]), rows[-1]])
+    for order in orders:
         repaired = table.changed(table.constants[order], table.motion[order])
         yield Repaired(repaired, partial(_reordered, order))
 

@@ -176,6 +176,13 @@ def test_the_pairs_are_in_the_order_of_ranks() -> None:
     ]
 
 
+def test_rows_in_reverse_order_are_found_if_the_last_row_is_in_its_place() -> None:
+    """As in a modified table, where the row of the tool stays at the end."""
+    table = right()
+    table[:-1] = table[-2::-1].copy()
+    assert codes(wrong(table), combine=False) == ["row_order"]
+
+
 def test_two_misconceptions_are_found_together() -> None:
     both = wrong(in_modified_rows(with_angles(right(), 180 / np.pi)))
     assert codes(both, combine=True) == ["other_convention", "degrees_as_radians"]
