@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 
 from service.catalogue import Exercise
-from service.grading import Submission, grade
+from service.grading import Submission, Verdict, grade
 from tests.grading.support.robots import SCARA, Row
 from tests.grading.support.submitting import graded_table
 
@@ -42,6 +42,23 @@ def test_equal_rows_are_told_apart(catalogue: Mapping[str, Exercise]) -> None:
     report = graded_table(exercise, [*rows[:3], rows[2], rows[3]])
     [message] = [each.message for each in report.feedback if each.code == "rows_matched"]
     assert message == "Your rows were compared in this way: row 5 with joint 4."
+
+
+def test_a_length_put_in_twice_is_an_extra_row(catalogue: Mapping[str, Exercise]) -> None:
+    """Without row 5 the table is right, so no cell is wrong, and the row costs a unit of 2 points.
+
+    The four rows have 3 units, 2 points each, and half a point for each row (docs/marks.md).
+    """
+    exercise = catalogue["planar-rrr"]
+    reference = exercise.robot.tables[exercise.robot.convention]
+    rows = [[formula.source for formula in row] for row in reference.rows]
+    report = graded_table(exercise, [*rows, rows[-1]])
+    assert report.points == 8 - 2
+    assert [message.code for message in report.feedback] == ["extra_row"]
+    assert {row.verdict for row in report.rows} == {Verdict.CORRECT}
+    # A row that cannot be read may be 0.
+    unread = graded_table(exercise, [*rows, ["?", "0", "0", "0"]])
+    assert "extra_row" not in [message.code for message in unread.feedback]
 
 
 @pytest.mark.parametrize("rows", [ROWS, [*ROWS, ZERO], ROWS[:3], [ROWS[0], ROWS[2], *ROWS[2:]]])

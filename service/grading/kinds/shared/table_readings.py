@@ -26,7 +26,7 @@ from service.grading.judging.marking.marks import steps_lost
 from service.grading.judging.own_frames.best_roles import rows_of_mechanism, usual_rows
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
 from service.grading.judging.own_frames.row_roles import FrameFreedom, freedom_of
-from service.grading.judging.row_places import EXTRA_ROW, row_too_many
+from service.grading.judging.row_places import EXTRA_ROW, extra_row, row_too_many
 from service.grading.judging.table_filled import with_lazy_cells, written_content
 from service.grading.part import Grading, Judged
 from service.grading.reading.tables.table import StudentTable
@@ -230,6 +230,12 @@ def _with_extra_rows(
     rows.
     """
     extra = [i for i, row in enumerate(table.rows) if i not in kept and not row.is_zero]
+    is_at_end = kept == list(range(len(kept)))
+    if extra and is_at_end and without.is_right and not np.isnan(table.values[extra]).any():
+        # Nothing but the rows at the end is wrong.
+        messages = grading.messages(tuple(map(extra_row, extra)))
+        feedback = (*without.feedback, *messages)
+        return replace(without, feedback=feedback, slips=len(extra), chain=judged.chain)
     is_told = any(message.code in EXTRA_ROW.codes for message in judged.feedback)
     of_mechanism = {row.label for row in without.rows}
     beside = [row for row in judged.rows if row.label not in of_mechanism]
