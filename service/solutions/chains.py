@@ -52,9 +52,9 @@ def _place(exercise: Exercise, frame: FrameName, steps: int) -> int:
 
 
 def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
-    """Return the motions of e^{[S_1]θ_1} … e^{[S_n]θ_n} M.
+    """Return the product e^{[S_1]θ_1} … e^{[S_n]θ_n} M as single turns and shifts.
 
-    Each turn is about the point of its screw axis that is nearest to the origin.
+    A turn about a screw axis is written about the point of the axis nearest to the origin.
     """
     motions: list[Motion] = []
     for joint, axis in zip(robot.joints, algebra.matrix(robot.axes).tolist(), strict=True):

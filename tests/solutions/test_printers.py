@@ -1,6 +1,7 @@
-"""The model solution of every exercise gets full marks as other programs print it.
+"""The model solution of every exercise gets full marks in the output format of other programs.
 
-``prints`` has the printers of matrices and submits all prints; this file submits a sample.
+``tests.solutions.prints`` defines these formats and submits every solution in every format; this
+file submits a sample.
 """
 
 from collections.abc import Callable, Mapping

@@ -231,7 +231,7 @@ class Builder:
         return self._called(("FUNCTION", ("atan2", power), start, stop), (y, x), end)
 
     def _may_be_degrees(self, base: Node) -> bool:
-        """True if ``base`` has only numbers. The ten of 3*10^0 does not count."""
+        """True if ``base`` has only numbers, except the ten of a power of ten such as 3*10^0."""
         if type(base) is Number and base.literal == "10":
             times = ("*", "×", "·", "⋅", r"\cdot", r"\times")
             return not self.source[: base.start].rstrip().endswith(times)

@@ -130,7 +130,7 @@ class Judgement:
 def judged_table(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge the table by the reference, or by the valid table nearest to it."""
+    """Judge a student's table by the reference, or by the valid table nearest to the student's."""
     reference = grading.exercise.robot.tables.get(convention)
     if reference is None:
         return _judged_by_nearest(part, rows, convention, grading)

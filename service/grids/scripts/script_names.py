@@ -82,7 +82,10 @@ class ScriptNames:
     def name_links(
         self, statement: SourceText, name: str, number: int | None, links: list[RobotLink]
     ) -> None:
-        """Store links as the list ``name``, or one link as the element ``number`` (0: the next)."""
+        """Store links as the list ``name``, or one link as its element ``number``.
+
+        The number 0 means the element after the last one.
+        """
         known = self.links.setdefault(name, {})
         first = len(known) + 1 if number == 0 else number or 1
         if known if number is None else first in known or len(links) > 1:

@@ -70,7 +70,7 @@ def candidate_rows(
 
 
 def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
-    """Return the AxisRelation of each target's z axis to the z axis before the row: ``(H,)``."""
+    """Return how each target's z axis lies to the z axis of the previous frame: ``(H,)``."""
     sine = np.hypot(target[..., 0, 2], target[..., 1, 2])
     offset = np.hypot(target[..., 0, 3], target[..., 1, 3])
     parallel = np.all(sine < PARALLEL, axis=-1)

@@ -76,7 +76,7 @@ class GivenMotion:
             return grid_values(tuple(map(tuple, grid)), values, self.count)
 
     def part(self, displacement: Displacement, straight: Sequence[str] = ()) -> Numbers:
-        """Return one displacement in numbers, with the angles ``straight`` set to 0."""
+        """Return one displacement in numbers. The angles named in ``straight`` are set to 0."""
         key = displacement.lengths, tuple(straight)
         if key not in self._parts:
             self._parts[key] = self._part(displacement, straight)

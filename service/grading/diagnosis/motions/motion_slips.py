@@ -144,7 +144,7 @@ def lone_displacement(motion: GivenMotion) -> Hypotheses:
 
 
 def _are_numbered(found: Sequence[Displacement]) -> bool:
-    """True if displacement 1 is not turned, and each other one has one more turn before it.
+    """True if displacement k comes after k − 1 turns, for every k.
 
     Then each displacement belongs to the motion with the same number.
     """
