@@ -108,15 +108,16 @@ STANDS_STILL = Finding(
 def follows_from(earlier: PartSpec, *, is_right: bool) -> Finding:
     """Return the message that the points were earned by following from an earlier answer.
 
-    The earlier answer ``is_right`` if it differs from the reference only by its choice of frames.
+    The earlier answer ``is_right`` if it differs from the reference only by its choice of frames or
+    by rounding.
     """
-    hint = say(
-        "This earns its points, for it follows from your answer to {part}. That answer is "
-        "wrong: check it first.",
-        part=repr(earlier.title),
-    )
+    title = repr(earlier.title)
     if is_right:
+        hint = say("This was graded by your answer to {part}, which is right.", part=title)
+    else:
         hint = say(
-            "This is right with the frames that you chose in {part}.", part=repr(earlier.title)
+            "This earns its points, for it follows from your answer to {part}. That answer is "
+            "wrong: check it first.",
+            part=title,
         )
     return Finding("follow_through", hint, severity=Severity.INFO)

@@ -121,12 +121,14 @@ class _Graded:
     """A part that was graded; ``judged`` is None if there was no readable answer.
 
     A wrong answer may have been judged by an earlier answer of the student instead of the
-    reference.
+    reference. The answer ``is_right`` if it is correct by the reference, or by an earlier answer
+    that is right.
     """
 
     part: PartSpec
     report: PartReport
     judged: Judged | None
+    is_right: bool = False
 
     @cached_property
     def chain(self) -> StudentChain | None:
@@ -175,19 +177,21 @@ def _graded(
         others = (each for each in judged.feedback if each.code != OWN_FRAME_CHOICE)
         judged = replace(judged, feedback=(*messages, *others))
     report = part_report(part, judged)
-    if report.verdict is Verdict.CORRECT or judged.stands_still or followed is None:
-        return _Graded(part, report, judged)
+    is_right = report.verdict is Verdict.CORRECT
+    if is_right or judged.stands_still or followed is None:
+        return _Graded(part, report, judged, is_right)
     if followed.carries(part.follows_from, grading):
         by_student = kind.judge(part, read, replace(grading, following=True))
         following = part_report(part, by_student)
         if following.points > report.points:
-            is_right = followed.report.verdict is Verdict.CORRECT
-            messages = grading.messages((follows_from(followed.part, is_right=is_right),))
+            is_right = followed.is_right and following.verdict is Verdict.CORRECT
+            told = follows_from(followed.part, is_right=followed.is_right)
+            messages = grading.messages((told,))
             report = replace(
                 following, follow_through=True, feedback=(*messages, *following.feedback)
             )
             judged = replace(by_student, chain=judged.chain)
-    return _Graded(part, report, judged)
+    return _Graded(part, report, judged, is_right)
 
 
 def _followed(

@@ -9,7 +9,7 @@ import pytest
 import sympy
 
 from service.catalogue import Exercise
-from service.grading import Verdict
+from service.grading import PartReport, Verdict
 from tests.grading.support.scara import (
     A1,
     A3,
@@ -41,6 +41,32 @@ def test_matrices_that_follow_from_a_wrong_table_earn_points(scara: Exercise) ->
         assert parts[name].points == parts[name].max_points, name
         assert parts[name].follow_through, name
         assert "follow_through" in [message.code for message in parts[name].feedback]
+
+
+def test_the_message_says_if_the_earlier_answer_is_wrong(
+    scara: Exercise, make_exercise: Callable[[str], Exercise]
+) -> None:
+    def told(part: PartReport) -> str:
+        [message] = [each.message for each in part.feedback if each.code == "follow_through"]
+        return message
+
+    # The pose follows from the links, which follow from the wrong table: all three are wrong.
+    wrong = table([TABLE[0], ("a1", "pi", "0", "q2"), *TABLE[2:]])
+    parts = graded(scara, table=wrong, links=[A1, a2_with("a1"), A3, A4], pose=pose_with("a1"))
+    assert parts["links"].verdict is parts["pose"].verdict is Verdict.CORRECT
+    assert "is wrong" in told(parts["links"])
+    assert "is wrong" in told(parts["pose"])
+    # x1 of the elbow points the other way, which is allowed.
+    own = table([("-L1", "-90deg", "h", "theta4 + pi"), ("L2", "0", "0", "theta5 + pi")])
+    inner = [
+        ["-c4", "0", "s4", "L1*c4"],
+        ["-s4", "0", "-c4", "L1*s4"],
+        ["0", "-1", "0", "h"],
+        [*"0001"],
+    ]
+    parts = graded(make_exercise(ELBOW), table=own, inner=inner)
+    assert parts["table"].verdict is parts["inner"].verdict is Verdict.CORRECT
+    assert "which is right" in told(parts["inner"])
 
 
 def test_a_part_may_follow_across_an_unanswered_part(scara: Exercise) -> None:

@@ -192,7 +192,7 @@ def exchanged_columns(one: int, other: int) -> Finding:
     rank=80,
     code="row_order",
     rule="rows",
-    means=template("two rows are exchanged, or all rows are in reverse order"),
+    means=template("two rows are exchanged, or all rows, or all but the last, are reversed"),
     example=(
         "planar-rr",
         "table",
