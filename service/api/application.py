@@ -209,7 +209,7 @@ def application(
     """Return the HTTP service for the exercises of ``catalogue``.
 
     Web pages of ``cors_origins`` may call the service. ``access`` checks callers. Without
-    ``access``, everybody may grade and record, and nobody sees the data that are for tutors.
+    ``access``, everybody may grade and record, but data for tutors are not shown to anybody.
     ``rates`` limits the number of requests. ``feedback`` is the highest feedback level of reports;
     an exercise may have a lower one. ``turns`` is a layer that lets clients take turns. ``pages``
     are the service's web pages. Attempts are recorded in ``store``, if there is one. ``monitor``

@@ -76,7 +76,7 @@ class Access:
     """Checks who the callers are and what they may do.
 
     ``solutions`` and ``read_attempts`` say who may see solutions and attempts while the service has
-    no keys. False means nobody, None means tutors, and True means everybody.
+    no keys: True for everybody, None for tutors only, False for nobody.
     """
 
     def __init__(

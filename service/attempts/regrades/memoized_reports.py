@@ -21,7 +21,7 @@ PartResults: TypeAlias = Mapping[str, tuple[str, float]]
 class WrittenReport:
     """The JSON of a report for the database, with some values that are also in the JSON.
 
-    These values are stored separately, so that nobody has to parse the JSON again.
+    These values are stored separately, because parsing the JSON again would take time.
     """
 
     text: str

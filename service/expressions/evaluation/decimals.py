@@ -74,7 +74,7 @@ def _name(i: int) -> str:
 def _sign(replaced: Node) -> int:
     """Return 1 for a tree that is a single decimal, -1 for a decimal with a minus sign, else 0.
 
-    In ``replaced``, a symbol stands in for each decimal.
+    The tree ``replaced`` has a symbol in place of each decimal.
     """
     match replaced:
         case SymbolNode(Symbol(name)) if name == _name(0):

@@ -157,8 +157,8 @@ def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableM
 def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
     """Return the track in which the joints are drawn as large as the room on their axes allows.
 
-    If possible, the first joint stands on the ground at the origin, so that no column below the
-    origin suggests a length.
+    If possible, the first joint stands on the ground at the origin. A column below the origin would
+    suggest a length that the robot does not have.
     """
     tracks = [
         _Track.of(path, screws, joints, share, sunk=sunk)

@@ -1,7 +1,7 @@
 """Read a submitted cell as an entry, and evaluate entries at the samples."""
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import Self
@@ -87,9 +87,10 @@ class Reader:
         budget: WorkBudget | None = None,
     ) -> Self:
         """Return a reader for a submission to an exercise."""
-        units = {variable.unit for variable in exercise.variables if variable.kind == "length"}
-        units = units or METRES.keys() & _STATED.findall(exercise.statement.lower())
-        unit = units.pop() if len(units) == 1 else None
+        lengths = [each for each in exercise.variables if each.kind == "length"]
+        units: Set[str] = {length.unit for length in lengths}
+        units = units or _stated_units(exercise.statement)
+        [unit] = units if len(units) == 1 else [None]
         return cls(exercise.vocabulary, samples, angle_unit, unit, budget or WorkBudget())
 
     def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
@@ -172,6 +173,12 @@ def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: 
         numbers[i] = values
     numbers[np.abs(numbers) > _bounds(tuple(quantities))] = np.nan
     return numbers
+
+
+@lru_cache(maxsize=256)
+def _stated_units(statement: str) -> Set[str]:
+    """Return the units of length that a statement names."""
+    return METRES.keys() & _STATED.findall(statement.lower())
 
 
 @lru_cache(maxsize=256)
