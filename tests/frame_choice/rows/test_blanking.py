@@ -1,5 +1,7 @@
 """An empty cell earns no more than a wrong one: a sample of ``blanking``, and known tables."""
 
+from dataclasses import replace
+
 import pytest
 
 from tests.frame_choice.robots import GIVEN, POLICIES, Policy, Robot, exercise
@@ -74,6 +76,25 @@ SEVEN_MOVED = [
     ["0", "0", "0.28", "q6"],
     ["0", "-pi/2", "0", "-q7"],
 ]
+# The end effector may be reached by the row of joint 5 alone, with d = t.
+TOOL_ON_AXIS = (
+    ("0", "0", "h", "q1"),
+    ("r", "-pi/2", "0", "q2-pi/2"),
+    ("a3", "0", "0", "q3"),
+    ("p", "-pi/2", "l4", "q4"),
+    ("0", "pi/2", "0", "q5"),
+    ("0", "0", "t", "0"),
+)
+FIRST_FOUR = [[*row] for row in TOOL_ON_AXIS[:4]]
+TOOL_ROBOT = Robot(
+    "RRRRR, tool on axis 5",
+    "RRRRR",
+    "modified",
+    SIX[:5],
+    TOOL_ON_AXIS,
+    ("h", "r", "a3", "p", "l4", "t"),
+)
+NO_ROW = ["", "", "", ""]
 # Tables in which an empty place once earned more: a number in place of a joint variable, a wrong
 # cell in a row of zeros, and wrong rows that hide the frames in which all others are right.
 ONCE_GAINED = [
@@ -174,6 +195,31 @@ ONCE_GAINED = [
         FREE["free tool"],
         [*SEVEN_MOVED, ["-0.44", "pi/2", "0.12", "-q7"]],
         [*SEVEN_MOVED, ["", "", "", ""]],
+    ),
+    *(
+        (replace(TOOL_ROBOT, name=f"{TOOL_ROBOT.name}: {name}"), GIVEN, texts, empty)
+        for name, texts, empty in (
+            (
+                "last row",
+                [*FIRST_FOUR, ["0", "pi/2", "0", "q5"], ["-t", "q1", "0", "0"]],
+                [*FIRST_FOUR, ["0", "pi/2", "0", "q5"], NO_ROW],
+            ),
+            (
+                "last two rows",
+                [*FIRST_FOUR, ["0.4", "pi", "-t", "q1"], ["r", "pi/2", "l4", "pi/4"]],
+                [*FIRST_FOUR, NO_ROW, NO_ROW],
+            ),
+            (
+                "row before a missing one",
+                [*FIRST_FOUR, ["0.4", "pi", "-t", "q1"], NO_ROW],
+                [*FIRST_FOUR, NO_ROW, NO_ROW],
+            ),
+            (
+                "row after an empty one",
+                [*FIRST_FOUR, NO_ROW, ["r", "pi/2", "l4", "pi/4"]],
+                [*FIRST_FOUR, NO_ROW, NO_ROW],
+            ),
+        )
     ),
 ]
 

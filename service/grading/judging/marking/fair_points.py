@@ -3,11 +3,14 @@
 The frames that a student chose are found by comparing rows. A wrong row can mislead this search, so
 that correct rows look wrong; an empty row cannot. So a wrong table earns at least as much as the
 same table with one wrong row replaced by numbers that are wrong in all frames. A table with empty
-cells earns at most as much as the same table with such numbers in these cells.
+cells earns at most as much as the same table with such numbers in these cells. A table with wrong
+rows after the rows of all joints earns at least as much as the table without these rows, because
+empty rows at the end are left out.
 """
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from itertools import takewhile
 
 import numpy as np
 
@@ -35,62 +38,87 @@ FEW = 2
 AGAIN = 0.5
 
 
-def with_fair_points(
-    part: DhTableSpec,
-    answer: StudentTable,
-    judged: Judged,
-    judged_again: Callable[[StudentTable], Judged],
-    work: float,
-    grading: Grading,
-) -> Judged:
-    """Return ``judged``, the judgement of a wrong table, with limits on its points.
+@dataclass(frozen=True, slots=True)
+class FairPoints:
+    """Limits the points of wrong tables.
 
     ``judged_again`` judges other tables, whose points are the limits. ``work`` is the work of
     judging a table with messages.
     """
 
-    def lost(other: Judged) -> int:
-        return steps_lost(part, other)
+    part: DhTableSpec
+    judged_again: Callable[[StudentTable], Judged]
+    work: float
+    grading: Grading
 
-    budget = grading.reader.budget
-    unread = np.isnan(answer.values).any(axis=-1)
-    if missing := _missing_at_end(part, answer, judged, grading):
-        # A missing row counts as a wrong one.
-        if judged.count_wrong == missing * len(COLUMNS):
-            return judged
-        budget.charge_search(work)
-        full = with_wrong_rows(answer, missing, grading)
-        fair = with_fair_points(part, full, judged_again(full), judged_again, work, grading)
-        return replace(judged, at_most=fair, at_least=None if unread.any() else fair)
-    if unread.any():
-        empty = empty_cells(answer)
+    def limited(self, answer: StudentTable, judged: Judged) -> Judged:
+        """Return ``judged``, the judgement of a wrong table, with limits on its points."""
+        budget = self.grading.reader.budget
+        unread = np.isnan(answer.values).any(axis=-1)
+        if missing := _missing_at_end(self.part, answer, judged, self.grading):
+            # A missing row counts as a wrong one.
+            if judged.count_wrong == missing * len(COLUMNS):
+                return judged
+            budget.charge_search(self.work)
+            full = with_wrong_rows(answer, missing, self.grading)
+            fair = self.limited(full, self.judged_again(full))
+            least = None if unread.any() else self._without_a_row(answer, judged, fair)
+            return replace(judged, at_most=fair, at_least=least)
         # A table without any readable cell earns nothing anyway.
-        if not empty.any() or unread.all():
+        if unread.all():
             return judged
-        budget.charge_search(work)
-        others = [judged_again(with_wrong_cells(answer, empty, grading))]
+        shorter = self._without_wrong_end(answer, judged)
+        if not unread.any():
+            best = judged if shorter is None else min(judged, shorter, key=self._lost)
+            best = self._without_a_row(answer, judged, best)
+            return judged if best is judged else replace(judged, at_least=best)
+        empty = empty_cells(answer)
+        if not empty.any():
+            return judged if shorter is None else replace(judged, at_least=shorter)
+        budget.charge_search(self.work)
+        others = [self.judged_again(with_wrong_cells(answer, empty, self.grading))]
         others += [] if judged.at_most is None else [judged.at_most]
-        return replace(judged, at_most=max(others, key=lost), at_least=None)
-    best = judged
-    counts = _counts_wrong(judged)
-    # All tables that differ from the answer in as few cells, or in one row, have been compared.
-    is_searched = _has_given_ends(part, judged) and (
-        sum(counts) <= FEW or np.count_nonzero(counts) == 1
-    )
-    wrong = _wrong_rows(part, judged, len(answer.rows))
-    for row, content in _content_in_any_frames(part, answer, wrong, grading):
-        if lost(best) <= least_lost(part, judged, content) or (content and is_searched):
-            continue
-        if not budget.affords_search(AGAIN * work):
-            break
-        cells = np.zeros(unread.shape, np.bool_)
-        cells[row] = True
-        other = judged_again(with_wrong_cells(answer, cells, grading))
-        if other.is_right:
-            # The row may be anything, such as the last one if the tool is free.
-            other = judged_again(with_empty_cells(answer, cells))
-        best = min(best, other, key=lost)
-    return judged if best is judged else replace(judged, at_least=best)
+        return replace(judged, at_most=max(others, key=self._lost), at_least=shorter)
+
+    def _without_a_row(self, answer: StudentTable, judged: Judged, best: Judged) -> Judged:
+        """Return the best of ``best`` and the judgements of the table without one wrong row."""
+        part, grading = self.part, self.grading
+        counts = _counts_wrong(judged)
+        # All tables that differ from the answer in as few cells, or in one row, have been compared.
+        is_searched = _has_given_ends(part, judged) and (
+            sum(counts) <= FEW or np.count_nonzero(counts) == 1
+        )
+        wrong = _wrong_rows(part, judged, len(answer.rows))
+        for row, content in _content_in_any_frames(part, answer, wrong, grading):
+            least = least_lost(part, judged, content)
+            if self._lost(best) <= least or (content and is_searched):
+                continue
+            if not grading.reader.budget.affords_search(AGAIN * self.work):
+                break
+            cells = np.zeros(answer.values.shape[:2], np.bool_)
+            cells[row] = True
+            other = self.judged_again(with_wrong_cells(answer, cells, grading))
+            if other.is_right:
+                # The row may be anything, such as the last one if the tool is free.
+                other = self.judged_again(with_empty_cells(answer, cells))
+            best = min(best, other, key=self._lost)
+        return best
+
+    def _without_wrong_end(self, answer: StudentTable, judged: Judged) -> Judged | None:
+        """Return the judgement of the table without its wrong rows at the end.
+
+        Return None if there are no such rows, or if the table is right without them.
+        """
+        budget = self.grading.reader.budget
+        shorter = _shortened(self.part, answer, judged, self.grading)
+        if shorter is None or not budget.affords_search(AGAIN * self.work):
+            return None
+        other = self.judged_again(shorter)
+        # Rows that belong to no right table must cost something.
+        return None if other.is_right else self.limited(shorter, other)
+
+    def _lost(self, judged: Judged) -> int:
+        return steps_lost(self.part, judged)
 
 
 def _missing_at_end(
@@ -104,6 +132,23 @@ def _missing_at_end(
     after = [cell for row in judged.rows[len(answer.rows) :] for cell in row.cells]
     is_at_end = all(cell.verdict is Verdict.MISSING for cell in after)
     return missing if is_at_end and len(after) == missing * len(COLUMNS) else 0
+
+
+def _shortened(
+    part: DhTableSpec, answer: StudentTable, judged: Judged, grading: Grading
+) -> StudentTable | None:
+    """Return the table without wrong rows after the rows of all joints; None if there are none."""
+    robot = grading.exercise.robot
+    rows, kept = len(answer.rows), len(robot.joints)
+    counts = _counts_wrong(judged)
+    if part.frames == "given" or part.tool != "given" or len(counts) != rows:
+        return None
+    if rows > len(part.asked_table(robot).rows) or answer.rows[-1].is_given_up:
+        return None
+    kept += sum(1 for _ in takewhile(lambda count: not count, counts[kept:]))
+    if kept >= rows:
+        return None
+    return replace(answer, rows=answer.rows[:kept], values=answer.values[:kept])
 
 
 def _convention_of(part: DhTableSpec, answer: StudentTable) -> Convention | None:

@@ -21,7 +21,7 @@ from service.grading.diagnosis.tables.column_order import in_other_orders
 from service.grading.diagnosis.tables.intended_table import IntendedTable, with_exchanged_row
 from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
 from service.grading.diagnosis.tables.length_unit import in_other_length_unit
-from service.grading.judging.marking.fair_points import with_fair_points
+from service.grading.judging.marking.fair_points import FairPoints
 from service.grading.judging.marking.marks import steps_lost
 from service.grading.judging.own_frames.best_roles import rows_of_mechanism, usual_rows
 from service.grading.judging.own_frames.remarks import OWN_FRAME_CHOICE
@@ -85,7 +85,7 @@ def best_reading(
         silent = readings.in_silence()
         return silent.best(other, silent.as_written(other))
 
-    fair = with_fair_points(part, table, best, judged_again, work, grading)
+    fair = FairPoints(part, judged_again, work, grading).limited(table, best)
     return replace(fair, written=written_content(table, fair.content.given, grading))
 
 
