@@ -29,8 +29,12 @@ from service.translations import paragraph, say
 # For each written column, from left to right, the column that it is meant to be.
 Order = tuple[int, ...]
 
-# The orders of the Robotics Toolbox and of Craig; they are preferred among equals.
-_USUAL: Final[tuple[Order, ...]] = ((THETA, D, A, ALPHA), (ALPHA, A, D, THETA))
+# The orders of the Robotics Toolbox, of Craig and of Wikipedia; they are preferred among equals.
+_USUAL: Final[tuple[Order, ...]] = (
+    (THETA, D, A, ALPHA),
+    (ALPHA, A, D, THETA),
+    (D, THETA, A, ALPHA),
+)
 # For each column, one of the other quantity: an angle for a length.
 _OTHER_QUANTITY: Final[Order] = (ALPHA, A, THETA, D)
 # At most this many orders are judged; the first is almost always right.

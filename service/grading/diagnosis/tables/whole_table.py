@@ -235,10 +235,16 @@ def _reordered(order: list[int]) -> Finding:
     unlike={"3/a": "0", "3/d": "L2"},
 )
 def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two lengths were exchanged."""
+    """Two lengths were exchanged, in other cells than a and d of one row."""
     for one, other, change in table.exchanges:
-        finding = partial(_exchanged_lengths, one, other)
-        yield Repaired(table.changed(table.constants + change), finding)
+        repaired = table.constants + change
+        rows = np.flatnonzero(change.any(axis=(1, 2)))
+        if len(rows) == 1:
+            row = slice(rows[0], rows[0] + 1)
+            swapped = _exchanged(table.constants, row, A, D)
+            if np.abs(repaired - swapped).max() < INTENDED_CELL:
+                continue
+        yield Repaired(table.changed(repaired), partial(_exchanged_lengths, one, other))
 
 
 def _exchanged_lengths(one: str, other: str) -> Finding:

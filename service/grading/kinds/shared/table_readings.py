@@ -126,17 +126,27 @@ class _Readings:
 
         ``judged`` is the judgement of the table as written.
         """
+        chosen: tuple[_Reading, Judged] | None = None
         for reading in self._others(table, judged):
+            # Several orders of the columns may fit, but the other readings are alternatives.
+            if chosen is not None and not reading.has_links:
+                break
             is_certain = reading.most_wrong is None
             if not is_certain and not self.grading.reader.budget.affords_search(self.work):
                 break
             without = self.as_written(reading.intended.table)
             if reading.most_wrong is None or without.count_wrong <= reading.most_wrong:
-                found = _with_slip(reading.intended, without, judged, self.grading)
-                if steps_lost(self.part, found) > steps_lost(self.part, judged):
-                    found = replace(found, at_least=judged)
-                return replace(found, chain=without.chain) if reading.has_links else found
-        return judged
+                if chosen is None or without.count_wrong < chosen[1].count_wrong:
+                    chosen = reading, without
+                if without.is_right:
+                    break
+        if chosen is None:
+            return judged
+        reading, without = chosen
+        found = _with_slip(reading.intended, without, judged, self.grading)
+        if steps_lost(self.part, found) > steps_lost(self.part, judged):
+            found = replace(found, at_least=judged)
+        return replace(found, chain=without.chain) if reading.has_links else found
 
     def _others(self, table: StudentTable, judged: Judged) -> Iterator[_Reading]:
         """Yield the other readings of a wrong table, those that explain most first."""

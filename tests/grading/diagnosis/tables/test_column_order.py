@@ -33,7 +33,7 @@ BAXTER = [
     ("0", "90deg", "0", "theta6"),
     ("0", "0", "0.229525", "theta7"),
 ]
-TOOLBOX, CRAIG = (3, 2, 0, 1), (1, 0, 2, 3)
+TOOLBOX, CRAIG, WIKIPEDIA = (3, 2, 0, 1), (1, 0, 2, 3), (2, 3, 0, 1)
 LAST = [[0, 0, 1, 0], [0, 0, 0, 1]]
 
 
@@ -74,6 +74,18 @@ def test_the_column_orders_of_other_books_are_named(
         assert f"the order {', '.join(SYMBOLS[column] for column in order)}." in message.message
         # The note that the columns were read as a, α, d, θ would contradict the message.
         assert [each.code for each in report.feedback].count("column_order") == 0
+
+
+def test_the_order_that_leaves_nothing_wrong_is_named(catalogue: Mapping[str, Exercise]) -> None:
+    """The only length is in the first column, which may be a or d."""
+    rows = [
+        ("0", "-90deg", "0", "theta4"),
+        ("0", "90deg", "0", "theta5"),
+        ("0", "0", "d6", "theta6"),
+    ]
+    report = graded(catalogue["spherical-wrist"], in_order(rows, WIKIPEDIA))
+    assert error_codes(report) == ["columns_permuted"]
+    assert report.points == 0.75 * report.max_points
 
 
 @pytest.mark.parametrize("order", [order for order in permutations(range(4)) if order[3] != 3])

@@ -183,6 +183,13 @@ def test_rows_in_reverse_order_are_found_if_the_last_row_is_in_its_place() -> No
     assert codes(wrong(table), combine=False) == ["row_order"]
 
 
+def test_two_lengths_of_one_row_are_its_exchanged_columns() -> None:
+    table = right()
+    table[1, A], table[1, D] = LENGTHS["d2"], LENGTHS["a2"]
+    written = replace(wrong(table).written, exchanges=(("a2", "d2", right() - table),))
+    assert codes(WrongTable(written, written, valid), combine=True) == ["columns_swapped"]
+
+
 def test_two_misconceptions_are_found_together() -> None:
     both = wrong(in_modified_rows(with_angles(right(), 180 / np.pi)))
     assert codes(both, combine=True) == ["other_convention", "degrees_as_radians"]
