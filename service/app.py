@@ -9,7 +9,7 @@ from service.settings import SettingsError, load_settings
 
 
 def create() -> FastAPI:
-    """Return the service. End the process with the reason if a setting or exercise is unusable."""
+    """Return the service; exit with a message if a setting or exercise is invalid."""
     check_kinds()
     try:
         return installed_app(load_settings())

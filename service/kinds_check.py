@@ -1,4 +1,4 @@
-"""The startup check that every answer kind has its three files."""
+"""Check at startup that every kind of answer can be read, graded and solved."""
 
 from collections.abc import Mapping, Set
 from pathlib import Path
@@ -11,7 +11,7 @@ _SOLUTIONS: Final = Path(__file__).parent / "solutions" / "kinds"
 
 
 def check_kinds() -> None:
-    """Raise KindError unless catalogue, grading and solutions have the same kinds."""
+    """Raise KindError unless catalogue, grading and solutions have the same kinds of answers."""
     # Read the text of the solutions: importing them would load SymPy, which takes half a second.
     texts = {file.stem: file.read_text(encoding="utf-8") for file in _SOLUTIONS.glob("*.py")}
     solved = {
@@ -27,7 +27,7 @@ def check_kinds() -> None:
 
 
 def require_complete(kinds: Mapping[str, Set[str]]) -> None:
-    """Raise KindError, which names the missing files, unless all folders have the same kinds."""
+    """Raise KindError unless all folders have the same kinds of answers."""
     problems = []
     for kind in sorted(frozenset[str]().union(*kinds.values())):
         missing = [f"{folder}/{kind}.py" for folder, known in kinds.items() if kind not in known]

@@ -28,10 +28,11 @@ _LONGEST_NAME = 60
 class GradingTerms:
     """The assignment to grade, and the options of the reports.
 
-    ``feedback`` is the level of the command line. If it is None, the submission sets the level;
-    with ``for_students``, the exercise limits that level. ``echo`` shows how each cell was read.
-    Reports and the texts of exercises are in ``language``.
+    ``feedback`` is the level of detail; if None, the submission chooses it. ``echo`` adds how each
+    cell was read.
     """
+
+    # With ``for_students``, the exercise limits the level that the submission chooses.
 
     assignment: Assignment
     pass_mark: float
@@ -42,7 +43,7 @@ class GradingTerms:
 
     @property
     def answered(self) -> tuple[AnsweredExercise, ...]:
-        """The assigned exercises as results show them."""
+        """The assigned exercises for the results, with texts in ``language``."""
         return tuple(
             answered(self._told(assigned.exercise), assigned.worth)
             for assigned in self.assignment.exercises
@@ -52,7 +53,7 @@ class GradingTerms:
         return in_language(exercise, self.language) if isinstance(exercise, Exercise) else exercise
 
     def submission(self, body: GradeRequest, assigned: AssignedExercise) -> Submission:
-        """Return the submission for the grader, with the feedback level of these terms."""
+        """Return the submission for the grader, with the chosen level of feedback."""
         most = self.assignment.ceiling(assigned) if self.for_students else FeedbackLevel.FULL
         submission = body.submission(most)
         feedback = submission.feedback if self.feedback is None else self.feedback
@@ -64,7 +65,7 @@ ReportOn = Callable[[GradeRequest, AssignedExercise, GradingTerms], tuple[Report
 
 
 def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
-    """Return a problem if the answers name an unknown part of the exercise, otherwise ""."""
+    """Return an error message if the exercise lacks a part that the answers name, else ""."""
     known = [part.id for part in assigned.exercise.parts]
     unknown = next((part for part in body.answers if part not in known), None)
     if unknown is None:
@@ -90,7 +91,7 @@ def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
 def report_here(
     body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
 ) -> tuple[Report | None, str]:
-    """Grade answers to an exercise of this installation; return the report or a problem."""
+    """Grade answers on this machine; return a report and "", or None and an error message."""
     exercise = assigned.exercise
     if not isinstance(exercise, Exercise):
         raise TypeError(f"{exercise.id} is an exercise of a server, and cannot be graded here")
@@ -112,10 +113,7 @@ def report_here(
 def graded(
     handed: HandedIn, terms: GradingTerms, report_on: ReportOn = report_here
 ) -> GradedSubmission:
-    """Return the submission with a report or a problem for each exercise.
-
-    No submission causes an exception.
-    """
+    """Grade a submission; return a report or an error message for each exercise."""
     answers = answers_in(handed, terms.assignment)
     files = tuple(
         _graded_file(each, assigned, shown, terms, report_on)

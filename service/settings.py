@@ -231,7 +231,7 @@ class Settings(BaseSettings):
         return open_access(self.open)
 
     def known_secret(self) -> Secret | None:
-        """Return the secret, or None if none is set. Raises SettingsError."""
+        """Return the secret of the installation, or None. Raises SettingsError."""
         if self.secret is not None:
             return Secret(self.secret.get_secret_value())
         if self.secret_file is None:
@@ -247,10 +247,7 @@ class Settings(BaseSettings):
 
 
 def load_settings(**options: Any) -> Settings:
-    """Load the settings from the environment; ``options`` that are not None override them.
-
-    Raises SettingsError.
-    """
+    """Load the settings; ``options`` override environment variables. Raises SettingsError."""
     if unknown := list(_unknown()):
         raise SettingsError(joined("\n", unknown))
     try:
@@ -268,7 +265,6 @@ def _of(name: str, fault: str) -> Sentence:
 
 
 def _unknown() -> Iterator[str]:
-    """Yield messages about variables that begin with DH_GRADER_ but are not settings."""
     for variable in sorted(os.environ):
         prefix, name = variable[: len(PREFIX)].upper(), variable[len(PREFIX) :].lower()
         if prefix == PREFIX and name not in Settings.model_fields:
@@ -284,7 +280,6 @@ def _unknown() -> Iterator[str]:
 
 
 def _origin_in(text: str) -> str:
-    """The origin of a web address as browsers send it, or "" for an unusable address."""
     try:
         parts = urlsplit(text)
         port = f":{parts.port}" if parts.port is not None else ""

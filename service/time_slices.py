@@ -1,8 +1,7 @@
 """Run long work in time slices, so that the event loop can serve other requests between them.
 
-A grading is a plain Python function that may take 60 ms. ``in_slices`` runs it in a greenlet, which
-has its own stack and can be suspended and resumed. The work calls ``checkpoint`` where it may be
-suspended; a suspension does not change the result.
+``in_slices`` runs a function in a greenlet, which can be suspended and resumed. The function calls
+``checkpoint`` where it may be suspended.
 """
 
 import contextvars
@@ -26,13 +25,12 @@ _end = math.inf
 
 
 class _Sliced(greenlet):  # type: ignore[misc]
-    """Work that can be suspended; ``suspended`` is the total time of suspension (seconds)."""
-
+    # The total time of suspension (seconds).
     suspended = 0.0
 
 
 def checkpoint() -> None:
-    """Suspend the current work until its next turn if its slice is over."""
+    """Suspend the current work if its time slice is over."""
     if perf_counter() < _end:
         return
     current = getcurrent()
@@ -43,17 +41,14 @@ def checkpoint() -> None:
 
 
 def working_time() -> float:
-    """Return a time in seconds that does not advance while the current work is suspended."""
+    """Return the seconds on a clock that stops while the current work is suspended."""
     current = getcurrent()
     return perf_counter() - (current.suspended if isinstance(current, _Sliced) else 0.0)
 
 
 async def in_slices(work: Callable[[], R], give_way: Callable[[], Awaitable[None]]) -> R:
-    """Return the result of ``work``; await ``give_way`` between its slices.
-
-    Exceptions of ``work`` and of ``give_way`` are raised. If ``give_way`` raises one, ``work`` ends
-    at its current checkpoint.
-    """
+    """Run ``work`` in time slices and return its result; await ``give_way`` between slices."""
+    # If ``give_way`` raises an exception, ``work`` ends at its current checkpoint.
     sliced = _Sliced(work)
     sliced.gr_context = contextvars.copy_context()
     try:

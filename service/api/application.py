@@ -70,11 +70,8 @@ Layer = Callable[[ASGIApp], ASGIApp]
 
 
 def _freeze_gc() -> None:
-    """Turn garbage collection on, but exempt all objects that exist now.
-
-    Reading a request body with many small lists triggers full collections. If these collections
-    also visited the objects of the program, they would take twice as long as reading the body.
-    """
+    # Reading a request body with many small lists triggers full collections. Without freezing, they
+    # would also visit the objects of the program, and take twice as long as reading the body.
     if gc.isenabled():
         gc.collect()
     gc.freeze()
@@ -84,10 +81,6 @@ def _freeze_gc() -> None:
 def _sending(
     store: "AttemptStore", access: Access, catalogue: Catalogue
 ) -> "Iterable[BackgroundSending]":
-    """Yield the threads that send scores and reports to learning platforms.
-
-    If the installation has no secret, there are no such threads.
-    """
     secret = None if access.keys is None else access.keys.secret
     if secret is None:
         return
@@ -104,8 +97,6 @@ def _sending(
 
 
 class _Api(FastAPI):
-    """A FastAPI application with further layers around FastAPI's own layers."""
-
     def __init__(
         self,
         catalogue: Catalogue,
@@ -158,13 +149,8 @@ class _Api(FastAPI):
             self._store.close()
 
     def build_middleware_stack(self) -> ASGIApp:
-        """Return the application with its layers.
-
-        From the inside to the outside, they are FastAPI's own layers, compression, fair turns
-        between clients, authentication, and the layers of ``boundary.py``. The CORS layer is
-        outside these layers, so that pages of other origins may also read error responses.
-        The outermost layer gives every request and its response an id.
-        """
+        # The CORS layer is outside the others except the request's id, so that pages of other
+        # origins may also read error responses.
         app = super().build_middleware_stack()
         if self._monitor is not None:
             app = RouteMiddleware(app)
@@ -187,7 +173,6 @@ class _Api(FastAPI):
         return RequestIdMiddleware(app)
 
     def openapi(self) -> dict[str, Any]:
-        """Return the OpenAPI document; the first call builds it."""
         if self.openapi_schema is None:
             fill_body_schemas()
             self.openapi_schema = completed(super().openapi())
@@ -208,12 +193,9 @@ def application(
 ) -> FastAPI:
     """Return the HTTP service for the exercises of ``catalogue``.
 
-    Web pages of ``cors_origins`` may call the service. ``access`` checks callers. Without
-    ``access``, everybody may grade and record, but data for tutors are not shown to anybody.
-    ``rates`` limits the number of requests. ``feedback`` is the highest feedback level of reports;
-    an exercise may have a lower one. ``turns`` is a layer that lets clients take turns. ``pages``
-    are the service's web pages. Attempts are recorded in ``store``, if there is one. ``monitor``
-    counts requests and reports.
+    ``access`` authenticates callers. Without ``access``, everybody may grade and record, and nobody
+    sees the data for tutors. ``feedback`` is the highest feedback level of reports. Attempts are
+    recorded in ``store``.
     """
     access = access or Access()
     app = _Api(catalogue, cors_origins, turns, store, access, rates, monitor, pages)

@@ -8,13 +8,13 @@ from service.grading import Report
 
 
 class Monitor(Protocol):
-    """Counts requests and reports. It changes no response."""
+    """Counts requests and reports, without changing any response."""
 
     def watched(self, app: ASGIApp) -> ASGIApp:
-        """Return the application in a layer that sees every request and its response."""
+        """Return the application, wrapped in a layer that counts requests."""
 
     def graded(self, report: Report, seconds: float) -> None:
         """Count a report, and record how many seconds the grading took."""
 
     def refused(self, answer: str) -> None:
-        """Count a refusal; ``answer`` is the status code of the response, or "none"."""
+        """Count a refused request; ``answer`` is the status code of the response, or "none"."""

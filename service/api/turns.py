@@ -1,4 +1,4 @@
-"""Let the requests of clients take turns on the processor."""
+"""Share the processor fairly between the requests of clients."""
 
 import asyncio
 import math
@@ -22,19 +22,20 @@ CLIENT: Final = "dh_grader.client"
 
 
 class Client(NamedTuple):
-    """The client that a request belongs to.
+    """The client that sent a request.
 
-    A client gets a share of the processor for each of its present requests, but at most
-    ``most_shares``. A course's server or a university's address may have several shares, because it
-    sends the requests of many students.
+    A client gets one share of the processor for each of its requests, but at most ``most_shares``.
     """
+
+    # A course's server or a university's address may have several shares, because it sends the
+    # requests of many students.
 
     name: str
     most_shares: float
 
     @property
     def is_trusted(self) -> bool:
-        """True if the number of this client's shares is not limited."""
+        """True if the client may have any number of shares."""
         return self.most_shares == math.inf
 
 
@@ -43,10 +44,8 @@ ONE_STUDENT, ONE_ADDRESS, COURSE_SITE = 1.0, 8.0, math.inf
 
 
 def arrived_at(request: Request) -> datetime:
-    """Return the time when the whole request was received, before it waited for its turn.
-
-    This time decides whether answers were handed in late.
-    """
+    """Return the time when the whole request was received."""
+    # This time decides whether answers were handed in late.
     found: datetime | None = request.scope.get(ARRIVED)
     return found or datetime.now(UTC)
 
@@ -54,7 +53,7 @@ def arrived_at(request: Request) -> datetime:
 async def give_way(request: Request) -> None:
     """Let other requests run, and wait until this request may continue.
 
-    Raises ClientDisconnect if the client has disconnected.
+    Raises ClientDisconnect.
     """
     turn: Callable[[], Awaitable[None]] | None = request.scope.get(TURN)
     # Without such a layer, as in tests of routes: let every other ready task run once.
@@ -62,8 +61,8 @@ async def give_way(request: Request) -> None:
 
 
 async def run_in_turns(request: Request, work: Callable[[], R]) -> R:
-    """Call ``work`` and return its result. Other requests may run between its steps.
+    """Call ``work`` and return its result; let other requests run meanwhile.
 
-    Raises ClientDisconnect if the client has disconnected. Exceptions of ``work`` pass through.
+    Raises ClientDisconnect.
     """
     return await in_slices(work, partial(give_way, request))

@@ -1,4 +1,4 @@
-"""The web pages of the service, as the application includes them."""
+"""The web pages of the service, as the application gets them."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -10,10 +10,10 @@ from service.catalogue.drafts import Drafts
 
 
 class WebPages(NamedTuple):
-    """The routes of the web pages, with the functions and data that the application needs.
+    """The routes of the web pages, and what the application needs of the pages.
 
-    ``of_problem`` makes an HTML page from an error response. ``close`` stops the work that the
-    pages have started. ``drafts`` are the exercises that tutors preview in the editor.
+    ``of_problem`` makes an HTML page from an error response. ``drafts`` are the exercises that
+    tutors preview.
     """
 
     routes: APIRouter

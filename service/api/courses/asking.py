@@ -36,10 +36,7 @@ _REFUSED: Final = (HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.SERVIC
 
 
 def reading(model: type) -> dict[str, Any]:
-    """Return FastAPI's arguments for a route that reads data of a course.
-
-    ``model`` is the class of the response.
-    """
+    """Return FastAPI's arguments for a route that reads data of a course."""
     refused = refusals(*_REFUSED, HTTPStatus.UNPROCESSABLE_ENTITY)
     return {"response_model": model, "responses": refused, "openapi_extra": MAY_NEED_KEY}
 
@@ -49,8 +46,7 @@ def changing(
 ) -> dict[str, Any]:
     """Return FastAPI's arguments for a route that changes data of a course.
 
-    ``body`` and ``model`` are the classes of the request body and the response. ``further`` are
-    additional error statuses of the route.
+    ``further`` are additional error statuses of the route.
     """
     options = posting(body, model, None, *_REFUSED, *further, success=success)
     return {"status_code": success, **options}
@@ -82,6 +78,6 @@ async def _done(
 
 
 def course_problem(error: CourseError) -> ProblemError:
-    """Return the HTTP problem for a CourseError."""
+    """Convert a CourseError to an HTTP error."""
     status, title = _TITLES[error.name]
     return ProblemError(status, message_of(error), error.name, title)

@@ -1,4 +1,4 @@
-"""The routes of assignments and extensions; for tutors."""
+"""Routes for tutors: assignments, and extensions for single learners."""
 
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated

@@ -16,10 +16,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 def routes(store: "AttemptStore | None") -> APIRouter:
-    """Return the routes that delete. They delete only if the request has `apply`.
-
-    Otherwise they only say what they would delete.
-    """
+    """Return the routes that delete; without `apply` in the request, they only preview."""
     router = APIRouter(prefix="/v1/courses/{course_id}", tags=["courses"])
 
     @router.post(

@@ -103,6 +103,5 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
 
 
 def _file(course_id: str, ending: str) -> dict[str, str]:
-    """Return the HTTP headers with which a browser saves a gradebook as a file."""
     attachment = f'attachment; filename="gradebook-{course_id}.{ending}"'
     return {"Cache-Control": "no-store", "Content-Disposition": attachment}

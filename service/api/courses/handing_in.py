@@ -55,10 +55,7 @@ def routes(
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the routes for learners. ``feedback`` is the highest feedback level of reports.
-
-    Web pages of the service and of ``origins`` may hand in answers.
-    """
+    """Return the routes for learners; ``feedback`` is the highest feedback level of reports."""
     router = APIRouter(prefix="/v1", tags=["courses"])
     solutions = SolvedExercises()
 
@@ -181,13 +178,8 @@ def _begun(
     idempotency_key: str,
     connection: "Connection",
 ) -> "tuple[LearnerTerms, Exercise, str | None, Standing] | CourseError":
-    """Return what the service needs to record a hand-in.
-
-    These are the assignment's rules for this learner, the learner's variant of the exercise, the
-    seed of the variant, and the number and points of the learner's earlier attempts. ``place`` is a
-    course, an assignment and an exercise. A CourseError is returned, not raised, because the
-    transaction contains the work of other requests, too.
-    """
+    # A CourseError is returned, not raised, because the transaction contains the work of other
+    # requests, too.
     from service.attempts.recording import standing
     from service.courses.dealing import assigned_seed, needs_choices, pin_choices
 
@@ -204,7 +196,6 @@ def _begun(
 
 
 def _variant(exercise: Exercise, seed: str | None) -> Exercise:
-    """Return the learner's variant, or the exercise if it has no variants. Raises ProblemError."""
     from service.courses.dealing import variant_for
 
     try:
@@ -214,7 +205,6 @@ def _variant(exercise: Exercise, seed: str | None) -> Exercise:
 
 
 def _learner(caller: Caller, named: str | None) -> str:
-    """Return the learner for whom the caller acts. Raises ProblemError."""
     if caller.learner is not None:
         if named not in (None, caller.learner):
             raise access_problem("other-learner")

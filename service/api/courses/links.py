@@ -1,4 +1,4 @@
-"""The routes of personal links, with which learners open their courses; for tutors."""
+"""Routes for tutors: the personal links with which learners open their courses."""
 
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING

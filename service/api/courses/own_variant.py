@@ -1,8 +1,9 @@
-"""Find the variant of an exercise that a learner has in an assignment, for routes of exercises.
+"""Find a learner's own variant of an exercise, for requests that name an assignment.
 
-If a request has ``?course=…&assignment=…``, the route uses the learner's own variant. The token of
-the request names the learner. The response has the id of the exercise, not of the variant.
+The query ``?course=…&assignment=…`` names the assignment; the token names the learner.
 """
+
+# The response has the id of the exercise, not of the variant.
 
 from typing import TYPE_CHECKING, Any, Final
 
@@ -28,10 +29,7 @@ _TEXT: Final = {
 
 
 def of_assignment(options: dict[str, Any]) -> dict[str, Any]:
-    """Return FastAPI's arguments for a route, with the documentation of two more parameters.
-
-    These query parameters are ``course`` and ``assignment``.
-    """
+    """Return FastAPI's arguments for a route with the parameters ``course`` and ``assignment``."""
     extra = options.get("openapi_extra", {})
     own = [
         {"name": name, "in": "query", "required": False, "description": text, "schema": _SCHEMA}

@@ -45,10 +45,7 @@ def routes(
     access: Access,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the route. ``feedback`` is the highest feedback level of reports.
-
-    Hints are given only for messages that a report of this level shows.
-    """
+    """Return the route for hints; ``feedback`` is the highest feedback level of reports."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.post(
@@ -118,10 +115,6 @@ def _may_use(caller: Caller, row: "Row[Any]") -> bool:
 def _terms(
     row: "Row[Any]", exercise: Exercise, connection: "Connection"
 ) -> tuple[AttemptsSpec, list[float] | None, int]:
-    """Return the rules for attempts, the prices of a hint's steps, and the number of attempts.
-
-    Only the learner's attempts that count are in this number.
-    """
     from service.attempts.recording import standing
     from service.courses.terms import terms_of
 
@@ -135,7 +128,6 @@ def _terms(
 def _hint(
     exercise: Exercise, row: "Row[Any]", body: AttemptHintRequest, most: FeedbackLevel
 ) -> Hint:
-    """Return the requested hint step for a message of the recorded report. Raises ProblemError."""
     from json import loads
 
     submission = GradeRequest.model_validate_json(row.submission)

@@ -1,4 +1,4 @@
-"""Check whether a learner's assignments let the learner practise."""
+"""Check whether a learner's assignments allow practice."""
 
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -30,11 +30,7 @@ class PracticeGate:
             raise refused
 
     async def check_hints(self, caller: Caller, exercise: Exercise) -> None:
-        """Raise ProblemError if the caller may not have free hints for the exercise now.
-
-        This is the case if the caller may not practise the exercise, or if hints have a price in
-        an assignment of the caller.
-        """
+        """Raise ProblemError if the caller may not have free hints for the exercise now."""
         await self.check(caller, exercise.plain_id)
         learner = caller.learner
         if self._store is None or learner is None:
@@ -81,7 +77,7 @@ class PracticeGate:
             )
 
     async def refusal(self, caller: Caller, exercise: str) -> ProblemError | None:
-        """Return why the caller may not practise the exercise now; None if the caller may."""
+        """Return the error if the caller may not practise the exercise now, else None."""
         learner = caller.learner
         if self._store is None or learner is None:
             return None
@@ -118,7 +114,7 @@ class PracticeGate:
         return ProblemError(HTTPStatus.FORBIDDEN, detail, "no-practice", title)
 
     def _alike(self, exercise: str) -> set[str]:
-        """Return the ids of all exercises with the same correct table as this exercise."""
+        # The ids of all exercises with the same correct table as this exercise.
         reference = getattr(self._catalogue.get(exercise), "reference", None)
         return {
             name

@@ -1,4 +1,4 @@
-"""The routes of courses and their learners; for tutors."""
+"""Routes for tutors: courses and their learners."""
 
 from datetime import UTC, datetime
 from functools import partial
@@ -137,7 +137,6 @@ def _learners(course_id: str, connection: "Connection") -> LearnerList:
 
 
 def _new_learners(body: LearnersRequest) -> list[NewLearner]:
-    """Return the learners whom a request's body adds. Raises ProblemError."""
     if (body.learners is None) == (body.csv is None):
         message = say("Send either learners or csv.")
         raise invalid([{"type": "either", "loc": (), "msg": message}])

@@ -1,4 +1,4 @@
-"""The routes with which tutors see the scores that platforms got, and send scores again."""
+"""Routes for tutors: list the scores sent to learning platforms, and send them again."""
 
 from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Annotated

@@ -1,7 +1,6 @@
 """The OpenAPI document of the HTTP interface, with schemas, error responses and examples.
 
-The examples are stored in files, so that the service need not compute them when it starts. A test
-compares them with real responses.
+The examples are stored in files. A test compares them with real responses.
 """
 
 import json
@@ -120,9 +119,8 @@ def posting(
 ) -> dict[str, Any]:
     """Return FastAPI's arguments for a route that reads a request body with ``read_body``.
 
-    ``body`` and ``model`` are the classes of the request body and the response. ``name`` is the
-    prefix of the names of the two example files; None if there are no examples. ``further`` are the
-    error statuses of the route in addition to those for an invalid body.
+    ``name`` is the prefix of the names of two example files. ``further`` are additional error
+    statuses of the route.
     """
     schema = _BODY_SCHEMAS.setdefault(body, {})
     content: dict[str, Any] = {"schema": schema}
@@ -139,8 +137,7 @@ def answers(
 ) -> dict[int | str, dict[str, Any]]:
     """Return FastAPI's ``responses`` of a route, by status.
 
-    The response for ``success`` has the class ``model``, and the example from the file ``name``.
-    ``statuses`` are the error statuses.
+    The successful response has the class ``model`` and the example ``name``.
     """
     answer: dict[str, Any] = {"model": model}
     if name is not None:
@@ -154,10 +151,7 @@ def refusals(*statuses: HTTPStatus) -> dict[int | str, dict[str, Any]]:
 
 
 def completed(document: dict[str, Any]) -> dict[str, Any]:
-    """Complete the OpenAPI document that FastAPI has made, and return it.
-
-    Add the schemas of error responses, tidy the other schemas, and describe how to send a key.
-    """
+    """Complete the OpenAPI document that FastAPI has made, and return it."""
     problem = ProblemDocument.model_json_schema(ref_template=_REF_TEMPLATE)
     for path in document["paths"].values():
         for operation in path.values():
@@ -173,6 +167,7 @@ def completed(document: dict[str, Any]) -> dict[str, Any]:
 
 
 def fill_body_schemas() -> None:
-    """Fill in the schemas of all bodies. Only the document needs them, so startup does not wait."""
+    """Fill in the schemas of all request bodies."""
+    # Only the document needs them, so startup does not wait for them.
     for body, schema in _BODY_SCHEMAS.items():
         schema.update(body.model_json_schema(ref_template=_REF_TEMPLATE))

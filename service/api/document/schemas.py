@@ -1,8 +1,6 @@
 """Convert the schemas of the OpenAPI document to a form that suits client generators.
 
-Pydantic's schemas say how a value is validated. A generated client needs a name for each model and
-each enumeration, and must know which fields may be absent. A field without a value is absent, not
-null.
+A generated client needs a name for each model, and must know which fields may be absent.
 """
 
 import json
@@ -57,7 +55,7 @@ def public_name(name: str) -> str:
 
 
 def tidy_schemas(document: Schema) -> None:
-    """Give the document a named schema for each model and enumeration, in alphabetical order."""
+    """Give each model and enumeration of the document a named schema, in alphabetical order."""
     components = document.setdefault("components", {})
     tidying = _Tidying()
     for name, schema in components.get("schemas", {}).items():
@@ -69,13 +67,10 @@ def tidy_schemas(document: Schema) -> None:
 
 
 class _Tidying:
-    """Tidies one OpenAPI document; ``named`` has the schemas that have a name."""
-
     def __init__(self) -> None:
         self.named: Schema = {}
 
     def visit_operation(self, operation: Schema) -> None:
-        """Tidy the schemas of one operation."""
         for parameter in operation.get("parameters", ()):
             parameter["schema"] = self.tidied(parameter["schema"])
         asked = operation.get("requestBody", {"content": {}})
@@ -84,10 +79,6 @@ class _Tidying:
                 content["schema"] = self.tidied(content["schema"], is_sent=message is not asked)
 
     def name(self, name: str, schema: Schema, *, is_sent: bool = True) -> Schema:
-        """Store the schema under its public name, and return a reference to it.
-
-        If the name already has a schema, nothing is stored.
-        """
         name = public_name(name)
         if name not in self.named:
             self.named[name] = {}
@@ -95,7 +86,6 @@ class _Tidying:
         return {"$ref": f"{_REFERENCE}{name}"}
 
     def tidied(self, schema: Schema, *, is_sent: bool = True) -> Schema:
-        """Return the tidied schema; ``is_sent`` is True for responses, False for requests."""
         for name, definition in schema.get("$defs", {}).items():
             self.name(name, definition, is_sent=is_sent)
         if "properties" in schema:
@@ -131,15 +121,10 @@ class _Tidying:
         return body
 
     def _fields(self, schema: Schema, *, is_sent: bool) -> Schema:
-        """Return the part of a model's schema with its fields and the list of required fields.
-
-        In responses, a field with a default is required, because the service always sends the
-        field. A field with the mark ``ADDED_LATER`` is not required, because a response that
-        an older version has recorded may lack the field.
-
-        In requests, a field with a default is not required. Its default is written into the
-        description, not into ``default``, because that makes some generators require the field.
-        """
+        # In responses, a field with a default is required, because the service always sends the
+        # field. A field with the mark ADDED_LATER is not, because a response that an older version
+        # has recorded may lack the field. In requests, a default is written into the description:
+        # "default" makes some generators require the field.
         required = list(schema.get("required", ()))
         fields = {}
         for name, field in schema["properties"].items():
@@ -158,10 +143,7 @@ class _Tidying:
 
 
 def _without_null(field: Schema) -> Schema:
-    """Return the schema of an optional field without null as an allowed value.
-
-    The service leaves the field out instead of sending null.
-    """
+    # The service leaves the field out instead of sending null.
     forms = [form for form in field.get("anyOf", ()) if form != _NULL]
     rest = {key: value for key, value in field.items() if key != "anyOf"}
     if rest.get("default", ()) is None:
@@ -172,7 +154,6 @@ def _without_null(field: Schema) -> Schema:
 
 
 def _texts(schema: Schema) -> Schema:
-    """Return the description of a schema, if it has one, in Markdown."""
     if "description" not in schema:
         return {}
     return {"description": schema["description"].replace("``", "`")}

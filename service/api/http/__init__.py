@@ -1,1 +1,1 @@
-"""Code that all routes share: request bodies, error responses, and layers of the application."""
+"""Code that all routes share: request bodies, error responses and middleware."""

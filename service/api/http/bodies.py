@@ -17,14 +17,9 @@ M = TypeVar("M", bound=BaseModel)
 
 
 async def read_body(model: type[M], request: Request) -> M:
-    """Return the request's JSON body as an instance of ``model``.
-
-    A JSON body is accepted with any Content-Type, because forms and scripts often omit this header.
-    That is safe: a cookie gives rights only to requests of the service's own pages.
-
-    Raises ProblemError with status 422 if the JSON does not match the model. If the body is not
-    JSON, the status is 415 if Content-Type names another type, and otherwise 400.
-    """
+    """Return the request's JSON body as an instance of ``model``. Raises ProblemError."""
+    # JSON is accepted with any Content-Type, because forms and scripts often omit this header. That
+    # is safe: a cookie gives rights only to requests of the service's own pages.
     try:
         value = read_json(await request.body())
     except MalformedError as error:
@@ -35,9 +30,7 @@ async def read_body(model: type[M], request: Request) -> M:
 def validated(model: type[M], value: object, at: Location = ()) -> M:
     """Return ``value``, a part of a request body, as an instance of ``model``.
 
-    ``at`` is the place of the part in the body.
-
-    Raises ProblemError with status 422 if the value does not match the model.
+    ``at`` is the path of the part in the body. Raises ProblemError.
     """
     try:
         return model.model_validate(_with_few_unknown(model, value))
@@ -48,10 +41,7 @@ def validated(model: type[M], value: object, at: Location = ()) -> M:
 
 
 def _with_few_unknown(model: type[BaseModel], value: object) -> object:
-    """Return the value with at most ``MAX_ERRORS`` unknown fields; remove the others.
-
-    An error response lists no more errors than this.
-    """
+    # An error response lists at most MAX_ERRORS errors, so further unknown fields are removed.
     known = model.model_fields
     if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
         return value

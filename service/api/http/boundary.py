@@ -1,4 +1,4 @@
-"""The outermost layers, which every request and every response passes."""
+"""The outermost middleware, which every request and response passes."""
 
 from collections.abc import Sequence
 from typing import Final
@@ -40,7 +40,7 @@ class RequestIdMiddleware:
 
 
 class RouteMiddleware:
-    """Store the route of each request for the log and the metrics, once FastAPI has found it."""
+    """Store the route of each request for the log and the metrics."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -56,7 +56,7 @@ class RouteMiddleware:
 
 
 class RefusedRouteMiddleware:
-    """Store the route of a request that a layer refused before FastAPI looked for the route."""
+    """Store the route of a request that other middleware has refused."""
 
     def __init__(self, app: ASGIApp, routes: Sequence[APIRoute]) -> None:
         self.app = app
@@ -81,11 +81,10 @@ class RefusedRouteMiddleware:
 
 
 class BoundaryMiddleware:
-    """Add security headers, answer HEAD like GET, and refuse requests that announce large bodies.
+    """Add security headers, answer HEAD like GET, and refuse large request bodies."""
 
-    FastAPI's own limit counts the bytes of a body as they arrive. This layer refuses a body whose
-    Content-Length is too large without reading the body, also on routes that take no body.
-    """
+    # FastAPI's own limit counts the bytes of a body as they arrive. This layer reads only the
+    # header Content-Length, also on routes that take no body.
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -115,7 +114,6 @@ class BoundaryMiddleware:
 
 
 def _is_too_large(declared: str) -> bool:
-    """True if a Content-Length header declares more bytes than a body may have."""
     if not (declared.isascii() and declared.isdigit()):
         return False
     # int() refuses more than 4,300 digits, and zeros may precede a length.

@@ -1,4 +1,4 @@
-"""Do slow work in a thread, one piece at a time, with a short queue."""
+"""Do slow work in a thread, one task at a time, with a short queue."""
 
 import asyncio
 from collections.abc import Callable
@@ -14,14 +14,14 @@ WAITING: Final = 4
 
 
 class BoundedWork:
-    """Does one piece of work at a time in a thread; refuses further work if the queue is full."""
+    """Does one task at a time in a thread; refuses further tasks if the queue is full."""
 
     def __init__(self) -> None:
         self._working = asyncio.Lock()
         self._accepted = 0
 
     async def do(self, work: Callable[[], T]) -> T:
-        """Return the result of ``work``. Raises ProblemError if the queue is full."""
+        """Do ``work`` and return its result. Raises ProblemError if the queue is full."""
         if self._accepted > WAITING:
             raise ProblemError(
                 HTTPStatus.SERVICE_UNAVAILABLE,

@@ -10,7 +10,7 @@ _PIECE: Final = 16 * 1024
 
 
 class ChunkedResponse(Response):
-    """A response that is sent in chunks. If a client does not read, only one chunk is buffered."""
+    """A response that is sent in chunks; at most one chunk is buffered."""
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
         """Serve one ASGI connection."""

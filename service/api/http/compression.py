@@ -1,4 +1,4 @@
-"""Compression of pages, scripts, drawings and descriptions with gzip."""
+"""Compression of responses with gzip."""
 
 from typing import Final
 
@@ -10,11 +10,9 @@ _LEVEL: Final = 6
 
 
 class CompressedGets:
-    """Compress the answers to GET for clients that accept gzip.
+    """Compress the responses to GET for clients that accept gzip."""
 
-    The answers to POST, reports and previews, are small and must be fast, so they are not
-    compressed.
-    """
+    # The responses to POST are small and must be fast, so they are not compressed.
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app

@@ -14,12 +14,11 @@ _A_YEAR: Final = 365 * 24 * 3600
 
 
 def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
-    """Return the language of the query (``?lang=de``), the cookie or ``Accept-Language``.
+    """Return the reader's language: from the query, the cookie, or ``Accept-Language``.
 
-    The first of these three that names a language of the service decides. If none does, the
-    language is English. ``usual`` is the reader's language elsewhere, such as on a platform.
-    ``usual`` has priority over ``Accept-Language``, but not over the cookie.
+    ``usual`` is the reader's language elsewhere, such as on a platform.
     """
+    # The first that names a known language decides; the default is English.
     return (
         language_named(request.query_params.get(LANGUAGE_FIELD))
         or language_named(request.cookies.get(LANGUAGE_COOKIE))
@@ -29,7 +28,7 @@ def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
 
 
 def keep_language(request: HTTPConnection, response: Response) -> None:
-    """If the query of the request chooses a language, store the language in a cookie."""
+    """Store the language that the query chooses, if any, in a cookie."""
     if chosen := language_named(request.query_params.get(LANGUAGE_FIELD)):
         response.set_cookie(
             LANGUAGE_COOKIE,

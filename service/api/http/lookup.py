@@ -1,7 +1,4 @@
-"""Find the exercises and the parts that a request names.
-
-An unknown name raises ProblemError; the response suggests the nearest known name, if there is one.
-"""
+"""Find the exercises and the parts of exercises that a request names."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -24,12 +21,12 @@ Location = tuple[str | int, ...]
 
 
 def reachable_exercises(catalogue: Catalogue, caller: Caller) -> Catalogue:
-    """Return the exercises that the caller's key is for."""
+    """Return the exercises that the caller may use."""
     return {name: each for name, each in catalogue.items() if caller.reaches(name)}
 
 
 def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
-    """Return the exercise that a path names. Raises ProblemError."""
+    """Return the exercise with an id from the URL. Raises ProblemError."""
     try:
         return find_exercise(catalogue, exercise_id)
     except UnknownExerciseError as error:
@@ -42,7 +39,7 @@ def exercise_or_404(catalogue: Catalogue, exercise_id: str) -> Exercise:
 
 
 def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
-    """Return the exercise that the field ``exercise`` of a body names. Raises ProblemError."""
+    """Return the exercise with an id from the request body. Raises ProblemError."""
     try:
         return find_exercise(catalogue, exercise_id)
     except UnknownExerciseError as error:
@@ -51,7 +48,7 @@ def require_exercise(catalogue: Catalogue, exercise_id: str) -> Exercise:
 
 
 def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: str) -> None:
-    """Check that the exercises in the list ``field`` of a body exist. Raises ProblemError."""
+    """Check that all exercises listed in a request body exist. Raises ProblemError."""
     details = []
     for i, exercise_id in enumerate(exercise_ids):
         try:
@@ -63,10 +60,9 @@ def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: 
 
 
 def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -> None:
-    """Check that the exercise has the parts in ``located``: pairs of a part's id and its place.
+    """Check that the exercise has the parts that a request names. Raises ProblemError.
 
-    Raises ProblemError if parts are unknown. The problem lists the exercise's parts, and the places
-    of the first unknown parts in the body.
+    ``located`` has pairs of a part's id and its path in the request body.
     """
     absent = (each for each in located if exercise.part(each[0]) is None)
     known = [part.id for part in exercise.parts]

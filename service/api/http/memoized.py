@@ -10,14 +10,14 @@ MOST_RESULTS: Final = 128
 
 
 class MemoizedResults:
-    """The most recently used results. A request waits only for a result that is not in memory."""
+    """Keeps the most recently used results in memory."""
 
     def __init__(self) -> None:
         self._results: OrderedDict[Hashable, bytes] = OrderedDict()
         self._lock = asyncio.Lock()
 
     async def of(self, key: Hashable, work: Callable[[], bytes]) -> bytes:
-        """Return the result for this key; ``work`` computes the result if it is not in memory."""
+        """Return the result for this key; call ``work`` if the result is not in memory."""
         if key not in self._results:
             async with self._lock:
                 if key not in self._results:

@@ -1,4 +1,4 @@
-"""Error responses. Each contains a problem: a description of the error by RFC 9457."""
+"""Error responses in the format of RFC 9457 (problem details)."""
 
 import json
 import logging
@@ -30,12 +30,13 @@ Detail = Mapping[str, str | int]
 
 @dataclass(eq=False)
 class ProblemError(Exception):
-    """The error of a failed request. Its attributes are the fields of the error response.
+    """An error that is sent as the response; its attributes are the fields of the response.
 
-    The type of the problem ends with ``name``; without a name, the type is ``about:blank``. Each of
-    ``challenges`` is sent in a separate header ``WWW-Authenticate``. A ``title`` or ``detail`` of
-    the class ``Sentence`` is translated into the language of the reader.
+    ``name`` is the end of the problem's type. Each of ``challenges`` is sent as a header
+    ``WWW-Authenticate``.
     """
+
+    # A Sentence in ``title`` or ``detail`` is translated for the reader.
 
     status: HTTPStatus
     detail: str
@@ -46,7 +47,7 @@ class ProblemError(Exception):
     challenges: Sequence[str] = ()
 
     def response(self, instance: str, language: Language = ENGLISH) -> Response:
-        """Return the problem as the response to a request for the path ``instance``."""
+        """Return the error response to a request for the path ``instance``."""
         request = current_request()
         content = self.content(instance, "" if request is None else request.id, language)
         answer = self.answer(content, MEDIA_TYPE)
@@ -55,14 +56,14 @@ class ProblemError(Exception):
         return answer
 
     def answer(self, content: bytes, media_type: str = "text/html") -> Response:
-        """Return a response with this content, and with the problem's status and headers."""
+        """Return a response with this content, and with the error's status and headers."""
         response = Response(content, self.status, self.headers, media_type)
         for challenge in self.challenges:
             response.headers.append("WWW-Authenticate", challenge)
         return response
 
     def content(self, instance: str, request_id: str = "", language: Language = ENGLISH) -> bytes:
-        """Return the problem as JSON; ``instance`` is the path that was requested."""
+        """Return the error as JSON; ``instance`` is the path that was requested."""
         translation = language.translation
         document: dict[str, Any] = {
             "type": f"{TYPE_PREFIX}{self.name}" if self.name else "about:blank",
@@ -86,10 +87,7 @@ class ProblemError(Exception):
 
 
 def message_of(error: Exception) -> str:
-    """Return the message of an error.
-
-    A message of the class Sentence is returned as such, so that it can still be translated.
-    """
+    """Return the message of an error, as a translatable Sentence or as a plain text."""
     message = error.args[0] if error.args else ""
     return message if isinstance(message, str) else str(error)
 
@@ -99,10 +97,7 @@ ProblemPage = Callable[[Request, ProblemError], Response | None]
 
 
 def too_large() -> ProblemError:
-    """Return the problem for a request body that is too large.
-
-    The service closes the connection without reading the rest of the body.
-    """
+    """Return the error for a request body that is too large."""
     return ProblemError(
         HTTPStatus.REQUEST_ENTITY_TOO_LARGE,
         say("A request may hold {most} KiB; this one is larger.", most=MAX_BODY_SIZE // 1024),
@@ -113,7 +108,7 @@ def too_large() -> ProblemError:
 
 
 def store_down(detail: str) -> ProblemError:
-    """Return the problem for a database that does not respond; grading needs no database."""
+    """Return the error for a database that does not respond."""
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
         detail,
@@ -124,7 +119,7 @@ def store_down(detail: str) -> ProblemError:
 
 
 def failed() -> ProblemError:
-    """Return the problem for a failure inside the program."""
+    """Return the error for an internal failure of the program."""
     return ProblemError(
         HTTPStatus.INTERNAL_SERVER_ERROR,
         say(
@@ -139,10 +134,9 @@ def invalid(
     fields: Sequence[str] = (),
     at: tuple[str | int, ...] = (),
 ) -> ProblemError:
-    """Return the problem for a request body in which pydantic has found errors.
+    """Return the error for a request body with faults; ``details`` are pydantic's errors.
 
-    ``details`` are pydantic's errors. If a field at the place ``at`` in the body is unknown, the
-    problem suggests the nearest name in ``fields``.
+    For an unknown field at the place ``at``, the error suggests a name from ``fields``.
     """
     errors = [
         {
@@ -166,15 +160,14 @@ def invalid(
 
 
 def _pointer(location: Sequence[str | int]) -> str:
-    """Return a place in a request body as a JSON pointer such as ``#/answers/dh``."""
     steps = (str(step)[:60].replace("~", "~0").replace("/", "~1") for step in location)
     return "#" + "".join(f"/{step}" for step in steps)
 
 
 def install(app: FastAPI, page: ProblemPage | None = None) -> None:
-    """Let the app respond with a problem to every failure, including failures of the framework.
+    """Make the app answer every failure with an error response.
 
-    For a browser, ``page`` makes an HTML page from the problem.
+    ``page`` makes the HTML page of an error, for browsers.
     """
 
     async def answer(request: Request, error: Exception) -> Response:
@@ -223,7 +216,6 @@ def _problem(request: Request, error: Exception) -> ProblemError:
 
 
 def _other_method(request: Request, error: HTTPException) -> ProblemError:
-    """Return the problem for a wrong HTTP method; it lists the allowed methods."""
     methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
     allow = ", ".join(sorted(methods))

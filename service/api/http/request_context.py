@@ -15,7 +15,7 @@ _WELL_FORMED: Final = re.compile(r"[A-Za-z0-9._:=+/-]{1,128}", re.ASCII)
 
 @dataclass(slots=True)
 class RequestContext:
-    """One request. ``route`` is the pattern of its path, or empty until the route is known."""
+    """A request; ``route`` is the pattern of its path, such as ``/v1/exercises/{exercise_id}``."""
 
     id: str
     route: str = ""
@@ -31,10 +31,7 @@ _current: ContextVar[RequestContext | None] = ContextVar("request", default=None
 
 
 def begin_request(wished: str | None = None) -> RequestContext:
-    """Start a new request in the current task.
-
-    Its id is ``wished`` if this text is well formed, otherwise a random id.
-    """
+    """Start a new request in the current task; ``wished`` is the id that the client wishes."""
     usable = wished is not None and _WELL_FORMED.fullmatch(wished)
     context = RequestContext(wished if usable and wished else secrets.token_hex(16))
     _current.set(context)

@@ -1,4 +1,4 @@
-"""Responses in the language of the reader: their headers, and the parameter ``lang``."""
+"""Headers and parameters of responses in the language of the reader."""
 
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -23,14 +23,14 @@ _VARY: Final = {"Vary": "Accept-Language, Cookie"}
 
 
 def in_languages(options: dict[str, Any]) -> dict[str, Any]:
-    """Return FastAPI's arguments for a route, with the parameter ``lang`` in the documentation."""
+    """Return FastAPI's arguments for a route that also has the query parameter ``lang``."""
     extra = options.get("openapi_extra", {})
     parameters = [*extra.get("parameters", ()), _PARAMETER]
     return {**options, "openapi_extra": {**extra, "parameters": parameters}}
 
 
 def language_headers(language: Language) -> dict[str, str]:
-    """Return ``Content-Language``, and ``Vary`` with the headers that decide the language."""
+    """Return the headers ``Content-Language`` and ``Vary`` of a response in this language."""
     return {"Content-Language": language.tag, **_VARY}
 
 

@@ -1,9 +1,11 @@
 """Check that the caller of each request has the right that the request's route needs.
 
-As long as there are no keys, grading and recording are open. Tutors are then the users of the
-machine that the service runs on. A request that a proxy has forwarded does not count as a tutor's,
-because the proxy also forwards requests of students.
+While the service has no API keys, grading and recording are open, and the users of this machine
+count as tutors.
 """
+
+# A request that a proxy has forwarded does not count as a tutor's, because the proxy also forwards
+# requests of students.
 
 import base64
 import binascii
@@ -57,10 +59,10 @@ _NOT_SHOWN: Final = {
 
 @dataclass(frozen=True, slots=True)
 class Identity:
-    """The caller of a request; ``by_key`` is True if the service has keys.
+    """The caller of a request.
 
-    ``refusal`` is the problem to send if the key is not valid. ``in_browser`` is True if a
-    browser has added the key by itself, perhaps for a page of another origin.
+    ``refusal`` is the error to send if the key is not valid. ``in_browser`` is True if a browser
+    has added the key by itself.
     """
 
     caller: Caller
@@ -75,8 +77,8 @@ _UNKNOWN: Final = Identity(NOBODY, by_key=True)
 class Access:
     """Checks who the callers are and what they may do.
 
-    ``solutions`` and ``read_attempts`` say who may see solutions and attempts while the service has
-    no keys: True for everybody, None for tutors only, False for nobody.
+    ``solutions`` and ``read_attempts`` apply while the service has no keys: True for everybody,
+    None for tutors only, False for nobody.
     """
 
     def __init__(
@@ -135,16 +137,17 @@ class Access:
         return self._identity(request).caller
 
     def is_signed_in(self, request: Request) -> bool:
-        """Return whether the request has the session of a tutor."""
+        """True if the request has the session of a tutor."""
         return self._identity(request).in_browser
 
     def require_allowed_origin(self, request: Request, origins: Collection[str]) -> None:
-        """Check that the request comes from a page that may record attempts. Raises ProblemError.
+        """Check that the request comes from a page that may record attempts.
 
-        The pages of the service and of ``origins`` may record attempts. A browser sends the POST of
-        any page without asking the service first, and only hides the response from the page.
-        Requests with a key that the browser has not added by itself skip this check.
+        Raises ProblemError.
         """
+        # A browser sends the POST of any page without asking the service first, and only hides the
+        # response from the page. Requests with a key that the browser has not added by itself skip
+        # this check.
         identity = self._identity(request)
         shows_key = bool(identity.caller.key_id) and not identity.in_browser
         is_allowed = "*" in origins or request.headers.get("origin") in origins
@@ -152,7 +155,7 @@ class Access:
             raise access_problem("origin-refused")
 
     def shows_solutions(self, request: Request) -> bool:
-        """Return whether the caller may see the solutions of at least one exercise."""
+        """True if the caller may see the solutions of at least one exercise."""
         try:
             self._check(request, RIGHTS["GET /tutor"])
         except ProblemError:
@@ -160,15 +163,12 @@ class Access:
         return True
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token with the rights of ``caller``, until the time ``expires_at``.
-
-        ``caller`` has a key, but acts only for one learner.
-        """
+        """Return a token for the learner for whom ``caller`` acts, valid until ``expires_at``."""
         assert self.keys is not None, "only keys make tokens"
         return self.keys.token(caller, expires_at)
 
     def close(self) -> None:
-        """Record the latest uses of keys, and stop the threads that look up keys."""
+        """Record the latest uses of keys, and stop the threads."""
         if self.keys is not None:
             self.keys.close()
 
@@ -193,7 +193,6 @@ class Access:
     def _problem(
         self, request: Request, identity: Identity, right: Right, scope: Scope
     ) -> ProblemError | None:
-        """Return the problem for a caller who lacks the right; None if the caller has it."""
         caller = identity.caller
         shown = self._shown.get(right.without_keys)
         is_learner = caller.learner is not None
@@ -230,17 +229,15 @@ class Access:
 
 
 def require_reach(caller: Caller, exercise: str | None) -> None:
-    """Raise ProblemError if ``exercise`` is an exercise that the caller may not use."""
+    """Raise ProblemError if the caller may not use ``exercise``."""
     if exercise is not None and not caller.reaches(exercise):
         raise access_problem("other-exercise")
 
 
 def is_at_the_machine(request: Request) -> bool:
-    """True if a program or browser on this machine made the request, and no proxy forwarded it.
-
-    Both ends of the connection are on this machine, no proxy is between them, and the header Host
-    has a local name. The last condition refuses pages whose domain name resolves to this machine.
-    """
+    """True if a client on this machine has made the request directly, without a proxy."""
+    # A local Host is required, so that pages whose domain name resolves to this machine are
+    # refused.
     server = request.scope.get("server") or ("",)
     client = request.scope.get("client") or ("",)
     asked = _host_name(request.headers.get("host", ""))
@@ -253,24 +250,20 @@ def is_at_the_machine(request: Request) -> bool:
 
 
 def _is_of_proxy(request: Request) -> bool:
-    """True if the request shows that a proxy has forwarded it.
-
-    An unconfigured nginx adds no header and names this machine as host, but it speaks HTTP/1.0
-    (ngx_http_proxy_module, "proxy_http_version", "proxy_set_header"), which no browser does.
-    """
+    # An unconfigured nginx adds no header and names this machine as host, but it speaks HTTP/1.0
+    # (ngx_http_proxy_module, "proxy_http_version", "proxy_set_header"), which no browser does.
     return request.scope.get("http_version") == "1.0" or any(
         name in _OF_PROXIES or name.startswith("x-forwarded-") for name in request.headers
     )
 
 
 def is_loopback(host: str) -> bool:
-    """Return whether an address is a loopback address, which only this machine reaches."""
+    """True if an address is a loopback address, which only this machine reaches."""
     address = _address(host)
     return address is not None and address.is_loopback
 
 
 def _is_to_this_machine(server: str) -> bool:
-    """Return whether the server's address is a loopback address or a socket in the file system."""
     return _address(server) is None or is_loopback(server)
 
 
@@ -290,14 +283,11 @@ def _host_name(netloc: str) -> str:
 
 
 def is_same_origin(request: Request) -> bool:
-    """True unless a page of another origin has made the request.
-
-    Programs send no origin. Browsers say in the header Sec-Fetch-Site (Fetch Metadata) whether the
-    origin is the same. They send this header over HTTPS and to their own machine, also with
-    requests for pictures and scripts, which have no Origin header. Sec-Fetch-Site is more reliable
-    than comparing schemes, because a service behind a proxy may not know the browser's scheme. A
-    user may follow a link from any page, because that page cannot read the response.
-    """
+    """True unless a page of another origin has made the request."""
+    # Programs send no origin. Browsers send Sec-Fetch-Site (Fetch Metadata) over HTTPS and to their
+    # own machine, also with requests that have no Origin header. It is more reliable than comparing
+    # schemes, because a service behind a proxy may not know the browser's scheme. A user may follow
+    # a link from any page, because that page cannot read the response.
     headers = request.headers
     site = headers.get("sec-fetch-site")
     if site not in (None, "same-origin", "none") and not _follows_link(request):
@@ -311,12 +301,9 @@ def is_same_origin(request: Request) -> bool:
 
 
 def session_in(scope: AsgiScope) -> str:
-    """Return the session token in the cookies of a request, or "".
-
-    Over HTTPS, only the secure cookie counts. Another host of the same site, or an attacker who
-    changes HTTP responses, could set the plain cookie. Browsers send cookies also with requests of
-    pages of other origins; then the session is ignored, unless a user follows a link.
-    """
+    """Return the session token in the cookies of a request, or ""."""
+    # Over HTTPS, only the secure cookie counts: another host of the same site, or an attacker who
+    # changes HTTP responses, could set the plain cookie.
     request = Request(scope)
     origin = request.headers.get("origin", "")
     is_secure = scope["scheme"] == "https" or origin.startswith("https:")
@@ -327,7 +314,6 @@ def session_in(scope: AsgiScope) -> str:
 
 
 def _follows_link(request: Request) -> bool:
-    """True if a browser opens the response as a page, and not in a frame."""
     headers = request.headers
     return (
         request.method in ("GET", "HEAD")
@@ -337,11 +323,8 @@ def _follows_link(request: Request) -> bool:
 
 
 def _credential(header: str) -> tuple[str, bool]:
-    """Return the key or token in an Authorization header, and True if it is sent as a password.
-
-    Browsers send a key as a password. A password that is not a key is ignored: it may be meant for
-    a proxy, which has already checked it.
-    """
+    # Browsers send a key as a password. A password that is not a key is ignored: it may be meant
+    # for a proxy, which has already checked it.
     scheme, _, value = header.partition(" ")
     match scheme.lower():
         case "bearer":

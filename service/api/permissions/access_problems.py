@@ -1,4 +1,4 @@
-"""The problems for requests whose caller lacks the right to make them."""
+"""The errors for requests that the caller has no right to make."""
 
 from collections.abc import Mapping, Sequence
 from http import HTTPStatus
@@ -17,7 +17,7 @@ _ALLOWS: Final = {
 
 
 class AccessProblem(NamedTuple):
-    """The constant parts of a problem. Names in braces are placeholders for values."""
+    """The constant texts of an error, with placeholders in braces."""
 
     status: HTTPStatus
     title: str
@@ -123,7 +123,7 @@ ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
 
 
 def access_problem(name: str, **values: SentenceValue) -> ProblemError:
-    """Return the problem whose type ends with ``name``, with ``values`` put into its texts."""
+    """Return the error called ``name``, with ``values`` put into its texts."""
     status, title, detail, retry_after, challenges = ACCESS_PROBLEMS[name]
     headers = None if retry_after is None else {"Retry-After": retry_after.format_map(values)}
     return ProblemError(
@@ -132,12 +132,12 @@ def access_problem(name: str, **values: SentenceValue) -> ProblemError:
 
 
 def scope_missing(scope: Scope) -> ProblemError:
-    """Return the problem for a key that lacks this scope."""
+    """Return the error for a key without this scope (a right of a key)."""
     return access_problem("scope-missing", allowed=_ALLOWS[scope], scope=str(scope))
 
 
 def token_for_token() -> ProblemError:
-    """Return the problem for a request that asks for a token with another token."""
+    """Return the error for a request that asks for a token with another token."""
     return ProblemError(
         HTTPStatus.FORBIDDEN,
         say("A token makes no tokens; this needs a key."),

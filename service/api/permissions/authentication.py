@@ -1,4 +1,4 @@
-"""The layer that authenticates requests and counts them, before they wait for their turn."""
+"""Middleware that authenticates the callers of requests and limits their rates."""
 
 from typing import Final, Protocol
 
@@ -19,17 +19,17 @@ _HEALTH: Final = ("/healthz", "/readyz")
 
 
 class RequestRates(Protocol):
-    """Counts the requests of callers, and says when one has sent too many."""
+    """Counts the requests of callers, to limit their rates."""
 
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
         """Count a request; return 0 if it is allowed, otherwise the seconds to wait."""
 
     def close(self) -> None:
-        """Stop the threads that count."""
+        """Stop the counting threads."""
 
 
 class AuthenticationMiddleware:
-    """Note the caller of each request, and refuse requests beyond the caller's rate limit."""
+    """Authenticate the caller of each request, and enforce the caller's rate limit."""
 
     def __init__(self, app: ASGIApp, access: Access, rates: RequestRates | None) -> None:
         self.app = app
@@ -58,10 +58,7 @@ class AuthenticationMiddleware:
 
 
 def _most_shares(caller: Caller) -> float:
-    """Return the largest number of processor shares that the caller may have.
-
-    A key that may record is treated as the key of a course site, which acts for all its students.
-    """
+    # A key that may record counts as the key of a course site, which acts for all its students.
     if caller.learner is not None:
         return ONE_STUDENT
     return COURSE_SITE if Scope.RECORD in caller.scopes else ONE_ADDRESS

@@ -1,6 +1,6 @@
 """A table with the right that each route needs.
 
-The service checks these rights. A part of docs/keys.md is generated from the table.
+A part of docs/keys.md is generated from the table.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from service.access.caller import Scope
 
 
 class Reach(Enum):
-    """The exercises that a route is about. A key restricted to some exercises must include them."""
+    """The exercises that a route is about; a restricted key must include them."""
 
     PATH = "the one in the path"
     QUERY = "the one in `?exercise=`, else all"
@@ -48,10 +48,9 @@ class WithoutKeys(Enum):
 class Right:
     """What a caller needs for a route.
 
-    ``scope`` is the scope that a key needs; None if everybody may use the route, with or without
-    keys. ``tokens`` is True if a learner with a token may use the route for the learner's own data.
-    ``in_course`` is True if the route accepts a key of a course, for this course only; other routes
-    refuse such a key.
+    ``scope`` is the right that a key needs, or None if no key is needed. ``tokens`` is True if
+    learners may use the route with a token. ``in_course`` is True if a key of one course may be
+    used.
     """
 
     scope: Scope | None
@@ -189,10 +188,7 @@ def right_of(request: Request) -> Right:
 
 
 def require_entries(router: APIRouter) -> None:
-    """Check that the right of each route of ``router`` is in the table ``RIGHTS``.
-
-    Raises LookupError.
-    """
+    """Check that the table ``RIGHTS`` has every route of ``router``. Raises LookupError."""
     routes = {
         f"{method} {route.path}"
         for route in iter_route_contexts(router.routes)

@@ -51,7 +51,7 @@ Arrived = tuple[datetime, Standing]
 
 @dataclass(frozen=True, slots=True)
 class Recorder:
-    """Records attempts in a store. ``ceiling`` is the highest feedback level of reports."""
+    """Records attempts in the database. ``ceiling`` is the highest feedback level of reports."""
 
     store: "AttemptStore"
     ceiling: FeedbackLevel
@@ -67,11 +67,11 @@ class Recorder:
         idempotency_key: str | None,
         arrived: Arrived | None = None,
     ) -> Response:
-        """Grade answers, record them, and return a response with the attempt and its report.
+        """Grade and record answers; return a response with the attempt and its report.
 
-        ``arrived`` has the time when the request arrived, and the learner's earlier attempts at
-        that time. Without ``arrived``, both are looked up. Raises ProblemError.
+        Raises ProblemError.
         """
+        # Without ``arrived``, the time of arrival and the earlier attempts are looked up.
         now, before = arrived or (arrived_at(request), None)
         attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
         try:
@@ -91,8 +91,6 @@ class Recorder:
 
 
 class _Attempting:
-    """One request to record an attempt."""
-
     def __init__(
         self,
         exercise: Exercise,
@@ -120,10 +118,6 @@ class _Attempting:
         self._request_digest = _digest(content)
 
     async def recorded(self, request: Request, before: Standing | None) -> RecordedAttempt:
-        """Grade the attempt and record it.
-
-        Raises StoreDownError, AttemptRefusedError, ProblemError.
-        """
         store, assignment = self._recorder.store, self._terms.assignment
         standing = before or await store.standing(
             self._exercise.plain_id, self._body.learner, self._owner, self._key, assignment
@@ -143,7 +137,6 @@ class _Attempting:
         return ruling(self._terms.rules, standing.counted, self._now)
 
     def _most(self, taken: Ruling) -> FeedbackLevel:
-        """Return the highest feedback level for the learner at this attempt."""
         return least(self._terms.feedback_at(taken.ordinal), self._recorder.ceiling)
 
     def _grade(self, most: FeedbackLevel) -> None:
@@ -167,11 +160,8 @@ class _Attempting:
         return earlier
 
     def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
-        """Return the attempt to record, or None if it cannot be recorded now.
-
-        It cannot be recorded if it is not allowed, if it is recorded already, or if it must be
-        graded with another feedback level first.
-        """
+        # None if the attempt is not allowed, is recorded already, or must be graded with another
+        # feedback level first.
         if standing.earlier is not None:
             return None
         try:
@@ -210,7 +200,6 @@ class _Attempting:
 
 
 def _answer(recorded: RecordedAttempt, language: Language) -> bytes:
-    """Return the attempt and its report as JSON. An English report is sent exactly as recorded."""
     attempt = Attempt.model_validate(recorded, from_attributes=True)
     told = attempt.model_dump_json(exclude_none=True)
     report = shown_report(recorded.report, language)

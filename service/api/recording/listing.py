@@ -1,4 +1,4 @@
-"""The routes with which tutors, and learners with a token, read recorded attempts."""
+"""Routes for tutors and for learners with a token: read recorded attempts."""
 
 import json
 import re
@@ -191,10 +191,7 @@ def course_of(caller: Caller, course: str | None) -> str | None:
 
 
 def may_reach(caller: Caller, found: "AttemptHistory | None") -> bool:
-    """True if the attempt exists and the caller may see it.
-
-    A caller may be restricted to some exercises or to a course.
-    """
+    """True if the attempt exists and the caller may see it."""
     return (
         found is not None
         and caller.reaches(found.attempt.exercise)
@@ -203,7 +200,6 @@ def may_reach(caller: Caller, found: "AttemptHistory | None") -> bool:
 
 
 def _readable(caller: Caller, learner: str | None) -> str | None:
-    """Return the learner whose attempts the caller may list; None for all. Raises ProblemError."""
     if caller.learner is not None and learner not in (None, caller.learner):
         raise access_problem("other-learner")
     return caller.learner or learner
@@ -214,7 +210,6 @@ def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
 
 
 def _summary(attempt: ListedAttempt, caller: Caller) -> AttemptSummary:
-    """Return an attempt as the caller may see it: a learner does not see the variant's seed."""
     seen = attempt if caller.learner is None else replace(attempt, variant=None)
     return AttemptSummary.model_validate(seen, from_attributes=True)
 

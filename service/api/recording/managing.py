@@ -1,4 +1,4 @@
-"""The routes with which tutors export and change recorded attempts."""
+"""Routes for tutors: export and change recorded attempts."""
 
 from collections.abc import AsyncIterator
 from dataclasses import asdict
@@ -66,7 +66,7 @@ def routes(
 ) -> APIRouter:
     """Return the routes that export and change attempts.
 
-    ``feedback`` is the highest level of new reports.
+    ``feedback`` is the highest feedback level of new reports.
     """
     router = APIRouter(prefix="/v1", tags=["attempts"])
     regrades = _Regrades(feedback)
@@ -213,8 +213,6 @@ def routes(
 
 
 class _Regrades:
-    """Runs one step of a regrade at a time, so that the service can record and grade meanwhile."""
-
     def __init__(self, ceiling: FeedbackLevel) -> None:
         self._ceiling = ceiling
         self.work = BoundedWork()
@@ -231,7 +229,6 @@ class _Regrades:
         language: Language,
         store: "AttemptStore",
     ) -> RegradeAnswer:
-        """Do one step of a regrade, in one or all courses. Raises ProblemError, StoreDownError."""
         # Imported here, because it loads the drivers of databases.
         from service.attempts.regrades.steps import apply_step, preview_step
 
@@ -267,7 +264,6 @@ class _Regrades:
         )
 
     def _failures(self, exercise: Exercise) -> list[str]:
-        """Return why the exercise fails its check."""
         from service.authoring import failures
 
         if self._checked is None or self._checked[0] is not exercise:
@@ -294,12 +290,10 @@ async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:
 
 
 def _stem(form: GradesFormat, exercise: str | None) -> str:
-    """Return the name of an exported file without its suffix; omit an invalid exercise id."""
     kind = form.value if form.is_gradebook else "attempts"
     return f"{kind}-{exercise}" if exercise and is_exercise_id(exercise) else kind
 
 
 def _author(caller: Caller, given: str | None) -> str:
-    """Return the author of an override: the given name, which nobody has checked, and the key."""
     by = f"key {caller.key_id}" if caller.key_id else "at the machine"
     return f"{given} ({by})" if given else by

@@ -41,11 +41,7 @@ def routes(
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the route that records attempts. ``feedback`` is the highest level of reports.
-
-    ``practice`` raises an error if an assignment of the learner forbids to practise the exercise
-    now. Web pages of the service and of ``origins`` may record attempts.
-    """
+    """Return the route that records attempts; ``feedback`` is the highest level of reports."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.post(
@@ -95,7 +91,7 @@ def routes(
 
 
 def not_recorded() -> ProblemError:
-    """Return the problem for a service without a database."""
+    """Return the error for a service without a database."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
         say("No attempts are recorded here: the service has no database."),

@@ -1,4 +1,4 @@
-"""The store of attempts, as the routes for tutors use it."""
+"""Access to the recorded attempts for routes, with errors as HTTP responses."""
 
 from collections.abc import Awaitable, Callable
 from http import HTTPStatus
@@ -25,7 +25,7 @@ async def ask(
 ) -> R:
     """Call ``question`` with the store of attempts, and return its result.
 
-    Raises ProblemError if there is no store or its database does not respond.
+    Raises ProblemError if the database is missing or does not respond.
     """
     if store is None:
         raise not_recorded()
@@ -37,7 +37,7 @@ async def ask(
 
 
 def unknown_attempt() -> ProblemError:
-    """Return the problem for an attempt that does not exist or that the caller may not see."""
+    """Return the error for an attempt that is unknown or that the caller may not see."""
     return ProblemError(
         HTTPStatus.NOT_FOUND,
         say("No attempt with this id is recorded here."),

@@ -17,7 +17,10 @@ from service.typeset.statement import statement_html
 
 
 def routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVariants) -> APIRouter:
-    """Return the routes of the catalogue; ``feedback`` is the highest level of any report."""
+    """Return the routes that list and describe exercises.
+
+    ``feedback`` is the highest feedback level of reports.
+    """
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
 
     # The models take the public fields from the attributes of the exercises.

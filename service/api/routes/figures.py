@@ -33,7 +33,7 @@ class SvgResponse(Response):
 
 
 def routes(catalogue: Catalogue, own: OwnVariants) -> APIRouter:
-    """Return the route of the figures."""
+    """Return the route that draws figures."""
     router = APIRouter(prefix="/v1/exercises", tags=["exercises"])
     figures = MemoizedResults()
 
@@ -74,7 +74,7 @@ def _drawn(exercise: Exercise, theme: Theme) -> bytes:
 
 
 def figure_headers(theme: Theme) -> dict[str, str]:
-    """Return headers that allow only the figure's own style, and let any page show the figure."""
+    """Return the HTTP headers of a figure; any page may show the figure."""
     digest = base64.b64encode(hashlib.sha256(style_sheet(theme).encode()).digest()).decode()
     policy = f"default-src 'none'; style-src 'sha256-{digest}'; frame-ancestors 'self'"
     return {

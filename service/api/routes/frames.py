@@ -62,13 +62,11 @@ _MOST_MECHANISMS: Final = 64
 
 
 class _Mechanisms:
-    """The most recently used mechanisms, because a dragged slider uses a mechanism many times."""
-
+    # A dragged slider uses a mechanism many times.
     def __init__(self) -> None:
         self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
 
     def of(self, exercise: Exercise, numbers: Mapping[str, float]) -> tuple[MovableMechanism, View]:
-        """Return the mechanism of an exercise with these numbers, and the view of the mechanism."""
         key = (exercise.id, exercise.version, exercise.view, *numbers.values())
         if key not in self._mechanisms:
             subject = subject_of(exercise)
@@ -115,7 +113,6 @@ def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
 def _answered(
     exercise: Exercise | None, body: FramesRequest, mechanisms: _Mechanisms
 ) -> FramesAnswer:
-    """Return the response to a request. Raises ProblemError if fields contradict each other."""
     scope = _scope(exercise, body)
     constants = [variable.name for variable in scope.variables if variable.joint is None]
     if unknown := sorted(body.symbols.keys() - set(constants)):
@@ -182,7 +179,7 @@ def _refused(place: Location, message: Sentence) -> ProblemError:
 
 
 def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, float]) -> Numbers:
-    """Return the joint values in a request, as an array of shape ``(poses, joints)``."""
+    # An array of shape (poses, joints).
     if body.joints is None:
         return np.array([[numbers[joint.variable] for joint in scope.joints]])
     for i, values in enumerate(body.joints):
@@ -217,10 +214,7 @@ def _table(
     numbers: Mapping[str, float],
     amounts: Numbers,
 ) -> tuple[FramesOfTable, TableFrames | None]:
-    """Return the frames of a table twice: for the response, and for the drawing.
-
-    If the table cannot be read, the response has the reason, and the drawing is None.
-    """
+    # If the table cannot be read, the response has the reason, and the drawing is None.
     budget = WorkBudget.of_drawing(with_figure=body.figure is not None)
     try:
         written = table_to_draw(table.rows, scope, budget, body.angle_unit)
@@ -357,5 +351,5 @@ def _configuration(shown: Configuration, frames: Matrices) -> DrawnConfiguration
 
 
 def _plain(numbers: Numbers) -> Any:
-    """Return numbers as lists, rounded to 12 decimals and without a negative 0."""
+    # Rounded to 12 decimals and without a negative 0.
     return (np.round(numbers, 12) + 0.0).tolist()

@@ -1,4 +1,4 @@
-"""The routes that grade."""
+"""The routes that grade submissions."""
 
 import logging
 from functools import partial
@@ -38,7 +38,7 @@ def routes(
     practice: PracticeGate,
     own: OwnVariants,
 ) -> APIRouter:
-    """Return the routes that grade; reports have at most the level ``feedback``."""
+    """Return the routes that grade; ``feedback`` is the highest feedback level of reports."""
     router = APIRouter(prefix="/v1", tags=["grading"])
 
     # Gradings run on the event loop: each is a millisecond of pure Python, which threads cannot
@@ -110,7 +110,6 @@ def routes(
         return _problem(problem, path, i, language)
 
     def _report(exercise: Exercise, body: GradeRequest, at: Location, language: Language) -> bytes:
-        """Return the report as JSON. Raises ProblemError if the submission has an unknown part."""
         require_parts(exercise, ((part, (*at, "answers", part)) for part in body.answers))
         submission = body.submission(least(exercise.feedback, feedback))
         began = working_time()
@@ -123,10 +122,6 @@ def routes(
 
 
 def _named(submission: object) -> str:
-    """Return the exercise id in a submission, without the seed of a variant.
-
-    Return "" if the submission is malformed.
-    """
     exercise = submission.get("exercise") if isinstance(submission, dict) else None
     return exercise.partition("~")[0] if isinstance(exercise, str) else ""
 

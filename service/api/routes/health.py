@@ -1,4 +1,4 @@
-"""The routes with which a supervisor checks the service."""
+"""The routes that tell whether the service works, for supervisors of processes."""
 
 import asyncio
 from http import HTTPStatus
@@ -34,7 +34,7 @@ class Ready(BaseModel):
 
 
 def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
-    """Return the routes with which a supervisor checks the service."""
+    """Return the routes that tell whether the service works."""
     router = APIRouter(tags=["health"])
     checks = None if store is None else _Checks(store)
 
@@ -71,14 +71,12 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
 
 
 class _Checks:
-    """Checks the database, once at a time; requests that arrive during a check share the check."""
-
+    # Checks the database once at a time; requests that arrive during a check share it.
     def __init__(self, store: "AttemptStore") -> None:
         self._store = store
         self._under_way: asyncio.Task[None] | None = None
 
     async def passed(self) -> None:
-        """Wait until a check of the database has passed. Raises StoreDownError if it fails."""
         if self._under_way is None or self._under_way.done():
             self._under_way = asyncio.create_task(self._check())
         # If one client goes away, the others still wait for the check.

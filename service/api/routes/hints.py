@@ -130,7 +130,7 @@ def routes(
 
 
 def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint:
-    """Return the step of a hint that a request asks for. Raises ProblemError."""
+    """Return the requested step of a hint. Raises ProblemError."""
     require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
     require_parts(exercise, [(body.part, ("part",))])
     submission = body.submission(least(exercise.feedback, most, FeedbackLevel.HINTS))
@@ -163,7 +163,7 @@ def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint
 
 
 def choices_for(exercise: Exercise, body: ChoicesRequest) -> FrameChoices:
-    """Return other correct tables for the robot of a correct table. Raises ProblemError."""
+    """Return other correct tables for the same robot. Raises ProblemError."""
     require_parts(exercise, [(body.part, ("part",))])
     part = exercise.part(body.part)
     found = []

@@ -1,4 +1,4 @@
-"""The routes that show how a text is read while the student is typing."""
+"""The routes that show how the grader reads a text while a student is typing."""
 
 from functools import partial
 from typing import Final
@@ -39,7 +39,7 @@ GENERIC: Final = Vocabulary(
 
 
 def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
-    """Return how the grader reads the text, if ``vocabulary`` has the known symbols."""
+    """Return how the grader reads the text; ``vocabulary`` has the known symbols."""
     try:
         expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
     except ExpressionError as error:
@@ -57,7 +57,7 @@ def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
 
 
 def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
-    """Return how the grader reads the entries, within the work budget of one submission."""
+    """Return how the grader reads several texts, within the limits of one submission."""
     entries = [(entry.text, entry.quantity) for entry in body.entries]
     cells = preview_entries(entries, exercise, body.part, body.angle_unit)
     return PreviewManyResponse(results=[_answer(cell) for cell in cells])
@@ -90,10 +90,6 @@ def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> Preview
 
 
 def _shown(body: PreviewRequest, exercise: Exercise | None, language: Language) -> str:
-    """Return as JSON how the grader reads the text.
-
-    The text may be one entry, or a whole table or matrix.
-    """
     shown = preview(body, exercise.vocabulary if exercise else GENERIC)
     if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
         grid = preview_grid(body, exercise, body.part)

@@ -1,7 +1,7 @@
-"""The files of the page /docs, on which people read and try the operations.
+"""The files of the page /docs, which documents the HTTP interface.
 
-Swagger UI draws the page. Its files are those of the npm package swagger-ui-dist, so the page works
-without the internet.
+Swagger UI draws the page. Its files are part of the service, so the page works without the
+internet.
 """
 
 from http import HTTPStatus
@@ -29,7 +29,7 @@ _FILES: Final = {
 
 
 def routes() -> APIRouter:
-    """Return the route of the files."""
+    """Return the route of the files of the page /docs."""
     router = APIRouter(include_in_schema=False)
     contents = {name: (FOLDER / name).read_bytes() for name in _FILES}
 

@@ -27,7 +27,7 @@ _SOLUTION: Final = TypeAdapter(ModelSolution)
 
 
 class SolvedExercises:
-    """The solutions of exercises, memoized."""
+    """The model solutions of exercises, memoized."""
 
     def __init__(self) -> None:
         self._memoized = MemoizedResults()

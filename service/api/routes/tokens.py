@@ -14,7 +14,7 @@ from service.contract.tutoring import TokenRequest, TokenResponse
 
 
 def routes(catalogue: Catalogue, access: Access) -> APIRouter:
-    """Return the route with which holders of keys make tokens."""
+    """Return the route that makes tokens for learners."""
     router = APIRouter(prefix="/v1", tags=["tokens"])
 
     @router.post(
