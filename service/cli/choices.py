@@ -16,7 +16,7 @@ _Choice = TypeVar("_Choice", bound=StrEnum)
 
 
 def one_of(name: str, known: Iterable[str]) -> str:
-    """Return the word if it is known. Raises typer.BadParameter with the nearest known word."""
+    """Return ``name`` if it is a known word. Raises typer.BadParameter."""
     names = list(known)
     if name in names:
         return name
@@ -27,20 +27,18 @@ def one_of(name: str, known: Iterable[str]) -> str:
 
 
 def choice(of: type[_Choice]) -> Callable[[str], _Choice]:
-    """Return the parser of an option that takes one of the values of an enumeration."""
+    """Return a parser for an option whose values are those of an enumeration."""
     return lambda text: of(one_of(text, [each.value for each in of]))
 
 
 def listed(of: type[StrEnum]) -> str:
-    """The values of an enumeration as ``--help`` shows them: ``[a|b]``."""
+    """Return the values of an enumeration as ``--help`` shows them: ``[a|b]``."""
     return f"[{'|'.join(each.value for each in of)}]"
 
 
 def report_language(settings: Settings, output_format: str) -> Language:
-    """Return the language of reports; end the program if the chosen language is unknown.
-
-    Without a setting, reports in the format ``text`` are in the language of the user.
-    """
+    """Return the language of reports; exit if the chosen language is unknown."""
+    # Without a setting, reports in the format ``text`` are in the language of the user.
     if output_format == "text" and "language" not in settings.model_fields_set:
         return user_language()
     found = language_named(settings.language)

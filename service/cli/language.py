@@ -1,9 +1,9 @@
-"""The language of the user, in which the command line speaks.
+"""Translate the command line into the language of the user.
 
-Help texts are English in the source. ``translate_help`` translates a command's help texts when the
-command is loaded. Output for programs, the names of commands and options, and exit codes have no
-language.
+Help texts are English in the source; ``translate_help`` translates them when a command is loaded.
 """
+
+# Output for programs, the names of commands and options, and exit codes have no language.
 
 import gettext
 import os
@@ -34,11 +34,9 @@ _TYPER_WORDS: Final = (
 
 
 def user_language(variables: Mapping[str, str] = os.environ) -> Language:
-    """Return the language that the environment names, or English.
-
-    ``DH_GRADER_LANGUAGE`` decides. Without it, the first known language of the list LANGUAGE and of
-    the locale decides. The locales C and POSIX mean English.
-    """
+    """Return the language that the environment names, or English."""
+    # DH_GRADER_LANGUAGE decides. Without it, the first known language of the list LANGUAGE and of
+    # the locale decides. The locales C and POSIX mean English.
     if own := variables.get(OWN_VARIABLE):
         return language_named(own) or ENGLISH
     named = (variables.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
@@ -51,7 +49,6 @@ def user_language(variables: Mapping[str, str] = os.environ) -> Language:
 
 
 def _tag(locale: str) -> str:
-    """Return a locale such as ``de_AT.UTF-8@euro`` without its encoding and variant."""
     return locale.partition(".")[0].partition("@")[0]
 
 
@@ -75,7 +72,7 @@ def translate_help(command: Any) -> Any:
 
 
 def with_help(command: Any) -> Iterable[Any]:
-    """Yield a command, its options and arguments, and those of its subcommands."""
+    """Yield a command, all its subcommands, and all their options and arguments."""
     yield command
     yield from command.get_params(typer.Context(command))
     for each in getattr(command, "commands", {}).values():
@@ -83,7 +80,7 @@ def with_help(command: Any) -> Iterable[Any]:
 
 
 def paragraphs(text: str) -> list[str]:
-    """Return the paragraphs of a help text, each as one line, to be translated one by one."""
+    """Return the paragraphs of a help text, each as one line."""
     return [" ".join(each.split()) for each in text.split("\n\n")]
 
 
@@ -92,8 +89,6 @@ def _translated(text: str, translation: NullTranslations) -> str:
 
 
 class _Formatter(TyperCommand.context_class.formatter_class):  # type: ignore[name-defined, misc]
-    """Writes the line with a command's usage in the language of the user."""
-
     def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
         translation = user_language().translation_of_commands
         shown = translation.gettext(_USAGE) if translation else prefix

@@ -1,7 +1,6 @@
-"""`python -m service.cli.licences`: list the packages that the program needs, with licences.
+"""`python -m service.cli.licences`: list the required packages with their licences."""
 
-The container image includes this list as a file.
-"""
+# The container image includes this list as a file.
 
 import re
 import sys

@@ -1,4 +1,4 @@
-"""The program `dh-grader`, which loads its commands when they are called."""
+"""The program `dh-grader`, which imports a command when it is called."""
 
 import gc
 import os
@@ -36,15 +36,13 @@ _OPERATIONS: Final = {"learners", "backup", "restore", "doctor"}
 
 
 def commands_of(name: str | None) -> typer.Typer:
-    """Load the file of a command in ``COMMANDS`` and return its typer application."""
+    """Import the module of a command and return its typer application."""
     room = "operations" if name in _OPERATIONS else "lti" if name == "lti" else "commands"
     found: typer.Typer = import_module(f"service.cli.{room}.{name}").commands
     return found
 
 
 class _Commands(TyperGroup):
-    """Loads and runs commands. On an error, it prints the reason and ends with an exit code."""
-
     def main(self, *args: Any, **extra: Any) -> Any:
         translate_help(self)
         return super().main(*args, **extra)
@@ -92,7 +90,7 @@ program = typer.Typer(
 
 
 def _placeholder() -> None:
-    """Do nothing. In the program's help, this function takes the place of a command."""
+    """Do nothing. The help of the program lists this function in place of a command."""
 
 
 for _name, _line in COMMANDS.items():
@@ -118,21 +116,20 @@ def _options(
 
 
 def _discard_output() -> None:
-    """Discard buffered output: Python would fail again when it flushes standard output at exit."""
+    # Otherwise Python would fail again when it flushes standard output at exit.
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)
 
 
 def _open_closed_streams() -> None:
-    """Redirect standard streams that were closed before the start to the null device."""
     for name in ("stdout", "stderr"):
         if getattr(sys, name) is None:
             setattr(sys, name, open(os.devnull, "w", encoding="utf-8"))  # noqa: SIM115, PTH123
 
 
 def run() -> None:
-    """Run the command line of this process."""
+    """Run the command-line program in this process."""
     _open_closed_streams()
     # Replace characters that a stream cannot encode instead of failing within a report.
     for stream in (sys.stdout, sys.stderr):

@@ -23,8 +23,6 @@ BROKEN_PIPE = 141
 
 
 class _Terminal(Console):
-    """A console that ends the program with the exit code of SIGPIPE if its pipe is closed."""
-
     def on_broken_pipe(self) -> None:
         try:
             # Discards buffered output: Python would fail again when it flushes it at exit.
@@ -34,7 +32,8 @@ class _Terminal(Console):
 
 
 def stdout() -> Console:
-    """A console for standard output. Without a terminal and without COLUMNS, it has 80 columns."""
+    """Return a console for standard output."""
+    # Without a terminal and without COLUMNS, it has 80 columns.
     width = None if sys.stdout.isatty() or "COLUMNS" in os.environ else 80
     return _Terminal(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
 
@@ -50,19 +49,19 @@ def unreadable(file: Path | str, error: OSError) -> Sentence:
 
 
 def tell(message: str) -> None:
-    """Write a message to standard output, in the language of the user."""
+    """Print a message in the language of the user."""
     typer.echo(spoken(message))
 
 
 def tell_verdict(is_fine: bool | None, message: str) -> None:
-    """Write the result of a check; ``is_fine`` is None if the message only informs."""
+    """Print the result of a check; ``is_fine`` is None if the message only informs."""
     words = {True: spoken(say("ok")), False: spoken(say("WRONG")), None: ""}
     width = max(map(cell_len, words.values())) + 2
     typer.echo(set_cell_size(words[is_fine], width) + spoken(message))
 
 
 def complain(message: str | Exception) -> None:
-    """Write a message to standard error, in the language of the user."""
+    """Print a message to standard error, in the language of the user."""
     text = str(message)
     # The ``str`` of an error forgets the template of its sentence.
     if isinstance(message, Exception) and message.args and message.args[0] == text:
@@ -71,28 +70,29 @@ def complain(message: str | Exception) -> None:
 
 
 def give_up(message: str | Exception) -> NoReturn:
-    """Write a message to standard error and end with the exit code for unusable input."""
+    """Print a message to standard error, and exit with the code for unusable input."""
     complain(message)
     raise SystemExit(UNUSABLE)
 
 
 def installed() -> Mapping[str, Exercise]:
-    """The exercises of this installation. Raises SettingsError or CatalogueError."""
+    """Return the exercises of this installation. Raises SettingsError or CatalogueError."""
     return load_catalogue(*load_settings().exercises_dir)
 
 
 def installed_exercise(exercise_id: str) -> Exercise:
-    """Return the installed exercise or variant with this id; read only this exercise's file.
+    """Return the installed exercise or variant with this id.
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """
+    # Only the file of this exercise is read.
     plain_id = exercise_id.partition("~")[0]
     plain = load_exercise(installed_file(plain_id))
     return find_exercise({plain_id: plain}, exercise_id)
 
 
 def named_exercise(name: str) -> Exercise:
-    """Return the exercise in a file ``….toml``, or the installed exercise or variant with this id.
+    """Return the exercise in a file ``….toml``, or the installed exercise with this id.
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """

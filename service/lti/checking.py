@@ -1,8 +1,4 @@
-"""The self-test of a registration.
-
-The self-test says whether the platform's keys can be read, whether the clocks agree, whether the
-platform gives an access token, and when the platform last launched.
-"""
+"""The self-test of a platform's registration: keys, clocks, access token and last launch."""
 
 import json
 from collections.abc import Iterator

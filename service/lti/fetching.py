@@ -1,8 +1,9 @@
-"""Fetch JSON from a platform with care, because the address comes from outside.
+"""Fetch JSON from a platform safely, because the address comes from outside.
 
-The limits: only HTTPS, only public addresses, no redirect to another host, at most 64 KiB, at most
-five seconds. The name of the host is resolved once: the connection goes to the checked address.
+Only HTTPS and public addresses are allowed, and no redirect to another host.
 """
+
+# The name of the host is resolved once: the connection goes to the checked address.
 
 import json
 import socket
@@ -42,7 +43,7 @@ class TooLargeError(FetchError):
 def fetch_json(url: str, *, local: bool = False) -> Any:
     """Return the JSON document at an address. Raises FetchError.
 
-    ``local`` also allows plain HTTP, to this machine only.
+    ``local`` also allows plain HTTP on this machine.
     """
     until = monotonic() + TIMEOUT
     first = url
@@ -65,10 +66,11 @@ def fetch_json(url: str, *, local: bool = False) -> Any:
 def answer(
     url: str, method: str = "GET", *, local: bool = False, **more: Any
 ) -> Iterator[httpx.Response]:
-    """Send a request, and yield the response. Read the response's body with ``content``.
+    """Send a request, and yield the response. Raises FetchError.
 
-    ``more`` are further arguments of ``httpx.Client.stream``. Raises FetchError.
+    ``more`` are further arguments of ``httpx.Client.stream``.
     """
+    # Read the response's body with ``content``, which limits its size.
     if reason := unusable(url, local=local):
         raise FetchError(say("the address {reason}", reason=reason))
     parts = httpx.URL(url)
@@ -94,7 +96,7 @@ def answer(
 
 
 def content(response: httpx.Response, until: float, largest: int = LARGEST) -> bytes:
-    """Return the body of a response, read before the time ``until``. Raises FetchError."""
+    """Read and return the body of a response, with limits. Raises FetchError."""
     if response.headers.get("content-encoding", "identity") != "identity":
         raise FetchError(say("the answer is compressed"))
     found = bytearray()
@@ -109,12 +111,11 @@ def content(response: httpx.Response, until: float, largest: int = LARGEST) -> b
 
 @cache
 def _tls() -> ssl.SSLContext:
-    """Return the TLS settings. They are memoized: making them takes longer than a request."""
+    # Memoized: making the settings takes longer than a request.
     return httpx.create_ssl_context(trust_env=False)
 
 
 def _address(host: str, *, local: bool) -> IPv4Address | IPv6Address:
-    """Return an address of the host to which we may connect. Raises FetchError."""
     try:
         found = {each[4][0] for each in socket.getaddrinfo(host, None, type=socket.SOCK_STREAM)}
         addresses = sorted((ip_address(each) for each in found), key=lambda it: (it.version, it))

@@ -1,9 +1,10 @@
 """Find the course, the assignment and the learner of a launch, or make them.
 
-A context of the platform is a course here. A resource link is an assignment. A user is a learner.
-
-Everything is done on one connection, in the transaction that uses up the login.
+A context of the platform is a course here, a resource link is an assignment, and a user is a
+learner.
 """
+
+# Everything is done on one connection, in the transaction that uses up the login.
 
 import hmac
 import json
@@ -49,8 +50,8 @@ DATES: Final = ("opens", "due")
 class Landing:
     """The course and the assignment that a launch opens.
 
-    ``context`` and ``link`` are row numbers, or 0 if the launch records nothing. ``assignment`` is
-    None as long as no exercises are chosen for the resource link.
+    ``context`` and ``link`` are row numbers, or 0 if nothing is recorded. ``assignment`` is None
+    until exercises are chosen.
     """
 
     role: LtiRole
@@ -71,10 +72,8 @@ def enter(
     catalogue: Mapping[str, Exercise],
     now: datetime,
 ) -> Landing:
-    """Record a launch and return what it opens. Raises LtiError.
-
-    For previews and guests nothing is recorded; they see only what exists already.
-    """
+    """Record a launch and return what it opens. Raises LtiError."""
+    # For previews and guests nothing is recorded; they see only what exists already.
     if not settle(connection, secret, now):
         raise LtiError("no-secret")
     check_deployment(connection, message, now)
@@ -110,17 +109,14 @@ def enter(
 
 
 def pseudonym(registration: str, sub: str, secret: Secret) -> str:
-    """Return the id of a platform's user in courses and attempts.
-
-    The id reveals nothing about the user. Users of two platforms get different ids, even if their
-    ``sub`` is the same.
-    """
+    """Return the pseudonym of a platform's user, which is the learner's id."""
+    # Users of two platforms get different ids, even if their ``sub`` is the same.
     content = json.dumps([registration, sub]).encode()
     return f"lti-{hmac.digest(secret.lti_secret, b'learner ' + content, 'sha256').hex()[:24]}"
 
 
 def pseudonymous_name(learner: str) -> str:
-    """Return the name that is shown for a learner unless the tutor shows real names."""
+    """Return the pseudonym that is shown instead of a learner's real name."""
     return f"Learner {learner[-6:]}"
 
 
@@ -141,14 +137,13 @@ def enrolled(
 
 
 def _is_set_up(connection: Connection, message: LaunchMessage) -> bool:
-    """True if a message's resource link already has an assignment."""
     context = known_context(connection, message)
     link = None if context is None else _known_link(connection, context.number, message.link)
     return link is not None and link.assignment is not None
 
 
 def context_of(connection: Connection, message: LaunchMessage, now: datetime) -> Row[Any]:
-    """Return the row of a message's context; make the row and the course if there are none."""
+    """Return the row of a message's context (its course); make missing rows."""
     found = known_context(connection, message)
     if found is None:
         course = f"lti-{_short(message.registration.id, message.deployment, message.context)}"
@@ -179,7 +174,10 @@ def context_of(connection: Connection, message: LaunchMessage, now: datetime) ->
 def assign(
     connection: Connection, link: int, new: NewAssignment, catalogue: Mapping[str, Exercise]
 ) -> CourseAssignment:
-    """Make a resource link's assignment, or return the existing one. Raises CourseError."""
+    """Return the assignment of a resource link (a link in a course); make a missing one.
+
+    Raises CourseError.
+    """
     row = connection.execute(
         select(tables.resource_links, tables.contexts.c.course)
         .join_from(tables.resource_links, tables.contexts)
@@ -198,14 +196,14 @@ def assign(
 
 
 def new_assignment_id(link: int) -> str:
-    """Return the id for a new assignment of a resource link."""
+    """Return the id for a new assignment of a resource link (a link in a course)."""
     return f"lti-{link}"
 
 
 def linked_assignment(
     connection: Connection, course: str, number: int | None
 ) -> CourseAssignment | None:
-    """Return the assignment in the row with this number, or None."""
+    """Return the assignment with this row number, or None."""
     if number is None:
         return None
     mine = (assignments.c.number == number) & (assignments.c.course == course)
@@ -214,7 +212,10 @@ def linked_assignment(
 
 
 def check_deployment(connection: Connection, message: LaunchMessage, now: datetime) -> None:
-    """Check that the message's deployment is known or allowed. Raises LtiError."""
+    """Check that the message's deployment (installation at the platform) is allowed.
+
+    Raises LtiError.
+    """
     mine = message.registration
     if message.deployment in deployments_of(connection, mine.id):
         return
@@ -225,7 +226,6 @@ def check_deployment(connection: Connection, message: LaunchMessage, now: dateti
 
 
 def _visit(connection: Connection, message: LaunchMessage) -> Landing:
-    """Return what a launch opens for a preview or a guest, without recording anything."""
     context = known_context(connection, message)
     if context is None:
         return Landing(message.role, link_title=message.link_title)
@@ -241,7 +241,7 @@ def _visit(connection: Connection, message: LaunchMessage) -> Landing:
 
 
 def known_context(connection: Connection, message: LaunchMessage) -> Row[Any] | None:
-    """Return the row of a message's context, or None."""
+    """Return the row of a message's context (its course), or None."""
     of = tables.contexts.c
     mine = (
         (of.registration == message.registration.id)
@@ -254,7 +254,6 @@ def known_context(connection: Connection, message: LaunchMessage) -> Row[Any] | 
 def _course_key(
     connection: Connection, context: Row[Any], message: LaunchMessage, now: datetime
 ) -> str:
-    """Return the id of the course's key; make a new key if none is valid long enough."""
     if context.key is not None:
         found = keys_at(connection, [("id", context.key)]).get(("id", context.key))
         is_valid = found is not None and found.revoked_at is None
@@ -280,7 +279,6 @@ def _link(
     catalogue: Mapping[str, Exercise],
     now: datetime,
 ) -> Row[Any]:
-    """Store a message's resource link and the addresses of its services; return the row."""
     values = {
         "title": message.link_title or "Exercises",
         "lineitem_url": message.lineitem_url,
@@ -313,10 +311,7 @@ def _assign_by_parameters(
     course: str,
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Give a resource link the assignment that the message's custom parameters ask for.
-
-    Do nothing if they ask for none, or if it cannot be used.
-    """
+    # Do nothing if the parameters ask for no assignment, or for one that cannot be used.
     wanted = message.custom.get("assignment") or new_assignment_id(link.number)
     mine = (assignments.c.course == course) & (assignments.c.id == wanted)
     if connection.scalar(select(assignments.c.id).where(mine)) is None:
@@ -337,12 +332,12 @@ def _assign_by_parameters(
 def parameters_assignment(
     custom: Mapping[str, str], wanted: str, title: str, catalogue: Mapping[str, Exercise]
 ) -> NewAssignment | None:
-    """Return the assignment that custom parameters ask for, or None.
+    """Return the assignment that a launch's custom parameters ask for, or None.
 
-    ``exercise`` names one or more exercises, with or without points: ``planar-rr=10,scara``.
-    ``opens`` and ``due`` are dates; a date without a time zone is in the time zone of the course.
-    With ``variants=true``, each learner gets variants of their own.
+    ``exercise`` names the exercises, perhaps with points: ``planar-rr=10,scara``.
     """
+    # A date without a time zone is in the time zone of the course. With ``variants=true``, each
+    # learner gets variants of their own.
     named = [each.strip() for each in custom.get("exercise", "").split(",")]
     exercises = []
     for name, _, points in (each.partition("=") for each in named if each):

@@ -1,6 +1,6 @@
-"""Logins in the database. Each has a state, a nonce and a secret of the browser, and is used once.
+"""Logins of a platform's users; each login can be used once.
 
-The database has only digests of these three texts.
+The database has only digests of a login's state, nonce and browser secret.
 """
 
 import hmac
@@ -83,7 +83,7 @@ class Login:
 
 
 def login_fields(given: Mapping[str, str]) -> dict[str, str]:
-    """Return the known fields of a login request that are not empty. Raises LtiError."""
+    """Return the known fields of a login request that have a value. Raises LtiError."""
     fields = {name: given[name] for name in _LONGEST if given.get(name)}
     for name, value in fields.items():
         if len(value) > _LONGEST[name]:
@@ -121,7 +121,7 @@ def begin_login(
 
 
 def login_of(connection: Connection, state: str, now: datetime) -> Login:
-    """Return the login with this state. Raises LtiError if the login must not be used."""
+    """Return the login with this state. Raises LtiError if the login is not valid."""
     if not state:
         raise LtiError("no-state")
     mine = launches.c.state == digest(state)
@@ -145,12 +145,12 @@ def login_of(connection: Connection, state: str, now: datetime) -> Login:
 
 
 def use_login(connection: Connection, login: Login, now: datetime) -> None:
-    """Mark a login as used. Raises LtiError if the login was used meanwhile."""
+    """Mark a login as used. Raises LtiError if it was used already."""
     mine = (launches.c.state == login.state) & launches.c.used_at.is_(None)
     if not connection.execute(update(launches).where(mine).values(used_at=now)).rowcount:
         raise LtiError("state-used")
 
 
 def digest(text: str) -> str:
-    """Return the digest that is stored in place of a random text."""
+    """Return the digest of a secret text, to store instead of the text."""
     return sha256(text.encode(errors="replace")).hexdigest()

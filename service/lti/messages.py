@@ -1,4 +1,4 @@
-"""Check the messages of platforms (id tokens) step by step. Each fault has its own code."""
+"""Check the messages of platforms (id tokens); each fault has its own code."""
 
 import json
 from collections.abc import Mapping
@@ -43,10 +43,10 @@ _JWS: Final = jwt.PyJWS()
 
 @dataclass(frozen=True, slots=True)
 class LaunchMessage:
-    """A message that has passed all checks. ``sub`` is None for guests; ``claims`` are all claims.
+    """A message that has passed all checks. ``sub`` is None for guests.
 
-    ``custom`` are the custom parameters with text values. ``reviewed`` is the user whose attempts
-    are to be shown, or "". ``locale`` is the language of the user on the platform, or "".
+    ``reviewed`` is the user whose attempts are to be shown, or "". ``locale`` is the language of
+    the user on the platform, or "".
     """
 
     registration: Registration
@@ -69,10 +69,8 @@ class LaunchMessage:
 
 
 def key_id_of(token: str) -> str:
-    """Return the id of the key with which a token claims to be signed. Raises LtiError.
-
-    Keys and addresses of keys in the token's header are never used.
-    """
+    """Return the id of the key with which a token claims to be signed. Raises LtiError."""
+    # Keys and addresses of keys in the token's header are never used.
     if not token:
         raise LtiError("no-token")
     if len(token) > _LONGEST_TOKEN:
@@ -234,7 +232,7 @@ def _reviewed(claims: Mapping[str, Any]) -> str:
 
 
 def _locale(presentation: Any) -> str:
-    """Return the language of the user, or "". An invalid language does not prevent a launch."""
+    # An invalid language does not prevent a launch.
     return _line(presentation.get("locale")) if isinstance(presentation, dict) else ""
 
 
@@ -250,7 +248,6 @@ def _name(value: Any) -> str:
 
 
 def _line(value: Any) -> str:
-    """Return a text from the platform as one line, shortened; "" if it is no text."""
     return " ".join(value.split())[:200].strip() if isinstance(value, str) else ""
 
 

@@ -1,7 +1,6 @@
-"""The keys with which this service signs messages to platforms, and their rotation.
+"""The keys with which this service signs messages to platforms, and their rotation."""
 
-A new key is published for a day before it signs, because platforms memoize our keys.
-"""
+# A new key is published for a day before it signs, because platforms memoize our keys.
 
 import json
 import secrets
@@ -49,11 +48,8 @@ def own_key_list(connection: Connection) -> list[Row[Any]]:
 
 
 def signing_key(connection: Connection, secret: Secret, now: datetime) -> SigningKey:
-    """Return the newest key that may sign.
-
-    Raises LtiError if there is no such key, or if it was encrypted with another secret.
-    ``ensure_key`` makes the first key.
-    """
+    """Return the newest key that may sign. Raises LtiError."""
+    # ``ensure_key`` makes the first key.
     usable = own_keys.c.signs_from <= now
     newest = select(own_keys).where(usable).order_by(own_keys.c.signs_from.desc()).limit(1)
     row = connection.execute(newest).one_or_none()
@@ -66,16 +62,15 @@ def signing_key(connection: Connection, secret: Secret, now: datetime) -> Signin
 
 
 def ensure_key(connection: Connection, secret: Secret, now: datetime) -> None:
-    """Make the first key, which may sign at once, if there is none."""
+    """Make the first key if there is none."""
+    # The first key may sign at once.
     if connection.scalar(select(own_keys.c.id).limit(1)) is None:
         _add(connection, secret, now, now)
 
 
 def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
-    """Remove all keys but the newest, and add a key; return when the added key begins to sign.
-
-    There are at most two keys. If the newest key does not sign yet, nothing changes.
-    """
+    """Add a key; return when it begins to sign. Only the newest older key is kept."""
+    # If the newest key does not sign yet, nothing changes.
     ensure_key(connection, secret, now)
     waiting: datetime | None = connection.scalar(
         select(own_keys.c.signs_from).where(own_keys.c.signs_from > now)
@@ -92,7 +87,7 @@ def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
 
 @lru_cache(maxsize=4)
 def _private_key(pem: str, password: bytes) -> RSAPrivateKey:
-    """Return a stored key, decrypted. It is memoized: decrypting takes longer than signing."""
+    # Memoized: decrypting takes longer than signing.
     key = load_pem_private_key(pem.encode(), password)
     assert isinstance(key, RSAPrivateKey)
     return key

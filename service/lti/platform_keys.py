@@ -29,8 +29,6 @@ Fetch = Callable[..., Any]
 
 @dataclass
 class _Known:
-    """The keys of a platform; ``tried_at`` is the time of the last try to fetch them."""
-
     keys: Mapping[str, RSAPublicKey | None] = field(default_factory=dict)
     fetched_at: float = -_LONGEST
     tried_at: float = -PAUSE
@@ -39,7 +37,7 @@ class _Known:
 
 
 class PlatformKeys:
-    """The keys of platforms, read only from the address that is registered for the platform."""
+    """The public keys of platforms, fetched from registered addresses only."""
 
     def __init__(self, fetch: Fetch = fetch_json, clock: Callable[[], float] = monotonic) -> None:
         self._fetch, self._clock = fetch, clock
@@ -77,7 +75,7 @@ class PlatformKeys:
 
 
 def usable_keys(found: Any) -> dict[str, RSAPublicKey | None]:
-    """Return the keys of a JSON Web Key Set by id, with None for keys that must not be used.
+    """Return the keys of a JSON Web Key Set by id; None marks a key that must not be used.
 
     Raises FetchError.
     """

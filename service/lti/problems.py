@@ -1,4 +1,4 @@
-"""The reasons why a launch is refused: what the student reads, and what the operator reads."""
+"""The reasons why a launch is refused, in words for students and for operators."""
 
 from collections.abc import Mapping
 from string import Formatter
@@ -140,19 +140,13 @@ class LtiError(Exception):
 
 
 def short_value(value: object) -> str:
-    """Return a value for a message: a translatable Sentence, or else a text that is not too long.
-
-    If the value is an error whose message is a Sentence, return this Sentence.
-    """
+    """Return a value for a message, as a translatable Sentence or as a short text."""
     said = value.args[0] if isinstance(value, Exception) and value.args else value
     return said if isinstance(said, Sentence) else str(value)[:200]
 
 
 def cause_without_values(name: str) -> str:
-    """Return the cause of the refusal ``name``, with "…" in the place of each value.
-
-    If there is no such refusal, return ``name``.
-    """
+    """Return the cause of the refusal ``name`` as a text, with "…" for each value."""
     problem = LTI_PROBLEMS.get(name)
     if problem is None:
         return name

@@ -1,4 +1,4 @@
-"""Registrations of platforms in the database: functions on a connection."""
+"""Database functions for the registrations of platforms."""
 
 import re
 import secrets
@@ -42,7 +42,7 @@ class RegistrationError(Exception):
 
 
 class NewRegistration(BaseModel):
-    """A platform to register: the values that the platform shows, and this service's address."""
+    """The values for registering a platform, and the address of this service."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -135,7 +135,7 @@ class Registration:
 
     @property
     def platform_origin(self) -> str:
-        """The origin of the platform's pages, taken from the platform's OIDC address."""
+        """The origin of the platform's pages."""
         return origin_of(self.auth_url)
 
     @property
@@ -149,13 +149,13 @@ class Registration:
 
     @property
     def _customers(self) -> tuple[str, ...]:
-        """The domains of the issuer's customers, if the issuer serves several customers."""
+        # The domains of the issuer's customers, if the issuer serves several customers.
         return tuple(
             domain for issuer, domain in _CUSTOMERS if same_place(self.issuer, f"https://{issuer}")
         )
 
     def is_own(self, address: str) -> bool:
-        """True if a usable address is at one of the platform's origins."""
+        """True if an address is usable and belongs to the platform."""
         origin = origin_of(address)
         if origin in self.frame_origins:
             return True
@@ -205,7 +205,7 @@ def add_registration(connection: Connection, new: NewRegistration, now: datetime
 def add_deployments(
     connection: Connection, registration_id: str, ids: Iterable[str], now: datetime
 ) -> None:
-    """Add the deployments that are not known yet to a registration."""
+    """Add new deployments (installations at the platform) to a registration."""
     for each in ids:
         values = {"registration": registration_id, "deployment": each, "created_at": now}
         statement = insert_or_ignore(tables.deployments)[connection.dialect.name]
@@ -213,7 +213,7 @@ def add_deployments(
 
 
 def registration(connection: Connection, registration_id: str) -> Registration:
-    """Return a registration. Raises RegistrationError."""
+    """Return the registration with this id. Raises RegistrationError."""
     mine = tables.registrations.c.id == registration_id
     row = connection.execute(select(tables.registrations).where(mine)).one_or_none()
     if row is None:
@@ -241,13 +241,14 @@ def find_registration(connection: Connection, issuer: str, client_id: str | None
 
 
 def deployments_of(connection: Connection, registration_id: str) -> list[str]:
-    """Return the ids of the known deployments of a registration."""
+    """Return the ids of a registration's known deployments (installations at the platform)."""
     mine = tables.deployments.c.registration == registration_id
     return sorted(connection.scalars(select(tables.deployments.c.deployment).where(mine)))
 
 
 def remove_registration(connection: Connection, registration_id: str) -> None:
-    """Remove a registration; its courses and their attempts stay. Raises RegistrationError."""
+    """Remove a registration. Raises RegistrationError."""
+    # Its courses and their attempts stay.
     registration(connection, registration_id)
     mine = select(tables.contexts.c.number).where(tables.contexts.c.registration == registration_id)
     items = select(tables.line_items.c.number).where(tables.line_items.c.context.in_(mine))
@@ -269,7 +270,7 @@ def remove_registration(connection: Connection, registration_id: str) -> None:
 
 
 def note_refusal(connection: Connection, registration_id: str, name: str, now: datetime) -> None:
-    """Store why and when the registration's last launch was refused."""
+    """Store why and when a launch was refused."""
     mine = tables.registrations.c.id == registration_id
     values = {"refused_at": now, "refusal": name}
     connection.execute(update(tables.registrations).where(mine).values(values))

@@ -1,4 +1,6 @@
-"""Convert a user's roles in a launch to one LtiRole. Roles are compared by their full URIs."""
+"""Convert a user's roles in a launch to one LtiRole."""
+
+# Roles are compared by their full URIs.
 
 from collections.abc import Collection
 from enum import Enum
@@ -34,10 +36,8 @@ class LtiRole(Enum):
 
 
 def role_of(roles: Collection[str], *, has_id: bool) -> LtiRole:
-    """Return the LtiRole of a user with these roles; ``has_id`` is True if the user has an id.
-
-    A test user is a preview, even with the role of a learner. Mentors and observers are guests.
-    """
+    """Return the LtiRole of a user with these roles; ``has_id`` is False for anonymous users."""
+    # A test user is a preview, even with the role of a learner. Mentors and observers are guests.
     if not has_id:
         return LtiRole.GUEST
     if _TEST_USER in roles:

@@ -20,7 +20,9 @@ _JWS: Final = jwt.PyJWS()
 
 
 class FormTicket(BaseModel):
-    """The fields of all tickets. Each kind has its own ``iss``, so kinds cannot be confused."""
+    """The common fields of all tickets."""
+
+    # Each kind of ticket has its own ``iss``, so kinds cannot be confused.
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
@@ -30,7 +32,7 @@ class FormTicket(BaseModel):
 
 
 class LtiTicket(FormTicket):
-    """The ticket in a tutor's page, which shows a course and one of its resource links.
+    """The ticket in a tutor's page about a course and a link to exercises.
 
     ``learner`` is the learner whose attempts the tutor wants to see, or "".
     """
@@ -42,11 +44,13 @@ class LtiTicket(FormTicket):
 
 
 class LinkingTicket(FormTicket):
-    """The ticket of a deep-linking page: it contains what the platform has asked for.
+    """The ticket of a deep-linking page, with the data of the platform's request.
 
-    ``course`` is "" until somebody launches the course. ``data`` is sent back unchanged.
-    ``notices_url`` is "" unless the exercises are for files that students hand in at the platform.
+    ``data`` is sent back unchanged.
     """
+
+    # ``course`` is "" until somebody launches the course. ``notices_url`` is "" unless the
+    # exercises are for files that students hand in at the platform.
 
     iss: Literal["dh-grader lti deep linking"] = "dh-grader lti deep linking"
     deployment: str

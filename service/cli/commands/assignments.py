@@ -75,7 +75,6 @@ def _lines(assignment: Assignment) -> Iterator[Text]:
 
 
 def _files(assigned: AssignedExercise) -> str:
-    """The names of files that are taken as answers to the exercise."""
     own = assigned.exercise.id
     named = assigned.files or (f"{own}.json", f"{own}/PART.csv", say("and the like"))
     of_parts = (

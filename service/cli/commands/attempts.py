@@ -53,7 +53,7 @@ _STILL_THERE: Final = say(
 
 
 def encodable(value: str | None) -> str | None:
-    """Return the value of an option; end the program if it cannot be encoded as UTF-8."""
+    """Return the value of an option; exit if it cannot be encoded as UTF-8."""
     if value is not None and not value.isascii():
         try:
             value.encode()
@@ -72,9 +72,9 @@ ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", 
 
 @contextmanager
 def database(*, create: bool = False) -> Iterator[Engine]:
-    """Open the database of this installation; end the program if it cannot be used.
+    """Open the database of this installation; exit if it cannot be used.
 
-    A missing file is created only with ``create``.
+    ``create`` allows it to make a missing database.
     """
     url = load_settings().database
     if url is None:
@@ -172,10 +172,6 @@ def show_statistics(exercise: ExerciseArgument) -> None:
 
 
 def _nothing(exercise: str | None) -> str:
-    """Return the message that no attempts are recorded.
-
-    If ``exercise`` is not the id of an exercise, the message lists all ids.
-    """
     found = say("No attempts are recorded.")
     if exercise is None or exercise in (known := installed()):
         return spoken(found)

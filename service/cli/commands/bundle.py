@@ -102,7 +102,6 @@ def _write(
 
 
 def _secret(file: Path | None) -> str:
-    """Return the secret in a file; write a new secret if there is no such file."""
     if file is None:
         give_up(
             say(

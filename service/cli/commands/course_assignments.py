@@ -88,7 +88,7 @@ HintPricesOption = Annotated[
 
 
 def checked(model: type[M], **fields: Any) -> M:
-    """Return a request body with these fields; end the program if the fields are invalid."""
+    """Return a request body with these fields; exit if they are invalid."""
     try:
         given = {name: value for name, value in fields.items() if value is not None}
         return model.model_validate(given)
@@ -97,7 +97,6 @@ def checked(model: type[M], **fields: Any) -> M:
 
 
 def _told(error: ErrorDetails) -> str:
-    """Return the message about a field that cannot be used."""
     match error["loc"], error["type"]:
         case ("id",), "string_pattern_mismatch":
             return say("The id has small letters, digits and hyphens, such as homework-1.")
@@ -275,7 +274,6 @@ def _fields(
     practice: Practice | None,
     solution: ShowSolution | None,
 ) -> dict[str, Any]:
-    """Return the fields that the options set."""
     fields = {} if file is None else dict(_of_file(load_assignment(file, installed_exercise)))
     given = {
         "title": title,
@@ -293,7 +291,6 @@ def _fields(
 
 
 def _of_file(assignment: Assignment) -> Iterator[tuple[str, Any]]:
-    """Yield the fields that an assignment file sets."""
     exercises = []
     for each in assignment.exercises:
         if each.path is not None or each.left_out:
@@ -314,7 +311,6 @@ def _of_file(assignment: Assignment) -> Iterator[tuple[str, Any]]:
 
 
 def _points(option: str) -> Mapping[str, Any]:
-    """Return the exercise and the points that an option such as scara=10 names."""
     name, sign, points = option.partition("=")
     if not sign:
         exercise = installed_exercise(name)

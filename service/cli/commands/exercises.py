@@ -145,7 +145,6 @@ def new_exercise(
 
 
 def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
-    """Yield the lines of the list: each level, followed by the lines of its exercises."""
     ids = max(len(exercise.id) for exercise in exercises)
     heading = spoken(say("joints"))
     joints = max(len(heading), *(len(exercise.structure or "") for exercise in exercises))
@@ -159,7 +158,6 @@ def _list(exercises: Sequence[Exercise], width: int) -> Iterator[Text]:
 
 
 def _lines(exercise: Exercise, ids: int, joints: int, room: int) -> Iterator[Text]:
-    """Yield the lines of an exercise; ``ids`` and ``joints`` are the widths of the columns."""
     indent = " " * (ids + joints + 4)
     about = [*exercise.conventions, *([f"{exercise.minutes} min"] if exercise.minutes else [])]
     first, *more = textwrap.wrap(", ".join([exercise.title, *about]), room)
@@ -172,7 +170,6 @@ def _lines(exercise: Exercise, ids: int, joints: int, room: int) -> Iterator[Tex
 
 
 def _write_solution(exercise: Exercise, console: Console, *, latex: bool) -> None:
-    """Print the model answers, the link transforms and the pose."""
     solution = solve(exercise)
     links = not any(part.holds_links for part in exercise.parts)
     for heading, shown in _sections(solution, links=links):

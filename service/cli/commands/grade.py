@@ -274,7 +274,7 @@ def command(
 def chosen_assignment(
     exercise: str | None, file: Path | None, part: str | None, find: Callable[[str], SetExercise]
 ) -> Assignment:
-    """Return the assignment that the options name; end the program if they are inconsistent."""
+    """Return the assignment that the options name; exit if they contradict each other."""
     if (exercise is None) == (file is None):
         give_up(say("Name what is answered: --exercise ID, or --assignment F instead."))
     if file is not None:
@@ -292,11 +292,8 @@ def chosen_assignment(
 def _variants_of_student(
     assignment: Assignment, platform_data: Path | None, variants: Path | None
 ) -> Assignment:
-    """Return the assignment with the variants of the student whom a platform's file describes.
-
-    The scripts of bundles pass this file as ``platform_data``, and the file with the secret as
-    ``variants``. An assignment without variants is returned unchanged.
-    """
+    # The scripts of bundles pass the platform's file about the student as ``platform_data``, and
+    # the file with the secret as ``variants``.
     if not assignment.variants:
         return assignment
     # Few runs need it.
@@ -316,7 +313,6 @@ def _variants_of_student(
 
 
 def _format(name: str, paths: Sequence[Path], shard: Shard | None) -> ReportFormat:
-    """Return the format called ``name``; end the program if other options do not allow it."""
     taken = report_format(name)
     if taken.is_single and len(paths) > 1:
         give_up(
@@ -333,7 +329,6 @@ def _format(name: str, paths: Sequence[Path], shard: Shard | None) -> ReportForm
 
 
 def _explain_one_student(output_format: str, folders: Sequence[Path], exit_code: int) -> None:
-    """Explain the failure if a class was graded in a format for one submission."""
     if folders and exit_code == UNUSABLE and report_format(output_format).is_single:
         complain(
             say(
@@ -353,7 +348,6 @@ def _grading(
     output: Path | None,
     settings: Settings,
 ) -> AbstractContextManager[Iterator[GradedSubmission]]:
-    """Return a context with the graded submissions in order, from the server or this machine."""
     if server is not None:
         return graded_by(server, terms, found, jobs or REQUESTS, output, settings)
     jobs = max(1, min(jobs or jobs_for(len(found)), len(found)))
@@ -361,11 +355,6 @@ def _grading(
 
 
 class _Run:
-    """Yields graded submissions; ``exit_code`` is the exit code of the worst submission so far.
-
-    Between two submissions, ``check`` is called, which may end the run.
-    """
-
     def __init__(
         self,
         submissions: Iterable[GradedSubmission],
@@ -388,7 +377,6 @@ class _Run:
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:
-    """Return the problems of a submission's files, without repetition."""
     told = (f"{file.file}: {spoken(file.problem)}" for file in submission.files if file.problem)
     return [visible(line) for line in dict.fromkeys(told)]
 

@@ -1,4 +1,4 @@
-"""`dh-grader merge`: put the shards of a class together."""
+"""`dh-grader merge`: combine results of a class that several machines have graded."""
 
 import json
 from collections.abc import Iterable, Iterator
@@ -41,8 +41,6 @@ def command(
 
 
 class _Run:
-    """Yields the merged lines; ``exit_code`` is the exit code of the worst line so far."""
-
     def __init__(self, lines: Iterable[bytes]) -> None:
         self._lines = lines
         self.exit_code = 0

@@ -80,7 +80,8 @@ def _summary(outdated: int, changed: int, kept: int) -> Sentence:
 
 
 def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: int) -> None:
-    """Regrade all outdated attempts in ``jobs`` processes. Other programs may help meanwhile."""
+    """Regrade all outdated attempts in ``jobs`` processes."""
+    # Other programs may do so at the same time.
     regrading = Regrading(exercise, load_settings().feedback, course)
     in_transaction(engine, regrading.enqueue)
     with engine.connect() as connection:
@@ -114,7 +115,7 @@ def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: in
 
 
 def work(exercise_id: str, course: str | None) -> None:
-    """Regrade batches until the queue is empty. This is the main function of a process."""
+    """Regrade attempts until the queue is empty, as the main function of a process."""
     settings = load_settings()
     assert settings.database is not None
     try:

@@ -70,7 +70,6 @@ def command(
 
 
 def _check(file: Path, console: Console) -> set[Level] | None:
-    """Print the remarks on a file; return their levels, or None if the file is unusable."""
     try:
         exercise = load_exercise(file)
     except CatalogueError as error:

@@ -1,4 +1,4 @@
-"""Write a new exercise file, never over an existing one, and say when a service reads the file."""
+"""Write new exercise files without replacing existing ones."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -10,7 +10,7 @@ from service.translations import say
 
 
 def write_new(folder: Path, exercise_id: str, text: str) -> Path:
-    """Write the file of a new exercise and return its path. End the program if the file exists."""
+    """Write the file of a new exercise and return its path; exit if the file exists."""
     file = folder / f"{exercise_id}.toml"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -29,7 +29,7 @@ def write_new(folder: Path, exercise_id: str, text: str) -> Path:
 
 
 def warn_of_unread(exercises: Iterable[str]) -> None:
-    """Say that a running service may not have read the files of these exercises yet."""
+    """Warn that a running service may not have read these new exercises yet."""
     shipped = shipped_folder()
     own = [each for each in exercises if not (shipped / f"{each}.toml").is_file()]
     if own and not load_settings().reload_exercises:

@@ -95,7 +95,6 @@ def _warn(console: Console, warning: str) -> None:
 
 
 def _table(checked: Sequence[CheckedVariant]) -> Table:
-    """Return a table with the least, greatest and most common value of each difficulty measure."""
     table = Table.grid(padding=(0, 2, 0, 2))
     rows: dict[str, list[float]] = defaultdict(list)
     for each in checked:

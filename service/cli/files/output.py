@@ -17,7 +17,7 @@ _IN_MEMORY: Final = 1024 * 1024
 
 
 def console_of(output: Path | None) -> Console:
-    """The console for which reports are laid out: the screen, or 80 columns without colour."""
+    """Return the console for reports: the screen, or 80 columns without colour."""
     if output is None:
         return stdout()
     page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
@@ -27,11 +27,11 @@ def console_of(output: Path | None) -> Console:
 def write(
     pieces: Iterable[bytes], output: Path | None, *, at_once: bool, quiet: bool = False
 ) -> None:
-    """Write the pieces to a file, which appears only when it is complete, or to the screen.
+    """Write the pieces to the file ``output``, or without it, to the screen.
 
-    The screen shows each piece immediately, or, with ``at_once``, all of them at the end, so that a
-    pipe never gets an incomplete document. With ``quiet``, the screen shows nothing.
+    With ``at_once``, the screen shows nothing before the last piece exists.
     """
+    # A file appears only when it is complete, and a pipe never gets an incomplete document.
     if output is not None:
         _write_file(pieces, output)
     elif quiet:

@@ -19,25 +19,22 @@ _PAGES: Final = (".html", ".htm")
 
 
 class UnusableFolderError(Exception):
-    """The folder must not or cannot be written to; the message says why."""
+    """Documents cannot be written into the folder; the message says why."""
 
 
 def is_for_folder(output: Path, *, several: bool) -> bool:
-    """True if reports are to be written into a folder, False if into a single file.
-
-    An existing ``output`` is a folder or a file already. A new one becomes a folder if there are
-    ``several`` submissions, unless its name ends like an HTML file.
-    """
+    """True if reports go into a folder, False if they go into a single file."""
+    # A new ``output`` becomes a folder if there are several submissions, unless its name ends like
+    # an HTML file.
     if output.exists():
         return output.is_dir()
     return several and output.suffix.lower() not in _PAGES
 
 
 def write_folder(documents: Iterable[Document], folder: Path) -> None:
-    """Write the documents into the folder, where they appear only when all are written.
+    """Write all documents into the folder, or none. Raises UnusableFolderError.
 
-    An existing folder must be empty, or contain only documents of an earlier run, which are
-    replaced. Raises UnusableFolderError.
+    An existing folder must be empty, or contain only documents of an earlier run.
     """
     try:
         _write_all(documents, folder.resolve())
@@ -62,7 +59,6 @@ def _write_all(documents: Iterable[Document], folder: Path) -> None:
 
 @contextmanager
 def _unfinished(parent: Path) -> Iterator[Path]:
-    """Create a temporary folder; delete it at the end of the context, unless it was renamed."""
     folder = parent / f"{_UNFINISHED}{secrets.token_hex(8)}"
     folder.mkdir()
     try:
@@ -83,7 +79,6 @@ def _write(documents: Iterable[Document], folder: Path) -> None:
 
 
 def _within(path: str) -> PurePosixPath:
-    """Return the path. Raises ValueError if it leaves the folder or has more than two parts."""
     within = PurePosixPath(path)
     if within.is_absolute() or len(within.parts) > 2 or ".." in within.parts or "\n" in path:
         raise ValueError(f"{path!r} does not stay in its folder")
@@ -91,7 +86,6 @@ def _within(path: str) -> PurePosixPath:
 
 
 def _replaceable(folder: Path) -> list[Path]:
-    """The content of a folder. Raises UnusableFolderError unless earlier runs have written it."""
     if not folder.is_dir():
         raise UnusableFolderError(say("is no folder"))
     found = [path for path in folder.iterdir() if not path.name.startswith(_UNFINISHED)]
@@ -115,10 +109,7 @@ def _written_before(folder: Path) -> set[Path]:
 
 
 def _foreign(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
-    """Yield files and folders in ``found`` that earlier runs did not write.
-
-    ``written`` are the files of earlier runs. The files in the folders are also checked.
-    """
+    # ``written`` are the files of earlier runs. The files in the folders are also checked.
     folders = {file.parent for file in written}
     for path in found:
         if path.is_symlink() or path not in (written if path.is_file() else folders):
@@ -128,7 +119,6 @@ def _foreign(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
 
 
 def _exchange(folder: Path, written: Path, old: Iterable[Path]) -> None:
-    """Replace the old content of the folder by the new; undo everything if a step fails."""
     new = list(written.iterdir())
     aside = written / _OLD
     aside.mkdir()

@@ -1,4 +1,4 @@
-"""A list of the files that runs have written among submissions. It protects students' files."""
+"""Remember which files earlier runs have written, to protect the files of students."""
 
 from collections.abc import Iterable
 from pathlib import Path
@@ -9,7 +9,7 @@ from service.translations import say
 
 
 def require_no_input(output: Path, read: Iterable[Path]) -> None:
-    """End the program if the output would replace a file that is read."""
+    """Exit if the output file would replace a file that is read."""
     for path in read:
         if path.is_file() and output.exists() and path.samefile(output):
             give_up(
@@ -21,10 +21,8 @@ def require_no_input(output: Path, read: Iterable[Path]) -> None:
 
 
 def require_own(output: Path, folders: Iterable[Path]) -> None:
-    """End the program with exit code 2 if the output would replace a student's file.
-
-    A file in one of the folders may be replaced only if an earlier run has written it.
-    """
+    """Exit with code 2 if the output would replace a student's file."""
+    # A file in one of the folders may be replaced only if an earlier run has written it.
     if output.is_file() and _holds(folders, output) and output.name not in _written(output):
         give_up(
             say(
@@ -36,7 +34,7 @@ def require_own(output: Path, folders: Iterable[Path]) -> None:
 
 
 def remember(output: Path | None, folders: Iterable[Path]) -> None:
-    """Record an output in one of the folders, so that a later run may replace it."""
+    """Record that a run has written this file, so that a later run may replace it."""
     if output is not None and output.is_file() and _holds(folders, output):
         names = _written(output)
         if output.name not in names:

@@ -1,4 +1,4 @@
-"""`dh-grader lti`: registered platforms, and our keys for them."""
+"""`dh-grader lti`: the registered platforms, and our keys for signing messages to them."""
 
 import json
 from collections.abc import Callable
@@ -216,7 +216,6 @@ def _secret() -> Secret:
 
 
 def _done(work: Callable[[Connection], R], *, create: bool = False) -> R:
-    """Return the result of ``work`` in a transaction; on an error, end the program and say why."""
     with database(create=create) as engine:
         try:
             return in_transaction(engine, work)

@@ -28,9 +28,9 @@ _COUNTS: Final[Mapping[str, str]] = {
 
 
 def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
-    """Return the result of ``work`` in a transaction; on an error, end the program and say why.
+    """Run ``work`` in a transaction and return its result; exit on an error.
 
-    A missing database file is created only with ``create``.
+    ``create`` allows it to make a missing database.
     """
     with database(create=create) as engine:
         try:
@@ -42,9 +42,9 @@ def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
 def deleted(
     name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
 ) -> None:
-    """Ask the user (unless ``yes``), let ``work`` delete data, and say what was deleted.
+    """Ask the user for confirmation, delete data with ``work``, and print what was deleted.
 
-    ``name`` is what the messages call the deleted thing.
+    ``name`` is the name of the data in messages. ``yes`` skips the question.
     """
     found = changed(lambda it: work(it, wanted))
     if not wanted.with_attempts:

@@ -213,7 +213,6 @@ def _state_of_courses(connection: Connection, _: Settings) -> Iterator[str]:
 def _asked(
     settings: Settings, question: Callable[[Connection, Settings], Iterator[str]]
 ) -> Iterator[str]:
-    """Open the database, yield the lines of ``question``, change nothing. Raises AilmentError."""
     assert settings.database is not None
     try:
         engine = unmigrated_database(settings.database.get_secret_value())

@@ -1,4 +1,4 @@
-"""`dh-grader restore`: put a backup in the place of the database."""
+"""`dh-grader restore`: replace the database by a backup."""
 
 import sqlite3
 from contextlib import closing
@@ -56,7 +56,6 @@ def command(
 
 
 def _copy(file: Path, target: Path) -> Path:
-    """Copy the backup beside the database, update the copy's tables, and return its path."""
     new = target.with_name(f"{target.name}.new")
     for each in (new, *_logs(new)):
         each.unlink(missing_ok=True)
@@ -70,12 +69,11 @@ def _copy(file: Path, target: Path) -> Path:
 
 
 def _logs(file: Path) -> list[Path]:
-    """Return the paths of the files beside a database to which SQLite writes changes."""
+    # SQLite writes changes to these files beside the database.
     return [file.with_name(f"{file.name}{end}") for end in ("-wal", "-shm", "-journal")]
 
 
 def _target() -> Path:
-    """Return the path of this installation's database."""
     setting = load_settings().database
     if setting is None:
         give_up(say("Name the database: DH_GRADER_DATABASE."))
@@ -89,7 +87,6 @@ def _target() -> Path:
 
 
 def _damage(file: Path) -> bool:
-    """True if the file is not an intact database with the tables of this program."""
     try:
         with closing(
             sqlite3.connect(f"{file.absolute().as_uri()}?mode=ro", uri=True)

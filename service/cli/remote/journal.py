@@ -1,6 +1,6 @@
-"""The journal of reports from a server. After an interruption, the next run requests only the rest.
+"""The journal of reports from a server, with which an interrupted run can continue.
 
-The file has lines of JSON. Each line has a report, and the digest of its submission and options.
+Each line is a JSON object with a report, and the digest of its submission and options.
 """
 
 import hashlib
@@ -22,10 +22,8 @@ _DEFAULT_NAME: Final = "dh-grader"
 
 
 def journal_beside(output: Path | None) -> Path:
-    """The path of the journal of a run that writes to ``output``.
-
-    The journal's name begins with a dot, so that no run takes the journal for a submission.
-    """
+    """Return the path of the journal of a run that writes to ``output``."""
+    # The name begins with a dot, so that no run takes the journal for a submission.
     if output is None or (output.exists() and not (output.is_file() or output.is_dir())):
         return Path(f".{_DEFAULT_NAME}.graded")
     named = output.resolve() if output.name in ("", "..") else output
@@ -38,11 +36,10 @@ def digest(content: Sequence[object]) -> str:
 
 
 class Journal:
-    """Reads the reports of earlier runs from a file, and appends the reports of this run.
+    """Reads the reports of earlier runs from a file, and appends the reports of this run."""
 
-    Several threads may use one journal. If the file cannot be written, a warning is printed and the
-    run continues.
-    """
+    # Several threads may use one journal. If the file cannot be written, a warning is printed and
+    # the run continues.
 
     def __init__(self, path: Path) -> None:
         self.path = path
@@ -51,7 +48,7 @@ class Journal:
         self._is_writable = True
 
     def report(self, of: str) -> Report | None:
-        """The report of an earlier run with this digest, or None."""
+        """Return the report of an earlier run with this digest, or None."""
         if of not in self._places:
             return None
         try:
@@ -63,7 +60,7 @@ class Journal:
             return None
 
     def add(self, of: str, report: Report) -> None:
-        """Append a report to the journal, where the next run finds it."""
+        """Append a report and its digest to the journal."""
         # Begin with a line break: the last line may be incomplete.
         line = b'\n{"digest": "%b", "report": %b}\n' % (of.encode(), rendered(report))
         with self._lock:
@@ -84,12 +81,12 @@ class Journal:
                 )
 
     def remove(self) -> None:
-        """Delete the journal after a complete run."""
+        """Delete the journal."""
         self.path.unlink(missing_ok=True)
 
 
 def _places(path: Path) -> list[tuple[str, int]]:
-    """The digests in a journal and the offsets of their lines; other lines are ignored."""
+    # The digests, and the offsets of their lines; other lines are ignored.
     found = []
     try:
         with path.open("rb") as file:

@@ -1,4 +1,6 @@
-"""Let a server grade submissions. This module loads httpx, so import the module late."""
+"""Let a server grade submissions."""
+
+# This module loads httpx, so import the module late.
 
 from collections.abc import Collection
 from dataclasses import replace
@@ -40,10 +42,11 @@ class RemoteGrading:
     """Lets a server grade submissions, unless the journal already has their reports.
 
     ``ungraded`` has the names of the submissions that the server could not grade, and ``reason``
-    says why. After an error that concerns all submissions, nothing more is sent. Several threads
-    may use one object. The journal keeps the reports for each ``key`` apart, because the feedback
-    of a server may depend on the key.
+    says why.
     """
+
+    # Several threads may use one object. The journal keeps the reports for each ``key`` apart,
+    # because the feedback of a server may depend on the key.
 
     def __init__(
         self, server: GraderClient, key: str | None, terms: GradingTerms, journal: Journal
@@ -57,7 +60,7 @@ class RemoteGrading:
         self.ungraded: set[str] = set()
 
     def graded(self, handed: HandedIn) -> GradedSubmission:
-        """Return the submission with a report or a problem for each exercise."""
+        """Grade a submission; return a report or an error message for each exercise."""
 
         def report_on(
             body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
@@ -77,7 +80,6 @@ class RemoteGrading:
         return graded(handed, self._terms, report_on)
 
     def _report(self, assigned: AssignedExercise, submission: Submission) -> Report:
-        """Return the report from the journal or from the server. Raises GraderClientError."""
         exercise = assigned.exercise
         parts = tuple(part.id for part in exercise.parts)
         terms = (submission.angle_unit, submission.feedback, submission.echo)
@@ -105,7 +107,7 @@ class RemoteGrading:
 
 
 def restricted(report: Report, parts: Collection[str]) -> Report:
-    """Return the report with only these parts and their points."""
+    """Return the report without the other parts of the exercise."""
     kept = tuple(part for part in report.parts if part.part in parts)
     points = rounded_points(sum(part.points for part in kept))
     max_points = rounded_points(sum(part.max_points for part in kept))
@@ -114,13 +116,13 @@ def restricted(report: Report, parts: Collection[str]) -> Report:
 
 
 def _concerns_all(error: GraderClientError) -> bool:
-    """True if other submissions would cause the same error."""
+    # True if other submissions would cause the same error.
     if isinstance(error, RequestRefusedError):
         return error.status in _CONCERNING_ALL or error.is_temporary
     return True
 
 
 def _concerns_these(error: GraderClientError) -> bool:
-    """True if the server refuses these answers, so that sending them again is useless."""
+    # True if the server refuses these answers, so that sending them again is useless.
     is_refusal = isinstance(error, RequestRefusedError) and 400 <= error.status < 500
     return is_refusal and not _concerns_all(error)

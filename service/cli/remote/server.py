@@ -1,4 +1,6 @@
-"""Use a server that grades instead of this program. Modules that load httpx are imported late."""
+"""Use a server that grades instead of this program."""
+
+# Modules that load httpx are imported late.
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -27,9 +29,9 @@ REQUESTS: Final = 4
 
 @contextmanager
 def server_of(settings: Settings) -> Iterator["GraderClient | None"]:
-    """Open a client of the server that the settings name; yield None if they name no server.
+    """Open a client of the server in the settings; yield None if no server is set.
 
-    End the program with exit code 2 if the address or the key is invalid.
+    Exits with code 2 if the server's address or the key is invalid.
     """
     if settings.server is None:
         yield None
@@ -49,9 +51,9 @@ def _key(settings: Settings) -> str | None:
 
 
 def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExercise:
-    """Return the exercise from the server, or, without a server, from this installation.
+    """Return the exercise from the server, or without a server, from this installation.
 
-    Raises UnknownExerciseError. End the program with exit code 2 if the server fails.
+    Raises UnknownExerciseError.
     """
     if server is None:
         return installed_exercise(exercise_id)
@@ -65,7 +67,7 @@ def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExerc
 
 
 def require_no_own_files(assignment: Assignment) -> None:
-    """End the program with exit code 2 if an exercise is a local file: no server has it."""
+    """Exit with code 2 if an exercise is a local file, which the server does not have."""
     for assigned in assignment.exercises:
         if assigned.path is not None:
             give_up(
@@ -88,9 +90,9 @@ def graded_by(
 ) -> Iterator[Iterator[GradedSubmission]]:
     """Yield an iterator over the submissions in order, graded by the server.
 
-    ``requests`` is the number of concurrent requests. If the server fails, the reports so far stay
-    in the journal beside the output, and a message says what to do.
+    ``requests`` is the number of concurrent requests.
     """
+    # If the server fails, the reports so far stay in the journal beside the output.
     from service.cli.remote.remote_grading import RemoteGrading
 
     journal = Journal(journal_beside(output))

@@ -15,34 +15,30 @@ _REPEATED_WITHIN: Final = 1.0
 
 
 class _Signals:
-    """Ends the process after a signal; remembers the last signal and its time."""
-
     def __init__(self) -> None:
         self._last: tuple[int, float] | None = None
 
     def receive(self, number: int, _: object) -> None:
-        """End the process; ignore a further signal that comes during its cleanup."""
+        # A further signal during the cleanup is ignored.
         now = time.monotonic()
         if self._last is None or now - self._last[1] > _REPEATED_WITHIN:
             self._last = number, now
             _end(number)
 
     def check(self) -> None:
-        """End the process if a signal came but its exception was lost.
-
-        Python drops exceptions that are raised during garbage collection or the release of a lock.
-        """
+        # Python drops exceptions that are raised during garbage collection or the release of a
+        # lock.
         if self._last is not None:
             _end(self._last[0])
 
 
 @contextmanager
 def interruptible() -> Iterator[Callable[[], None]]:
-    """Let SIGTERM end this process like Ctrl-C, so that files and processes are cleaned up.
+    """Let SIGTERM end this process like Ctrl-C, after files and processes are cleaned up.
 
-    Yield a function that ends the process if the exception of a signal was lost. Call the function
-    between two pieces of work.
+    Yields a function to call between two pieces of work.
     """
+    # The function ends the process if the exception of a signal was lost.
     signals = _Signals()
     with _handled(signals.receive):
         try:

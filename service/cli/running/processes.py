@@ -25,11 +25,11 @@ _GROUP_SIGNALS: Final = (signal.SIGINT, signal.SIGTERM)
 
 
 class WorkerLostError(Exception):
-    """A process did not start, or ended before its work was done: perhaps it was killed."""
+    """A worker process did not start, or ended too early."""
 
 
 def jobs_for(count: int) -> int:
-    """The best number of processes for ``count`` submissions."""
+    """Return the best number of processes for ``count`` submissions."""
     if hasattr(os, "sched_getaffinity"):
         cores = len(os.sched_getaffinity(0))
     else:
@@ -41,10 +41,9 @@ def jobs_for(count: int) -> int:
 def mapped(
     function: Callable[[_Item], _Result], items: Sequence[_Item], jobs: int
 ) -> Iterator[Iterator[_Result]]:
-    """Yield an iterator over the results in the order of the items, computed on demand.
+    """Yield an iterator over the results in the order of the items.
 
-    With one job, everything runs in this process. Otherwise ``function`` and the items are pickled,
-    and the worker processes are killed at the end of the context. Iteration raises WorkerLostError.
+    With several ``jobs``, ``function`` and the items are pickled. Iteration raises WorkerLostError.
     """
     if jobs == 1:
         yield map(function, items)
@@ -58,7 +57,6 @@ def mapped(
 
 
 def _results(idle: "SimpleQueue[Connection]", chunk: Sequence[Any]) -> list[Any]:
-    """Let an idle worker compute the results of a chunk."""
     worker = idle.get()
     try:
         worker.send(chunk)
@@ -71,7 +69,6 @@ def _results(idle: "SimpleQueue[Connection]", chunk: Sequence[Any]) -> list[Any]
 
 @contextmanager
 def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator["SimpleQueue[Connection]"]:
-    """Start worker processes and yield connections to them; kill them at the end."""
     # Import here: a single process needs none of this.
     from multiprocessing import get_context, resource_tracker
 
@@ -106,11 +103,8 @@ def _workers(function: Callable[[Any], Any], jobs: int) -> Iterator["SimpleQueue
 
 @contextmanager
 def _signals_blocked() -> Iterator[None]:
-    """Block signals to the process group, such as Ctrl-C, in processes started in this context.
-
-    This process itself ends its workers. If a signal ended a worker first, this process would
-    report the worker as lost.
-    """
+    # This process itself ends its workers. If a signal such as Ctrl-C ended a worker first, this
+    # process would report the worker as lost.
     if not hasattr(signal, "pthread_sigmask"):
         yield
         return
@@ -122,7 +116,6 @@ def _signals_blocked() -> Iterator[None]:
 
 
 def _work(connection: "Connection", function: Callable[[Any], Any]) -> None:
-    """Apply the function to chunks from the connection until it is closed."""
     for number in _GROUP_SIGNALS:
         signal.signal(number, signal.SIG_IGN)
     # If the other end is closed, nobody waits for results.

@@ -16,7 +16,7 @@ _LEAST: Final = 10
 
 @dataclass(frozen=True, slots=True)
 class Progress:
-    """Functions that advance the bar and print an error; ``is_shown`` is True if there is a bar."""
+    """The functions of a progress bar: ``advance`` moves the bar, ``complain`` prints an error."""
 
     advance: Callable[[], None]
     complain: Callable[[str], None]
@@ -25,7 +25,7 @@ class Progress:
 
 @contextmanager
 def progress(total: int) -> Iterator[Progress]:
-    """Show a bar on standard error during the context; errors appear above the bar."""
+    """Show a progress bar on standard error during the context."""
     if total < _LEAST or not sys.stderr.isatty():
         yield Progress(lambda: None, complain)
         return

@@ -1,9 +1,10 @@
-"""Divide a class between machines, and merge the machines' JSON lines into those of one run.
+"""Divide the submissions of a class between machines, and merge the results.
 
-Shard 3 of 16 grades the third submission and every sixteenth after it. The first line of its file
-is a header that describes the division, so that merging notices a missing, incomplete or foreign
-file.
+Shard 3 of 16 has the submissions 3, 19, 35, and so on.
 """
+
+# The first line of a shard's file is a header that describes the division, so that merging notices
+# a missing, incomplete or foreign file.
 
 import hashlib
 import json
@@ -28,23 +29,23 @@ _FORM: Final = re.compile(r"([0-9]{1,4})/([0-9]{1,4})", re.ASCII)
 
 
 class UnusableShardsError(ValueError):
-    """The files are not all shards of one run; the text gives the reason."""
+    """The files are not all shards of the same run; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of ``count`` shards; ``number`` begins with 1."""
+    """One of ``count`` shares of the submissions; ``number`` begins with 1."""
 
     number: int
     count: int
 
     def of(self, items: Sequence[_Item]) -> list[_Item]:
-        """Return the items of this shard."""
+        """Return the items that belong to this shard."""
         return list(items[self.number - 1 :: self.count])
 
 
 def shard_of(text: str) -> Shard:
-    """Return the shard that ``3/16`` names. Raises typer.BadParameter."""
+    """Parse a shard such as ``3/16``. Raises typer.BadParameter."""
     found = _FORM.fullmatch(text)
     shard = Shard(int(found[1]), int(found[2])) if found else Shard(0, 0)
     if not 1 <= shard.number <= shard.count <= MOST_SHARDS:
@@ -59,8 +60,8 @@ def shard_of(text: str) -> Shard:
 class ShardHeader:
     """The first line of a shard's file.
 
-    ``submissions`` is the number of all submissions, ``exercises`` the number of lines for each
-    submission, and ``run`` a hash of the names of all submissions and exercises.
+    ``exercises`` is the number of lines for each submission. ``run`` is a hash of the names of all
+    submissions and exercises.
     """
 
     shard: int
@@ -75,7 +76,7 @@ def with_header(
 ) -> Iterator[bytes]:
     """Yield the header of a shard, then its lines.
 
-    ``submissions`` and ``exercises`` are the names of all submissions and exercises of the run.
+    ``submissions`` and ``exercises`` are all names in the run, not only in this shard.
     """
     names = json.dumps([submissions, exercises])
     run = hashlib.sha256(names.encode()).hexdigest()
@@ -85,7 +86,7 @@ def with_header(
 
 
 def merged(files: Sequence[Path]) -> Iterator[bytes]:
-    """Yield the lines of one run from the files of all its shards, in any order.
+    """Yield the lines of a whole run from the files of its shards.
 
     Raises UnusableShardsError.
     """
@@ -159,7 +160,6 @@ def _require_one_run(shards: dict[int, tuple[ShardHeader, Path, BinaryIO]]) -> N
 
 
 def _whole_lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
-    """Yield the next lines. Raises UnusableShardsError if a line is missing or incomplete."""
     while True:
         line = file.readline()
         if not line.endswith(b"\n"):

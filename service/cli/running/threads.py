@@ -17,10 +17,8 @@ Result = TypeVar("Result")
 def mapped_in_threads(
     function: Callable[[Item], Result], items: Iterable[Item], jobs: int
 ) -> Iterator[Iterator[Result]]:
-    """Yield an iterator over the results in the order of the items; keep few results in memory.
-
-    At the end of the context, no further call starts, and nothing waits for running calls.
-    """
+    """Yield an iterator over the results in the order of the items."""
+    # At the end of the context, no further call starts, and nothing waits for running calls.
     # Import here: most runs need no threads. ThreadPoolExecutor would delay the end of the program
     # until its threads end; the threads of this pool are daemons.
     from multiprocessing.pool import ThreadPool
@@ -30,7 +28,6 @@ def mapped_in_threads(
 
 
 def _in_order(begun: Iterator["AsyncResult[Result]"], ahead: int) -> Iterator[Result]:
-    """Yield the results one by one, while up to ``ahead`` of them are being computed."""
     waiting = deque(islice(begun, ahead))
     while waiting:
         yield waiting.popleft().get()

@@ -1,1 +1,1 @@
-"""Deep linking: a tutor chooses exercises on our page, and the platform makes links of them."""
+"""Deep linking: a tutor chooses exercises on our page, and the platform links to them."""

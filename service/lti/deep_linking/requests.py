@@ -29,10 +29,8 @@ _LONGEST_ADDRESS: Final = 2000
 def begin_linking(
     connection: Connection, message: LaunchMessage, secret: Secret, now: datetime
 ) -> LinkingTicket:
-    """Return the ticket with which a tutor may send links to the platform. Raises LtiError.
-
-    No course and no link is recorded yet, because the tutor may cancel.
-    """
+    """Return a ticket with which a tutor may send links to the platform. Raises LtiError."""
+    # No course and no link is recorded yet, because the tutor may cancel.
     if not settle(connection, secret, now):
         raise LtiError("no-secret")
     asked = _asked(message)
@@ -51,7 +49,6 @@ def begin_linking(
 
 
 def _asked(message: LaunchMessage) -> Mapping[str, Any]:
-    """Check the settings in a deep linking message and return them. Raises LtiError."""
     name = f"{LINKING}deep_linking_settings"
     settings = message.claims.get(name)
     if settings is None:
@@ -84,7 +81,6 @@ def _asked(message: LaunchMessage) -> Mapping[str, Any]:
 
 
 def _notices_url(message: LaunchMessage) -> str:
-    """Return the address at which we ask for notices of handed-in files. Raises LtiError."""
     service = message.claims.get(_NOTICES)
     url = service.get("platform_notification_service_url") if isinstance(service, dict) else None
     if not isinstance(url, str) or not 0 < len(url) <= _LONGEST_ADDRESS:

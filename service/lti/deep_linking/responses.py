@@ -34,7 +34,7 @@ class NewLink:
 
     @property
     def parameters(self) -> dict[str, str]:
-        """The custom parameters by which a launch finds the chosen assignment or exercises."""
+        """The custom parameters by which a launch finds the chosen exercises."""
         if self.assignment:
             return {"assignment": self.assignment}
         listed = ",".join(f"{name}={points:.10g}" for name, points in self.points.items())
@@ -53,10 +53,11 @@ def signed_response(
     now: datetime,
     locale: str = "",
 ) -> str:
-    """Return the signed response with the links; there may be no links. Raises LtiError.
+    """Return the signed response with the links. Raises LtiError.
 
-    Reports on files are in the language ``locale``.
+    ``locale`` is the language of reports on files.
     """
+    # There may be no links.
     made = [
         _for_files(each, known, locale) if ticket.notices_url else _item(each, ticket, known)
         for each in links

@@ -1,4 +1,4 @@
-"""Grade handed-in files: one submission after the other, each leased to one process."""
+"""Grade handed-in files, one submission after the other."""
 
 import logging
 import random
@@ -38,7 +38,7 @@ class FileReporting:
         now: Callable[[], datetime] = utc_now,
         chance: Callable[[], float] = random.random,
     ) -> None:
-        """``now`` returns the time, ``chance`` a random number from 0 to 1 for each pause."""
+        # ``now`` returns the time, ``chance`` a random number from 0 to 1 for each pause.
         self._engine, self._catalogue = engine, catalogue
         self.now, self._chance = now, chance
         self._platform = PlatformFiles(
@@ -68,7 +68,7 @@ class FileReporting:
         return True
 
     def next_due(self) -> datetime | None:
-        """Return when the next submission may be graded; None if no submission waits."""
+        """Return when the next submission may be graded; None if none waits."""
         with self._engine.connect() as connection:
             return queue.next_due(connection)
 

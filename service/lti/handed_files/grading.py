@@ -29,10 +29,7 @@ _PASSED, _NOT_PASSED = "#1B7F4B", "#B45309"
 
 @dataclass(frozen=True, slots=True)
 class GradedFiles:
-    """The graded files of a submission.
-
-    ``failures`` has, by file id, the errors of the files that could not be graded.
-    """
+    """The graded files of a submission; ``failures`` has the errors by file id."""
 
     submission: GradedSubmission | None
     failures: Mapping[str, NoFileError]
@@ -48,12 +45,12 @@ def graded_files(
     for_students: bool = True,
     language: Language | None = None,
 ) -> GradedFiles:
-    """Grade all files of a submission together: they may answer different parts.
+    """Grade all files of a submission together.
 
     ``contents`` has the content of each file, or an error, by file id. ``ceiling`` is the highest
-    feedback level for students. Without a ``language``, the reports are in the language of the
-    tutor who chose the exercises.
+    feedback level for students.
     """
+    # Without a ``language``, the reports are in the language of the tutor who chose the exercises.
     language = language or language_named(files.custom.get("locale", "")) or ENGLISH
     failures = {key: each for key, each in contents.items() if isinstance(each, NoFileError)}
     assignment = _assignment(files.custom, catalogue, ceiling)
@@ -85,7 +82,7 @@ def graded_files(
 
 
 def report_on(file: FileAtPlatform, found: GradedFiles, now: datetime) -> dict[str, Any]:
-    """Return the report on a file: the points of the whole submission, or why there are none."""
+    """Return the report on a file: the points of the whole submission, or an error."""
     report: dict[str, Any] = {
         "assetId": file.asset_id,
         "type": KIND,
@@ -120,7 +117,6 @@ def report_on(file: FileAtPlatform, found: GradedFiles, now: datetime) -> dict[s
 def _assignment(
     custom: Mapping[str, str], catalogue: Mapping[str, Exercise], ceiling: FeedbackLevel
 ) -> Assignment | None:
-    """Return the assignment that a tutor's custom parameters name, or None."""
     wanted = parameters_assignment(
         {"exercise": custom.get("exercise", "")}, "files", "-", catalogue
     )
@@ -134,7 +130,7 @@ def _assignment(
 
 
 def _names(files: HandedFiles) -> dict[str, str]:
-    """Return a different name for each file, without folders, by file id."""
+    # Names without folders, by file id.
     names: dict[str, str] = {}
     for i, each in enumerate(files.assets):
         name = PurePosixPath(each.filename.replace("\\", "/").replace("\0", "")).name[-100:]
@@ -145,7 +141,6 @@ def _names(files: HandedFiles) -> dict[str, str]:
 
 
 def _problem(found: GradedSubmission, name: str) -> str:
-    """Return why a file earns nothing, or ""."""
     mine = [file for file in found.files if name in file.names]
     if any(file.report for file in mine):
         return ""

@@ -38,9 +38,8 @@ class FileAtPlatform(_Stored):
 
 
 class HandedFiles(_Stored):
-    """The files of one submission.
+    """The files of one submission, and where to send the reports.
 
-    The reports are sent to ``report_url``. ``custom`` are the parameters of the grading.
     ``deployment`` and ``context`` identify the course at the platform; both may be "".
     """
 
@@ -62,7 +61,7 @@ class SubmissionNotice(BaseModel):
 
 
 def parties_of(token: str) -> tuple[str, str]:
-    """Return the issuer and the client id in a token, whose signature is not checked yet.
+    """Return the issuer and the client id in a token without checking its signature.
 
     Raises LtiError.
     """
@@ -82,10 +81,8 @@ def parties_of(token: str) -> tuple[str, str]:
 def notice_in(
     token: str, key: RSAPublicKey, registration: Registration, now: datetime
 ) -> SubmissionNotice | None:
-    """Return the notice in a token; None if the platform only tests our address. Raises LtiError.
-
-    A platform may send the same notice again, with the same id.
-    """
+    """Return the notice in a token, or None if it is only a test. Raises LtiError."""
+    # A platform may send the same notice again, with the same id.
     claims = signed_claims(token, key)
     check_parties(claims, registration)
     check_times(claims, now.timestamp())
@@ -132,7 +129,7 @@ def _files(claims: Mapping[str, Any], registration: Registration) -> HandedFiles
 
 
 def _is_text(value: Any) -> TypeGuard[str]:
-    """True for a text that is not empty and has no lone surrogate, which no database stores."""
+    # No database stores a lone surrogate.
     return isinstance(value, str) and bool(value) and not _SURROGATE.search(value)
 
 

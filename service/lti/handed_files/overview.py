@@ -1,4 +1,4 @@
-"""The reports on handed-in files that did not reach a platform: functions on a connection."""
+"""Database functions: reports on handed-in files that did not reach a platform."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -35,9 +35,9 @@ class MissingReport:
 def missing_reports(
     connection: Connection, course: str, language: Language, learner: str | None = None
 ) -> list[MissingReport]:
-    """Return the reports of a course that did not arrive at the platform, newest first.
+    """Return the reports that did not reach the platform, newest first.
 
-    With ``learner``, return only this learner's reports.
+    ``learner`` limits the result to one learner.
     """
     of_course = select(contexts).where(contexts.c.course == course)
     here = {

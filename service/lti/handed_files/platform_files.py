@@ -26,9 +26,9 @@ _MOST_REDIRECTS: Final = 3
 
 
 class NoFileError(Exception):
-    """A file that the platform does not give, or that is not graded; ``reason`` says why.
+    """A file cannot be fetched or graded; ``reason`` says why.
 
-    ``code`` is one of the standard's error codes.
+    ``code`` is an error code of the LTI standard.
     """
 
     def __init__(self, code: str, reason: str) -> None:
@@ -48,7 +48,8 @@ class PlatformFiles:
         self._send(registration, service, "PUT", NOTICES, asked)
 
     def send_report(self, registration: Registration, url: str, report: Mapping[str, Any]) -> None:
-        """Send a report. Raises ScoreError, but not if the platform already has a newer report."""
+        """Send a report. Raises ScoreError."""
+        # If the platform already has a newer report, nothing is raised.
         try:
             self._send(registration, url, "POST", REPORT, report)
         except ThisLaterError as error:
@@ -56,10 +57,8 @@ class PlatformFiles:
                 raise
 
     def content_of(self, registration: Registration, file: FileAtPlatform) -> bytes:
-        """Return a file's content. Raises NoFileError, or ScoreError if a later try may succeed.
-
-        A platform may redirect to another host. The access token is sent to the first host only.
-        """
+        """Return a file's content. Raises NoFileError, or ScoreError if a later try may succeed."""
+        # A platform may redirect to another host. The access token is sent to the first host only.
         local, until = registration.is_development, monotonic() + TIMEOUT
         try:
             asked = self._services.asked(
@@ -90,7 +89,7 @@ class PlatformFiles:
     def contents_of(
         self, registration: Registration, files: HandedFiles
     ) -> dict[str, bytes | NoFileError]:
-        """Return the content of each file, or its NoFileError, by file id. Raises ScoreError."""
+        """Return each file's content or error, by file id. Raises ScoreError."""
         found: dict[str, bytes | NoFileError] = {}
         for each in files.assets:
             try:
@@ -108,10 +107,7 @@ class PlatformFiles:
 
 
 def _checked(data: bytes, file: FileAtPlatform) -> bytes:
-    """Return ``data`` if it has the checksum that the notice names. Raises NoFileError.
-
-    Platforms write the checksum in hexadecimal digits or in base 64.
-    """
+    # Platforms write the checksum in hexadecimal digits or in base 64.
     digest = hashlib.sha256(data).digest()
     known = (digest.hex(), base64.b64encode(digest).decode())
     expected = file.sha256_checksum

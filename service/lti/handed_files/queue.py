@@ -1,4 +1,4 @@
-"""The queue of submissions to grade: lease the next one to this process, and note the result."""
+"""The queue of submissions to grade; each submission is leased to one process."""
 
 from dataclasses import dataclass
 from datetime import datetime, timedelta
@@ -39,7 +39,8 @@ def queue_files(
     learner: str,
     now: datetime,
 ) -> None:
-    """Queue the files of a notice; a repeated notice changes nothing. Raises LtiError."""
+    """Add the files of a notice to the queue. Raises LtiError."""
+    # A repeated notice changes nothing.
     if not known.any_deployment and notice.deployment not in deployments_of(connection, known.id):
         raise LtiError("unknown-deployment", deployment=notice.deployment)
     connection.execute(delete(handed_files).where(_OF.received_at < now - _KEPT))
@@ -60,7 +61,7 @@ def queue_files(
 
 
 def take(connection: Connection, now: datetime) -> TakenFiles | None:
-    """Lease and return the files of the next submission; None if no submission is due."""
+    """Lease and return the files of the next submission, or return None if none is due."""
     free = or_(_OF.leased_until.is_(None), _OF.leased_until <= now)
     chosen = select(handed_files).where(_OF.state == "waiting", _OF.next_try_at <= now, free)
     ordered = chosen.order_by(_OF.next_try_at).limit(1).with_for_update(skip_locked=True)
@@ -79,12 +80,12 @@ def take(connection: Connection, now: datetime) -> TakenFiles | None:
 
 
 def note_done(connection: Connection, number: int, refusal: str | None = None) -> None:
-    """Note that the platform has the reports, or, with a ``refusal``, why it does not get them."""
+    """Mark a submission as done; ``refusal`` says why the platform does not get the reports."""
     _note(connection, number, state="refused" if refusal else "sent", refusal=refusal)
 
 
 def note_later(connection: Connection, number: int, at: datetime, refusal: str) -> None:
-    """Note when a submission is to be graded again, and why."""
+    """Store when to grade a submission again, and why."""
     _note(connection, number, next_try_at=at, refusal=refusal)
 
 
@@ -94,7 +95,7 @@ def _note(connection: Connection, number: int, **values: Any) -> None:
 
 
 def next_due(connection: Connection) -> datetime | None:
-    """Return when the next submission is due, or None if no submission waits."""
+    """Return when the next submission is due, or None if none waits."""
     waiting = select(_OF.next_try_at, _OF.leased_until).where(_OF.state == "waiting")
     row = connection.execute(waiting.order_by(_OF.next_try_at).limit(1)).one_or_none()
     return None if row is None else max(row.next_try_at, row.leased_until or row.next_try_at)

@@ -1,4 +1,4 @@
-"""Dynamic registration: read the platform's configuration, and ask it to register this service."""
+"""Dynamic registration: read a platform's configuration, and register this service there."""
 
 import json
 from collections.abc import Mapping
@@ -32,11 +32,12 @@ _LONGEST_ANSWER: Final = 600
 
 
 def register_at(invitation: Invitation, configuration: str, token: str) -> dict[str, Any]:
-    """Register this service at a platform; return the values of the new registration.
+    """Register this service at a platform; return the values of the registration.
 
-    ``configuration`` is the address of the platform's OpenID configuration, ``token`` its
-    registration token, or "": some platforms send none. Raises RegistrationError.
+    ``configuration`` is the address of the platform's OpenID configuration. Raises
+    RegistrationError.
     """
+    # Some platforms send no registration token; then ``token`` is "".
     local = invitation.is_development
     if reason := unusable(configuration, local=local):
         raise RegistrationError(
@@ -72,10 +73,7 @@ def register_at(invitation: Invitation, configuration: str, token: str) -> dict[
 
 
 def _asked(url: str, method: str, *, local: bool, **more: Any) -> dict[str, Any]:
-    """Send a request to a platform and return the JSON object of the response. Raises FetchError.
-
-    No redirect is followed, because the request contains the registration token.
-    """
+    # No redirect is followed, because the request contains the registration token.
     until = monotonic() + TIMEOUT
     with answer(url, method, local=local, **more) as response:
         text = content(response, until)
@@ -98,7 +96,6 @@ def _asked(url: str, method: str, *, local: bool, **more: Any) -> dict[str, Any]
 
 
 def _check(found: Mapping[str, Any], configuration: str, *, local: bool) -> None:
-    """Check the configuration of a platform. Raises FetchError."""
     for name in _ADDRESSES:
         value = found.get(name)
         if not isinstance(value, str) or not 0 < len(value) <= 1000:
@@ -124,7 +121,6 @@ def _scopes(found: Mapping[str, Any]) -> list[str] | None:
 
 
 def _messages(found: Mapping[str, Any]) -> dict[str, list[str]] | None:
-    """Return the supported messages with their placements, or None if the platform names none."""
     platform = found.get(_PLATFORM)
     listed = platform.get("messages_supported") if isinstance(platform, dict) else None
     if not isinstance(listed, list):

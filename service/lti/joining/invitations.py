@@ -1,9 +1,10 @@
 """Invitations: one-time links by which a platform registers itself.
 
-Only a digest of the secret text in the link is stored. The text begins with ``held-`` if the
-registration must wait for ``dh-grader lti allow``. Nobody can remove ``held-``, because it is part
-of the digested text.
+The database has only a digest of the secret text in a link.
 """
+
+# The secret text begins with ``held-`` if the registration must wait for ``dh-grader lti allow``.
+# Nobody can remove ``held-``, because it is part of the digested text.
 
 import secrets
 from dataclasses import dataclass
@@ -34,7 +35,7 @@ _HELD: Final = "held-"
 
 @dataclass(frozen=True, slots=True)
 class Invitation:
-    """A valid invitation; ``waits`` is true if an admin must allow the registration first."""
+    """A valid invitation; ``waits`` is True if an admin must allow the registration."""
 
     digest: str
     name: str
@@ -44,7 +45,7 @@ class Invitation:
 
     @property
     def is_development(self) -> bool:
-        """True if the address of this service is local; the platform may then be local, too."""
+        """True if the address of this service is local, so that the platform may be local, too."""
         return any(self.address.startswith(f"http://{host}") for host in LOCAL_HOSTS)
 
 
@@ -77,7 +78,7 @@ def invite(
 
 
 def invitation_of(connection: Connection, text: str, now: datetime) -> Invitation:
-    """Return a valid invitation. Raises RegistrationError."""
+    """Return the invitation with this secret text. Raises RegistrationError."""
     mine = invitations.c.digest == digest(text)
     row = connection.execute(select(invitations).where(mine)).one_or_none()
     if row is None or row.used_at is not None or row.expires_at <= now:
@@ -86,7 +87,7 @@ def invitation_of(connection: Connection, text: str, now: datetime) -> Invitatio
 
 
 def claim(connection: Connection, text: str, now: datetime) -> Invitation:
-    """Return a valid invitation, and mark it as used. Raises RegistrationError."""
+    """Mark an invitation as used, and return it. Raises RegistrationError."""
     found = invitation_of(connection, text, now)
     mine = (invitations.c.digest == found.digest) & invitations.c.used_at.is_(None)
     if not connection.execute(update(invitations).where(mine).values(used_at=now)).rowcount:
@@ -95,7 +96,7 @@ def claim(connection: Connection, text: str, now: datetime) -> Invitation:
 
 
 def release(connection: Connection, invitation: Invitation) -> None:
-    """Make an invitation usable again, because the platform was not registered."""
+    """Make an invitation usable again after a failed registration."""
     mine = (invitations.c.digest == invitation.digest) & invitations.c.registration.is_(None)
     connection.execute(update(invitations).where(mine).values(used_at=None))
 
@@ -124,7 +125,7 @@ def accept(
 
 
 def allow(connection: Connection, registration_id: str) -> None:
-    """Allow a waiting registration to launch from all deployments. Raises RegistrationError."""
+    """Allow a waiting registration to launch. Raises RegistrationError."""
     registration(connection, registration_id)
     mine = registrations.c.id == registration_id
     connection.execute(update(registrations).where(mine).values(any_deployment=True))

@@ -1,4 +1,4 @@
-"""The description of this service for a platform: a registration request, and a file for Canvas."""
+"""Describe this service to a platform: as a registration request, or as a file for Canvas."""
 
 from collections.abc import Collection
 from typing import Any, Final
@@ -31,10 +31,9 @@ PLACEMENTS: Final = ("ContentArea", *CANVAS_PLACEMENTS, FILE_PLACEMENT)
 def registration_request(
     address: str, scopes: Collection[str] | None, messages: dict[str, list[str]] | None
 ) -> dict[str, Any]:
-    """Return the body of a dynamic registration.
+    """Return the body of a dynamic registration request.
 
-    ``scopes`` and ``messages`` (with their placements) are those that the platform supports, or
-    None if the platform does not list them.
+    ``scopes`` and ``messages`` are those that the platform supports, or None if unknown.
     """
     launch = address + LAUNCH_PATH
     linking: dict[str, Any] = {"type": DEEP_LINKING, "target_link_uri": launch, "label": NAME}
@@ -65,9 +64,9 @@ def registration_request(
 
 
 def canvas_configuration(address: str, *, files: bool = False) -> dict[str, Any]:
-    """Return the JSON that an admin of Canvas pastes as the configuration of an LTI key.
+    """Return the JSON that an admin of Canvas pastes to add this service.
 
-    With ``files``, the service also grades files that students hand in at Canvas.
+    With ``files``, the service also grades files that students hand in.
     """
     launch = address + LAUNCH_PATH
     placements = [

@@ -1,4 +1,4 @@
-"""Bring the learners of a course up to date with the roster of its platform."""
+"""Update the learners of a course from the roster (list of members) of its platform."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -28,7 +28,7 @@ class RosterError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RosterQuestion:
-    """What reading a roster needs: the course's context, its platform, and our signing key."""
+    """The data for reading a roster: the course's context, its platform, and our signing key."""
 
     context: Row[Any]
     registration: Registration
@@ -38,7 +38,7 @@ class RosterQuestion:
 
 @dataclass(frozen=True, slots=True)
 class RosterChange:
-    """How a roster has changed a course; ``learners`` is the number of learners in the roster."""
+    """The changes of a course by a roster; ``learners`` is the number of learners in the roster."""
 
     learners: int
     added: int
@@ -47,7 +47,7 @@ class RosterChange:
 
 
 def roster_context(connection: Connection, course: str) -> Row[Any] | None:
-    """Return the row of a course's context, or None if its platform does not give a roster."""
+    """Return the row that connects a course with its platform's roster, or None."""
     of = tables.contexts.c
     mine = (of.course == course) & of.memberships_url.is_not(None)
     return connection.execute(select(tables.contexts).where(mine).limit(1)).one_or_none()
@@ -56,7 +56,7 @@ def roster_context(connection: Connection, course: str) -> Row[Any] | None:
 def ask_for_roster(
     connection: Connection, course: str, secret: Secret, now: datetime
 ) -> RosterQuestion:
-    """Return what is needed to read the roster of a course. Raises RosterError."""
+    """Return the data for reading the roster of a course. Raises RosterError."""
     context = roster_context(connection, course)
     if context is None:
         raise RosterError(say("The platform of this course does not tell its roster."))
@@ -93,9 +93,9 @@ def enrol_members(
     *,
     shows_names: bool | None = None,
 ) -> RosterChange:
-    """Enrol and rename the learners in a roster; remove learners who are no longer in the roster.
+    """Enrol and rename the learners of a roster; remove learners who are not in it.
 
-    ``shows_names`` says whether the learners' names are shown; None keeps this setting.
+    ``shows_names`` turns the display of real names on or off; None changes nothing.
     """
     context, now = question.context, question.now
     if shows_names is None:
@@ -149,10 +149,7 @@ def enrol_members(
 def _enrolled(
     connection: Connection, registration_id: str, course: str
 ) -> dict[str, tuple[str, str | None]]:
-    """Return the name and family name of each learner who came from the platform, by learner id.
-
-    Learners whom a tutor has added are left out, so that a roster does not remove them.
-    """
+    # Learners whom a tutor has added are left out, so that a roster does not remove them.
     of = course_learners.c
     joined = select(of.learner, of.name, of.family_name).join(
         tables.learners, tables.learners.c.learner == of.learner

@@ -36,10 +36,8 @@ class Member:
 
 
 def read_members(registration: Registration, url: str, token: str) -> list[Member]:
-    """Return the active learners of a course, each once. Raises FetchError.
-
-    Inactive and deleted members, test users and members with other roles are left out.
-    """
+    """Return the active learners of a course, each once. Raises FetchError."""
+    # Inactive and deleted members, test users and members with other roles are left out.
     found: dict[str, Member] = {}
     for page in _pages(registration, url, token):
         listed = page.get("members")
@@ -55,7 +53,7 @@ def read_members(registration: Registration, url: str, token: str) -> list[Membe
 
 
 def _pages(registration: Registration, url: str, token: str) -> Iterator[Mapping[str, Any]]:
-    """Yield the pages of a roster, all from the same origin. Raises FetchError."""
+    # All pages must have the same origin.
     local, first = registration.is_development, url
     for _ in range(MOST_PAGES):
         page, following = _page(url, token, local=local)
@@ -69,7 +67,7 @@ def _pages(registration: Registration, url: str, token: str) -> Iterator[Mapping
 
 
 def _page(url: str, token: str, *, local: bool) -> tuple[Mapping[str, Any], str]:
-    """Return a page and the address of the next page, or "". Raises FetchError."""
+    # The address of the next page may be "".
     headers = {"Authorization": f"Bearer {token}", "Accept": _MEDIA_TYPE}
     until = monotonic() + _PAGE_TIME
     with answer(url, local=local, headers=headers, timeout=_PAGE_TIME) as response:
@@ -88,7 +86,6 @@ def _page(url: str, token: str, *, local: bool) -> tuple[Mapping[str, Any], str]
 
 
 def _member(entry: Any) -> Member | None:
-    """Return the active learner in a roster's entry; None for other members."""
     if not isinstance(entry, dict) or entry.get("status", "Active") != "Active":
         return None
     sub, roles = entry.get("user_id"), entry.get("roles")
@@ -110,6 +107,6 @@ def _line(text: str) -> str:
 
 
 def _full(role: str) -> str:
-    """Return the URI of a role; in rosters, roles of a course may be short: ``Learner``."""
+    # In rosters, roles of a course may be short: ``Learner``.
     is_short = "/" not in role and ":" not in role
     return f"http://purl.imsglobal.org/vocab/lis/v2/membership#{role}" if is_short else role

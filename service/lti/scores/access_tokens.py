@@ -1,4 +1,4 @@
-"""Get access tokens from platforms. Our key signs the requests (client credentials)."""
+"""Get access tokens from platforms (OAuth client credentials)."""
 
 import json
 import re
@@ -36,7 +36,7 @@ class AccessTokens:
     """The access tokens of this process, by registration and scopes."""
 
     def __init__(self, now: Callable[[], datetime], key: Callable[[], SigningKey]) -> None:
-        """``now`` returns the time, and ``key`` returns our signing key."""
+        # ``now`` returns the time, and ``key`` our signing key.
         self._now, self._key = now, key
         self._known: dict[tuple[str, str], tuple[str, datetime]] = {}
 
@@ -59,7 +59,10 @@ class AccessTokens:
 def fetched_token(
     registration: Registration, scopes: str, key: SigningKey, now: datetime
 ) -> tuple[str, float]:
-    """Return a new access token, and its lifetime in seconds. Raises RefusedError, LaterError."""
+    """Fetch an access token; return it and its lifetime in seconds.
+
+    Raises RefusedError, LaterError.
+    """
     if registration.token_url is None:
         raise RefusedError("no-token-address")
     claims = {
@@ -97,7 +100,7 @@ def fetched_token(
 
 
 def available_key(engine: Engine, secret: Secret, now: datetime) -> SigningKey:
-    """Return the key that signs our assertions; make a key if there is none. Raises LaterError."""
+    """Return our signing key; make one if there is none. Raises LaterError."""
 
     def found() -> SigningKey:
         with engine.connect() as connection:

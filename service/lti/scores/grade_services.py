@@ -1,4 +1,4 @@
-"""The services of a platform's gradebook (AGS): send a score, find or make a line item."""
+"""The services of a platform's gradebook (AGS): send scores, and find or make columns."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -37,12 +37,12 @@ _MOST_PAGES: Final = 20
 
 
 class NotThereError(RefusedError):
-    """The platform has no such line item, or no such learner."""
+    """The platform has no such line item (gradebook column), or no such learner."""
 
 
 @dataclass(frozen=True, slots=True)
 class Column:
-    """A line item to look up or to make for a resource link, with its title and maximum points."""
+    """A gradebook column of a platform to find or to make."""
 
     lineitems_url: str | None
     scopes: str
@@ -59,13 +59,13 @@ class GradeServices:
         self._tokens = tokens
 
     def send_score(self, registration: Registration, url: str, message: Any) -> None:
-        """Send a score. Raises RefusedError, LaterError, ThisLaterError."""
+        """Send a score to a platform. Raises RefusedError, LaterError, ThisLaterError."""
         sent = {"content": json.dumps(message).encode(), "headers": {"Content-Type": _SCORE}}
         with self.asked(registration, scores_address(url), "POST", SEND, sent):
             return
 
     def line_item(self, registration: Registration, column: Column) -> tuple[str, bool]:
-        """Return a line item's address, and True if this call has made it. Raises ScoreError."""
+        """Return the address of a gradebook column, and True if it is new. Raises ScoreError."""
         if (found := self.found_line_item(registration, column)) is not None:
             return found, False
         if column.lineitems_url is None or CHANGE not in column.scopes.split():
@@ -84,7 +84,7 @@ class GradeServices:
         return _item_address(made, column.lineitems_url), True
 
     def found_line_item(self, registration: Registration, column: Column) -> str | None:
-        """Return the address of the line item of a resource link, or None. Raises ScoreError."""
+        """Return the address of an existing gradebook column, or None. Raises ScoreError."""
         scopes = " ".join(each for each in (CHANGE, READ) if each in column.scopes.split())
         if column.lineitems_url is None or not scopes:
             return None
@@ -114,11 +114,12 @@ class GradeServices:
         *,
         redirects: bool = False,
     ) -> Iterator[httpx.Response]:
-        """Send a request with an access token; if the token is refused, try once with a new token.
+        """Send a request with an access token, and yield the successful response.
 
-        Yield the successful response. Raises ScoreError. With ``redirects``, the response may also
-        be a redirect, and TooLargeError may be raised.
+        ``redirects`` also allows a redirect as the response. Raises ScoreError.
         """
+        # If the token is refused, try once with a new token. With ``redirects``, TooLargeError may
+        # be raised.
         for is_last in (False, True):
             token = self._tokens.token(registration, scopes)
             headers = {**more["headers"], "Authorization": f"Bearer {token}"}
@@ -140,13 +141,13 @@ class GradeServices:
 
 
 def scores_address(url: str) -> str:
-    """Return the address of the scores of a line item; its query string stays at the end."""
+    """Return the address for the scores of a line item (gradebook column)."""
+    # Its query string stays at the end.
     parts = urlsplit(url)
     return urlunsplit(parts._replace(path=f"{parts.path.rstrip('/')}/scores"))
 
 
 def _check(response: httpx.Response) -> None:
-    """Raise a ScoreError if the response is not a success."""
     status = response.status_code
     if response.is_success:
         return
@@ -165,7 +166,7 @@ def _check(response: httpx.Response) -> None:
 
 
 def _is_used_up(headers: Mapping[str, str]) -> bool:
-    """True if Canvas has refused a request (403) because we have sent too many requests."""
+    # Canvas answers 403 when we have sent too many requests.
     try:
         return float(headers.get("x-rate-limit-remaining", "")) <= 0
     except ValueError:
@@ -187,10 +188,7 @@ def _item_address(item: Any, lineitems_url: str) -> str:
 
 
 def _of_platform(url: str, lineitems_url: str) -> str:
-    """Return ``url`` if it has the origin of ``lineitems_url``. Otherwise raise ThisLaterError.
-
-    The access token is sent only to the platform's own host.
-    """
+    # The access token is sent only to the platform's own host.
     if unusable(url, local=True) or origin_of(url) != origin_of(lineitems_url):
         raise ThisLaterError("unusable-answer", reason=say("an address is of another host"))
     return url

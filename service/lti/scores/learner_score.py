@@ -13,9 +13,9 @@ _CANVAS: Final = "https://canvas.instructure.com/lti/submission"
 
 
 class LearnerScore(NamedTuple):
-    """The sum of a learner's points in an assignment. It is None if no attempt counts.
+    """A learner's points in an assignment, or None if no attempt counts.
 
-    ``submitted_at`` is the moment of the last attempt among those that count.
+    ``submitted_at`` is the time of the last attempt that counts.
     """
 
     points: float | None
@@ -53,10 +53,11 @@ def learner_score(connection: Connection, assignment: int, learner: str) -> Lear
 
 
 def score_message(score: LearnerScore, sub: str, stamp: datetime, address: str) -> dict[str, Any]:
-    """Return the message with a score. If the score has no points, the platform deletes its score.
+    """Return the message that sends a score to a platform.
 
-    ``address`` launches the assignment. Some fields of the message are only for Canvas.
+    A score without points deletes the platform's score.
     """
+    # ``address`` launches the assignment. Some fields of the message are only for Canvas.
     message: dict[str, Any] = {"userId": sub, "timestamp": _written(stamp)}
     if score.points is None:
         return message | {"activityProgress": "Initialized", "gradingProgress": "NotReady"}

@@ -18,11 +18,9 @@ READ: Final = f"{AGS}lineitem.readonly"
 
 
 def ensure_line_item(connection: Connection, link: int) -> None:
-    """Store the line item of a resource link, if the platform accepts scores for the link.
-
-    If the address of the line item is unknown, the sender of the first score looks up the line
-    item, or makes it. The scores of earlier attempts are queued.
-    """
+    """Store the line item (gradebook column) of a resource link, and queue earlier scores."""
+    # If the address of the line item is unknown, the sender of the first score looks up the line
+    # item, or makes it.
     row = connection.execute(
         select(resource_links).where(resource_links.c.number == link)
     ).one_or_none()
@@ -49,7 +47,8 @@ def ensure_line_item(connection: Connection, link: int) -> None:
 
 
 def try_refused_again(connection: Connection, learner: str, now: datetime) -> None:
-    """Queue a learner's refused scores again: after a launch, the platform knows the learner."""
+    """Queue a learner's refused scores again."""
+    # After a launch, the platform knows the learner.
     mine = (scores.c.learner == learner) & (scores.c.state == "refused")
     values = {"state": "waiting", "next_try_at": now, "version": scores.c.version + 1}
     connection.execute(update(scores).where(mine).values(values))

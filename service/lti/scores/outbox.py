@@ -1,9 +1,10 @@
-"""The queue of scores to send: lease the next score to this process, and note the result.
+"""The queue of scores to send; each score is leased to one process.
 
-A score is leased to a process before it is sent. If the process dies, the lease ends, and another
-process sends the score again, with a later timestamp. In the end, the platform has the
-correct score.
+If a process dies, its lease ends, and another process sends the score again.
 """
+
+# The second time, the score has a later timestamp, so that in the end the platform has the correct
+# score.
 
 from collections.abc import Collection
 from dataclasses import dataclass
@@ -49,18 +50,18 @@ class TakenScore:
 
     @property
     def is_forgotten(self) -> bool:
-        """True if the learner's data were deleted, so that the score is to be cleared."""
+        """True if the learner's data were deleted, so that the platform should clear the score."""
         return self.learner.startswith(FORGOTTEN)
 
 
 def take(
     connection: Connection, sender: str, now: datetime, without: Collection[str]
 ) -> TakenScore | None:
-    """Lease the next score to ``sender`` and return the score; None if none is due.
+    """Lease the next score to ``sender`` and return it; None if none is due.
 
-    The registrations in ``without`` get no score now. Scores that the platform already has are
-    marked as sent.
+    Registrations in ``without`` are skipped.
     """
+    # Scores that the platform already has are marked as sent.
     for _ in range(_MOST_PASSED):
         row = connection.execute(_next(now, without)).one_or_none()
         if row is None:
@@ -88,7 +89,6 @@ def take(
 
 
 def _next(now: datetime, without: Collection[str]) -> Any:
-    """Return the query that finds and locks the row of the next score."""
     chosen = (
         select(
             scores,
@@ -117,7 +117,7 @@ def _next(now: datetime, without: Collection[str]) -> Any:
 
 
 def _is_replaced(connection: Connection, row: Row[Any]) -> bool:
-    """True if a learner whose data were deleted has come back, and has a new score."""
+    # A learner whose data were deleted has come back, and has a new score.
     if not row.learner.startswith(FORGOTTEN):
         return False
     again = (scores.c.line_item == row.line_item) & (scores.c.sub == row.sub)
@@ -162,7 +162,8 @@ def _taken(
 
 
 def note_sent(connection: Connection, taken: TakenScore, sender: str, now: datetime) -> None:
-    """Note that the platform has a score. A score that has changed meanwhile stays queued."""
+    """Mark a score as sent."""
+    # A score that has changed meanwhile stays queued.
     mine = _is(taken.line_item, taken.learner) & (scores.c.leased_by == sender)
     if taken.is_forgotten:
         connection.execute(delete(scores).where(mine))
@@ -183,7 +184,7 @@ def note_sent(connection: Connection, taken: TakenScore, sender: str, now: datet
 def note_refused(
     connection: Connection, taken: TakenScore, sender: str, problem: ScoreError
 ) -> None:
-    """Note that the platform will not take a score."""
+    """Mark a score as refused by the platform."""
     mine = _is(taken.line_item, taken.learner) & (scores.c.leased_by == sender)
     if taken.is_forgotten:
         connection.execute(delete(scores).where(mine))
@@ -196,7 +197,7 @@ def note_refused(
 def note_later(
     connection: Connection, taken: TakenScore, sender: str, at: datetime, problem: ScoreError | None
 ) -> None:
-    """Note when a score is to be sent again, and the problem, if there is one."""
+    """Store when to send a score again, and the problem, if there is one."""
     mine = _is(taken.line_item, taken.learner) & (scores.c.leased_by == sender)
     given_up = mine & (scores.c.wanted_at < at - _FORGETTING)
     if taken.is_forgotten and connection.execute(delete(scores).where(given_up)).rowcount:
@@ -211,7 +212,7 @@ def note_later(
 
 
 def next_due(connection: Connection) -> datetime | None:
-    """Return when the next score is due or its lease ends, or None if none waits."""
+    """Return when the next score is due, or None if none waits."""
     waiting = select(scores.c.next_try_at, scores.c.leased_until).where(scores.c.state == "waiting")
     row = connection.execute(waiting.order_by(scores.c.next_try_at).limit(1)).one_or_none()
     if row is None:
@@ -221,7 +222,7 @@ def next_due(connection: Connection) -> datetime | None:
 
 
 def lease_line_item(connection: Connection, line_item: int, now: datetime) -> bool:
-    """Lease a line item to this process; return False if another process has the lease."""
+    """Lease a gradebook column to this process; return False if another process has it."""
     free = or_(line_items.c.found_at.is_(None), line_items.c.found_at <= now)
     mine = (line_items.c.number == line_item) & free
     leased = update(line_items).where(mine).values(found_at=now + LEASE)
@@ -231,7 +232,7 @@ def lease_line_item(connection: Connection, line_item: int, now: datetime) -> bo
 def note_line_item(
     connection: Connection, line_item: int, url: str | None, now: datetime, *, is_made: bool = False
 ) -> None:
-    """End the lease of a line item, and store its address if it was found or made."""
+    """End the lease of a gradebook column, and store its address, if known."""
     values: dict[str, Any] = {"found_at": now}
     if url is not None:
         values["url"] = url
@@ -241,7 +242,6 @@ def note_line_item(
 
 
 def _unchanged(taken: TakenScore) -> Any:
-    """Return the SQL condition that a score has not changed since it was leased."""
     return _is(taken.line_item, taken.learner) & (scores.c.version == taken.version)
 
 

@@ -1,4 +1,4 @@
-"""List a course's scores for tutors, and send scores again: functions on a connection."""
+"""Database functions: list a course's scores for tutors, and queue scores again."""
 
 from datetime import datetime
 from typing import Any
@@ -19,9 +19,9 @@ from service.translations import ENGLISH, Language
 def scores_of(
     connection: Connection, course: str, wanted: SendAgainRequest, language: Language = ENGLISH
 ) -> list[PlatformScore]:
-    """Return the scores of a course, ordered by assignment and learner.
+    """Return the scores of a course, ordered by assignment and learner. Raises CourseError.
 
-    The problems of scores are in the given language. Raises CourseError.
+    The problems of scores are in ``language``.
     """
     _check(connection, course, wanted)
     enrolled = and_(
@@ -62,11 +62,9 @@ def scores_of(
 
 
 def send_again(connection: Connection, course: str, wanted: SendAgainRequest, now: datetime) -> int:
-    """Send scores again, also those that the platform has; return their number.
-
-    A score whose attempts have expired and were deleted is not sent: it stays at the platform as it
-    is. Raises CourseError.
-    """
+    """Queue scores to be sent again; return their number. Raises CourseError."""
+    # A score whose attempts have expired and were deleted is not sent: it stays at the platform as
+    # it is.
     _check(connection, course, wanted)
     has_attempt = exists().where(
         attempts.c.assignment == line_items.c.assignment,

@@ -64,7 +64,7 @@ class RefusedError(ScoreError):
 
 
 class LaterError(ScoreError):
-    """The platform accepts nothing now; ``seconds`` is how long it asks to wait, or None."""
+    """The platform accepts nothing now; ``seconds`` is the time that it asks to wait, or None."""
 
     def __init__(self, name: str, /, seconds: float | None = None, **values: object) -> None:
         self.seconds = seconds
@@ -78,7 +78,7 @@ class ThisLaterError(ScoreError):
 def told(stored: str | None, language: Language = ENGLISH, *, of_report: bool = False) -> str:
     """Return the sentence of a stored problem, or "".
 
-    ``of_report`` is True for a problem of a report on files, False for a problem of a score.
+    ``of_report`` is True for a report on files, False for a score.
     """
     if not stored:
         return ""
@@ -88,7 +88,7 @@ def told(stored: str | None, language: Language = ENGLISH, *, of_report: bool = 
 
 
 def _packed(values: Mapping[str, SentenceValue]) -> dict[str, Any]:
-    """Return values as JSON can store them; replace each Sentence by its template and values."""
+    # JSON cannot store a Sentence: store its template and values.
     return {
         key: [value.template, _packed(value.values)] if isinstance(value, Sentence) else value
         for key, value in values.items()

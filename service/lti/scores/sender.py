@@ -1,4 +1,6 @@
-"""Send scores one after the other, each leased to one process; several processes may send."""
+"""Send queued scores to platforms, one after the other."""
+
+# Several processes may send.
 
 import logging
 import random
@@ -41,14 +43,12 @@ def utc_now() -> datetime:
 
 @dataclass(slots=True)
 class _Pause:
-    """The pause of a platform: when the pause ends, and how many failures came before."""
-
     until: datetime
     failures: int
 
 
 class ScoreSender:
-    """Sends scores. After a failure at a platform, the platform gets no scores for a while."""
+    """Sends scores. After a failure, a platform gets no scores for a while."""
 
     def __init__(
         self,
@@ -57,7 +57,7 @@ class ScoreSender:
         now: Callable[[], datetime] = utc_now,
         chance: Callable[[], float] = random.random,
     ) -> None:
-        """``now`` returns the time, ``chance`` a random number from 0 to 1 for each pause."""
+        # ``now`` returns the time, ``chance`` a random number from 0 to 1 for each pause.
         self._engine = engine
         self.now, self._chance = now, chance
         self._name = secrets.token_hex(8)
@@ -102,7 +102,6 @@ class ScoreSender:
         return min(resting, default=due)
 
     def _send(self, taken: TakenScore) -> None:
-        """Send a score, and note that it was sent. Raises ScoreError."""
         url = taken.url or self._line_item(taken)
         if url is None:
             return
@@ -126,10 +125,7 @@ class ScoreSender:
         in_transaction(self._engine, lambda it: outbox.note_sent(it, taken, self._name, now))
 
     def _line_item(self, taken: TakenScore) -> str | None:
-        """Look up or make the line item of a score, and return its address.
-
-        If another process is making the line item, delay the score and return None.
-        """
+        # If another process is making the line item, the score is delayed.
         now, number = self.now(), taken.line_item
         if not in_transaction(self._engine, lambda it: outbox.lease_line_item(it, number, now)):
             self._later(taken, now + _LINE_ITEM, None)
@@ -146,7 +142,7 @@ class ScoreSender:
         return url
 
     def _rest(self, taken: TakenScore, error: LaterError) -> None:
-        """Begin a platform's pause, at least as long as the platform asks, up to a limit."""
+        # At least as long as the platform asks, up to a limit.
         name, now = taken.registration.id, self.now()
         before = self._pauses.get(name)
         failures = 0 if before is None else before.failures
@@ -164,7 +160,7 @@ class ScoreSender:
         )
 
     def _doubled(self, failures: int) -> datetime:
-        """Return the end of a pause. Each failure doubles the pause, which is partly random."""
+        # Each failure doubles the pause, which is partly random.
         pause = min(_FIRST * 2 ** min(failures, 20), _LONGEST)
         end: datetime = self.now() + pause * (0.5 + 0.5 * self._chance())
         return end

@@ -1,4 +1,4 @@
-"""Threads that send what is queued in the service's database. They sleep if nothing is due."""
+"""Threads that send what is queued in the database."""
 
 import logging
 import threading
@@ -29,13 +29,11 @@ class Sender(Protocol):
 
 
 class BackgroundSending:
-    """A thread that sends what is queued as soon as this process has committed it."""
+    """A thread that sends queued items as soon as this process has committed them."""
 
     def __init__(self, engine: Engine, sender: Sender, queued: str) -> None:
-        """Listen to commits. A transaction that queues an item sets ``queued`` in Connection.info.
-
-        No other thread may commit during this call, because a commit iterates over the listeners.
-        """
+        # A transaction that queues an item sets ``queued`` in Connection.info. No other thread may
+        # commit during this call, because a commit iterates over the listeners.
         self._sender, self._queued = sender, queued
         self._wake = threading.Event()
         self._closed = threading.Event()
@@ -47,7 +45,7 @@ class BackgroundSending:
         self._thread.start()
 
     def close(self) -> None:
-        """Stop the thread after the item that is being sent."""
+        """Stop the thread after the current item."""
         self._closed.set()
         self._wake.set()
         self._thread.join()
