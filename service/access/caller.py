@@ -16,7 +16,7 @@ class Scope(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Caller:
-    """The caller of a request: the holder of a key or of a token, or an anonymous client.
+    """The caller of a request: the holder of a key or token, or an anonymous client.
 
     ``exercises``, ``learner`` and ``course`` restrict the caller; None means no restriction.
     """
@@ -38,11 +38,12 @@ class Caller:
 
     @property
     def owner(self) -> str:
-        """The owner of the caller's requests and attempts, at most 32 characters.
+        """The id under which requests and attempts of the caller are recorded.
 
-        The owner is the id of a key, a hash for each learner with a token, or "" for anonymous
-        clients. A course's learner stays the same owner when the personal link is renewed.
+        The id of an anonymous client is "".
         """
+        # At most 32 characters: the id of a key, or a hash for each learner with a token. A
+        # course's learner stays the same owner when the personal link is renewed.
         if self.learner is None:
             return self.key_id
         by = self.key_id if self.course is None else f"course {self.course}"

@@ -1,17 +1,12 @@
-"""The address of a request decides for which client the request counts.
-
-Scheduling, connection limits and rate limits count the requests of each client.
-"""
+"""Find the client of a request by its address, for scheduling and for limits."""
 
 import ipaddress
 
 
 def client_key(address: str) -> str:
-    """Return the client of an address: the IPv4 address, or the /64 network of the IPv6 address.
-
-    One client may own a whole /64 network. An IPv4 address in IPv6 notation, such as
-    ``::ffff:10.0.0.7``, counts as the IPv4 address.
-    """
+    """Return the client of an address: the IPv4 address, or the /64 network of the IPv6 address."""
+    # One client may own a whole /64 network. An IPv4 address in IPv6 notation, such as
+    # ``::ffff:10.0.0.7``, counts as the IPv4 address.
     if ":" not in address:
         return address
     try:

@@ -20,16 +20,14 @@ TIMEOUT: Final = 15.0
 
 
 class KeyLookups:
-    """Looks up keys in one thread, with a pause between two statements.
+    """Looks up keys in one thread, with a pause between two database statements."""
 
-    A client may send any number of invented keys. Invented keys cost the database and the process
-    little: at most ``1 / pause`` statements per second.
-    """
+    # A client may send any number of invented keys. They cost little: at most ``1 / pause``
+    # statements per second.
 
     def __init__(
         self, find: Callable[[Collection[KeyPlace]], Mapping[KeyPlace, Key]], pause: float = 0.0
     ) -> None:
-        """Start the thread. It calls ``find``, which reads keys from the database."""
         self._find = find
         self._pause = pause
         self._thread = ThreadPoolExecutor(1, "keys-read")

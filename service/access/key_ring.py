@@ -50,7 +50,7 @@ class KeyRing:
     def __init__(
         self, engine: Engine, secret: Secret | None, seconds: float = MEMOIZED_SECONDS
     ) -> None:
-        """Check whether there are keys. Raises KeysUnreachableError."""
+        # Raises KeysUnreachableError.
         self._engine = engine
         self.secret = secret
         self._seconds = seconds
@@ -68,7 +68,7 @@ class KeyRing:
         engine.dispose()
 
     async def are_needed(self) -> bool:
-        """Return True if a key has ever been created."""
+        """True if a key has ever been created."""
         if not self.has_keys and monotonic() >= self._next_check:
             self._next_check = monotonic() + self._seconds
             with suppress(KeysUnreachableError):
@@ -76,11 +76,11 @@ class KeyRing:
         return self.has_keys
 
     def expect_keys(self) -> None:
-        """Note that a key was created just now: keys are needed from now on."""
+        """Note that a key was created just now, so that keys are needed."""
         self.has_keys = True
 
     async def caller(self, credential: str) -> Caller:
-        """Return the holder of a key or token.
+        """Return the caller with this key or token.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
@@ -99,7 +99,7 @@ class KeyRing:
         return await self._holder("digest", self.secret.key_digest(credential))
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token with the rights of ``caller``, who must be restricted to a learner."""
+        """Return a token for the learner for whom ``caller`` acts."""
         from service.access.tokens import LearnerToken, signed
 
         assert self.secret is not None
@@ -109,7 +109,7 @@ class KeyRing:
         return signed(token, expires_at, self.secret.token_secret)
 
     async def session_caller(self, session: str) -> Caller:
-        """Return the holder of the key that a session token names.
+        """Return the caller with this session token.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """

@@ -1,4 +1,4 @@
-"""Keys in the database: functions on a connection."""
+"""Database functions for API keys."""
 
 import json
 import secrets
@@ -21,7 +21,8 @@ def any_key(connection: Connection) -> bool:
 
 
 def fits(connection: Connection, secret: Secret) -> bool:
-    """True if the database has recorded this secret for its keys, or no secret at all."""
+    """True if this secret belongs to the keys in the database."""
+    # Also True if the database has recorded no secret.
     return connection.scalar(select(key_secrets.c.digest)) in (None, secret.check)
 
 
@@ -45,7 +46,8 @@ def add_key(
     expires_at: datetime,
     course: str | None = None,
 ) -> Key:
-    """Insert a new key. Only the ``digest`` of its text is stored."""
+    """Insert a new key; ``digest`` is the keyed hash of its text."""
+    # The text itself is not stored.
     bound = None if exercises is None else frozenset(exercises)
     key = Key(secrets.token_hex(4), name, frozenset(scopes), bound, created_at, expires_at)
     insert_key(connection, replace(key, course=course), digest)
@@ -63,13 +65,13 @@ def insert_key(connection: Connection, key: Key, digest: str) -> None:
 
 
 def all_keys(connection: Connection) -> list[Key]:
-    """All keys except the keys of personal links, the oldest first."""
+    """Return all keys except those of personal links, the oldest first."""
     found = select(keys).where(keys.c.learner.is_(None)).order_by(keys.c.created_at)
     return [_key(row) for row in connection.execute(found)]
 
 
 def link_keys(connection: Connection, course: str) -> list[Key]:
-    """The keys of a course's personal links that are not revoked."""
+    """Return the keys of a course's personal links, except revoked keys."""
     links = and_(keys.c.course == course, keys.c.learner.is_not(None), keys.c.revoked_at.is_(None))
     return [_key(row) for row in connection.execute(select(keys).where(links))]
 
@@ -77,10 +79,9 @@ def link_keys(connection: Connection, course: str) -> list[Key]:
 def keys_at(
     connection: Connection, places: Collection[tuple[str, str]]
 ) -> dict[tuple[str, str], Key]:
-    """Return the keys with these ids or digests.
+    """Return the keys with these ids or digests; unknown keys are left out.
 
-    Each of ``places`` is a column (``id`` or ``digest``) and a value in this column. The result
-    maps such pairs to their keys; pairs without a key are left out.
+    Each of ``places`` is a column (``id`` or ``digest``) and a value.
     """
     columns: dict[str, list[str]] = {column: [] for column, _ in places}
     for column, value in places:
@@ -91,7 +92,7 @@ def keys_at(
 
 
 def revoke_key(connection: Connection, key_id: str, now: datetime) -> bool:
-    """Revoke a key permanently; return False if the key is unknown or already revoked."""
+    """Revoke a key; return False if the key is unknown or already revoked."""
     done = connection.execute(
         keys.update().where(keys.c.id == key_id, keys.c.revoked_at.is_(None)).values(revoked_at=now)
     )

@@ -1,8 +1,7 @@
-"""The text of a key: a prefix, random characters, and a checksum.
+"""The text of an API key: a prefix, random characters, and a checksum."""
 
-The prefix lets scanners find keys that were published by mistake. The checksum lets the service
-refuse a misspelt key without asking the database.
-"""
+# The prefix lets scanners find keys that were published by mistake. The checksum lets the service
+# refuse a misspelt key without asking the database.
 
 import secrets
 import string
@@ -23,7 +22,7 @@ def new_key_text() -> str:
 
 
 def key_text_of(seed: bytes) -> str:
-    """Return the text of a key made of 64 random bytes; equal bytes give equal texts."""
+    """Return the text of a key made of 64 bytes; equal bytes give equal texts."""
     rest = int.from_bytes(seed)
     digits = []
     for _ in range(_RANDOM):
@@ -34,7 +33,7 @@ def key_text_of(seed: bytes) -> str:
 
 
 def is_spelt_right(text: str) -> bool:
-    """True if a text has the form of a key and its checksum is right."""
+    """True if a text has the form of a key and a correct checksum."""
     drawn, checksum = text[len(PREFIX) : -_CHECKSUM], text[-_CHECKSUM:]
     return (
         text.startswith(PREFIX)

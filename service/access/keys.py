@@ -1,4 +1,4 @@
-"""API keys without their texts, which are never stored, and the secret of an installation."""
+"""API keys, and the secret of an installation."""
 
 import hmac
 from dataclasses import dataclass
@@ -18,7 +18,9 @@ class KeysUnreachableError(Exception):
 
 
 class KeysBusyError(Exception):
-    """Too many unknown keys are being looked up. Known keys do not wait for them."""
+    """Too many unknown keys are being looked up."""
+
+    # Known keys do not wait for them.
 
 
 class CredentialError(Exception):
@@ -27,7 +29,7 @@ class CredentialError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """A key. ``exercises`` are the exercises that it may use, None for all; times are in UTC.
+    """An API key. ``exercises`` are the exercises that it may use, None for all.
 
     A key with a ``course`` is for this course only. A key with a ``learner`` is a personal link.
     """
@@ -44,7 +46,7 @@ class Key:
     learner: str | None = None
 
     def caller(self, now: datetime) -> Caller:
-        """Return the holder of this key. Raises CredentialError if the key is not valid now."""
+        """Return the caller with this key. Raises CredentialError if it is not valid now."""
         if self.revoked_at is not None:
             raise CredentialError(say("The key was revoked."))
         if self.expires_at <= now:
@@ -64,10 +66,11 @@ class Keys(Protocol):
     """The keys of an installation."""
 
     async def are_needed(self) -> bool:
-        """Return True if there are keys, including revoked and expired ones."""
+        """True if any key exists."""
+        # Revoked and expired keys count, too.
 
     async def caller(self, credential: str) -> Caller:
-        """Return the holder of a key or token.
+        """Return the caller with this key or token.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
@@ -76,10 +79,10 @@ class Keys(Protocol):
         """Note that a key was created just now."""
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token with the rights of ``caller``."""
+        """Return a token for the learner for whom ``caller`` acts."""
 
     async def session_caller(self, session: str) -> Caller:
-        """Return the holder of the key that a session token names.
+        """Return the caller with this session token.
 
         Raises CredentialError, KeysUnreachableError, KeysBusyError.
         """
@@ -89,7 +92,7 @@ class Keys(Protocol):
 
     @property
     def secret(self) -> "Secret | None":
-        """The secret of the installation, if it is known."""
+        """The secret of the installation, or None if it is not known."""
 
     def close(self) -> None:
         """Record the latest uses of keys, and stop all threads."""
@@ -102,11 +105,11 @@ class Secret:
         self._text = text.encode()
 
     def key_digest(self, key: str) -> str:
-        """Return the keyed hash of a key's text, which is stored instead of the text."""
+        """Return the keyed hash of an API key, which is stored instead of its text."""
         return hmac.digest(self._derived("keys"), key.encode(), "sha256").hex()
 
     def link_key(self, key_id: str) -> str:
-        """Return the key in a personal link. Equal ids give equal keys."""
+        """Return the API key for a personal link; equal ids give equal keys."""
         return key_text_of(hmac.digest(self._derived("links"), key_id.encode(), "sha512"))
 
     @property
@@ -126,7 +129,7 @@ class Secret:
 
     @property
     def lti_secret(self) -> bytes:
-        """The key that encrypts our private keys for LTI, and makes pseudonyms and tickets."""
+        """The key that encrypts our private keys for LTI, and makes pseudonyms."""
         return self._derived("lti")
 
     def _derived(self, purpose: str) -> bytes:

@@ -1,4 +1,4 @@
-"""The operations that need no key."""
+"""The operations that need no API key."""
 
 from dataclasses import dataclass
 from typing import Final
@@ -12,10 +12,12 @@ NOTHING: Final = "none"
 
 @dataclass(frozen=True, slots=True)
 class OpenAccess:
-    """The scopes that never need a key; with ``until_keys``, no key is needed until a key exists.
+    """The scopes (rights of a key) that never need a key.
 
-    ``until_keys`` applies only to requests to the loopback address, unless ``anywhere`` is set.
+    With ``until_keys``, nothing needs a key as long as no key exists.
     """
+
+    # ``until_keys`` applies only to requests to the loopback address, unless ``anywhere`` is set.
 
     scopes: frozenset[Scope] = frozenset()
     until_keys: bool = True

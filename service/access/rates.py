@@ -20,11 +20,11 @@ _log = logging.getLogger(__name__)
 
 
 class UnusableRatesError(Exception):
-    """A rate or a store of counts cannot be used; the message says why."""
+    """A rate limit or its counter cannot be used; the message says why."""
 
 
 def rates_in(text: str) -> Sequence[RateLimitItem]:
-    """Parse rates such as ``20/second;600/minute``. Raises UnusableRatesError."""
+    """Parse rate limits such as ``20/second;600/minute``. Raises UnusableRatesError."""
     try:
         return parse_many(text)
     except ValueError as error:
@@ -37,13 +37,12 @@ def rates_in(text: str) -> Sequence[RateLimitItem]:
 
 
 class Rates:
-    """Counts requests in the memory of this process, or in a Redis that several processes share.
+    """Counts requests in the memory of this process, or in a Redis that processes share."""
 
-    While Redis does not respond, each process counts on its own.
-    """
+    # While Redis does not respond, each process counts on its own.
 
     def __init__(self, per_key: str = "", per_address: str = "", store: str = "memory://") -> None:
-        """Set the limits, as texts for ``rates_in``. Raises UnusableRatesError."""
+        # The limits are texts for ``rates_in``. Raises UnusableRatesError.
         self._per_key = rates_in(per_key) if per_key else ()
         self._per_address = rates_in(per_address) if per_address else ()
         self._own = SlidingWindowCounterRateLimiter(MemoryStorage())
@@ -53,11 +52,9 @@ class Rates:
             self._shared = SlidingWindowCounterRateLimiter(_storage(store))
 
     async def seconds_to_wait(self, caller: Caller, address: str) -> int:
-        """Count a request; return 0 if it is allowed, otherwise the seconds to wait.
-
-        A request with a key counts for the key's owner, any other request for its address. All IPv6
-        addresses of a /64 network count as one address.
-        """
+        """Count a request; return 0 if it is allowed, otherwise the seconds to wait."""
+        # A request with a key counts for the key's owner, any other request for its address. All
+        # IPv6 addresses of a /64 network count as one address.
         owner = caller.owner
         rates = self._per_key if owner else self._per_address
         if not rates:

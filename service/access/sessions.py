@@ -1,7 +1,9 @@
-"""Sessions of tutors in a browser: signed like tokens, but with a different secret.
+"""Sessions of tutors in a browser.
 
-Sessions are not stored. A session token names a key, and is valid at most as long as the key.
+A session is a signed text that names a key; it is not stored.
 """
+
+# A session token is valid at most as long as its key.
 
 import time
 from datetime import datetime
@@ -18,8 +20,6 @@ _JWS: Final = jwt.PyJWS()
 
 
 class _SessionClaims(BaseModel):
-    """The claims of a session, exactly as ``signed_session`` writes them."""
-
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     iss: Literal["dh-grader session"]

@@ -1,6 +1,6 @@
-"""Tokens of learners: JSON Web Tokens, signed with the secret of the installation (HS256).
+"""Tokens of learners: JSON Web Tokens, signed with the secret of the installation.
 
-Tokens are not stored. A token names its key and is valid at most as long as that key.
+A token names a key and is valid at most as long as the key. Tokens are not stored.
 """
 
 import time
@@ -21,8 +21,6 @@ _JWS: Final = jwt.PyJWS()
 
 
 class _Claims(BaseModel):
-    """The claims of a token, exactly as ``signed`` writes them."""
-
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
 
     iss: Literal["dh-grader"]
@@ -35,7 +33,7 @@ class _Claims(BaseModel):
 
 
 class LearnerToken(NamedTuple):
-    """The content of a token; ``exercises`` are None for all exercises of its key."""
+    """The content of a token; ``exercises`` is None for all exercises of its key."""
 
     key_id: str
     learner: str
@@ -43,7 +41,7 @@ class LearnerToken(NamedTuple):
     exercises: frozenset[str] | None
 
     def caller(self, holder: Caller) -> Caller:
-        """Return the caller with this token, limited to the current rights of the key's holder."""
+        """Return the caller with this token, with at most the rights of the key's holder."""
         exercises = self.exercises
         if exercises is not None and holder.exercises is not None:
             exercises &= holder.exercises

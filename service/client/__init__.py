@@ -1,10 +1,12 @@
-"""A typed client of the service, with and without ``await``. Loads httpx; import it where needed.
+"""A typed client of the service, with and without ``await``, and its exceptions.
 
 GraderClientError         a call failed
 ├── RequestRefusedError     the service answered with an error
 ├── ServerUnreachableError  there was no complete response
 └── UnexpectedAnswerError   the response is not from a DH Grader
 """
+
+# This package loads httpx: import it where it is needed.
 
 from service.catalogue import FeedbackLevel
 from service.client.clients import AsyncGraderClient, GraderClient

@@ -1,4 +1,4 @@
-"""Check the address of a server, and make the httpx options for calling the server."""
+"""Check the address of a server, and make the options of an httpx client."""
 
 import re
 from typing import Any, Final
@@ -13,10 +13,11 @@ _KEY: Final = re.compile(r"[A-Za-z0-9._~+/-]+=*")
 
 
 def checked_server(server: str) -> str:
-    """Return the address of a service without a trailing slash.
+    """Return the address of a server without a trailing slash.
 
-    Raises ValueError for an invalid address, or for a password in it, which messages would show.
+    Raises ValueError for an invalid address.
     """
+    # A password in the address is invalid, because messages would show it.
     try:
         url = httpx.URL(server)
     except httpx.InvalidURL as error:
@@ -42,10 +43,11 @@ def checked_server(server: str) -> str:
 def client_options(
     server: str, key: str | None, timeout: float, language: str | None = None
 ) -> dict[str, Any]:
-    """Return the options of an httpx client, sync or async, for a checked server.
+    """Return the options of an httpx client for a checked server.
 
-    Raises ValueError for a key with invalid characters; the message does not show the key.
+    Raises ValueError for a key with invalid characters.
     """
+    # The message does not show the key.
     # No compression, so that the size of an answer is limited by the bytes received.
     headers = {"User-Agent": f"dh-grader/{VERSION}", "Accept-Encoding": "identity"}
     if language is not None:

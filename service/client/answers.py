@@ -35,11 +35,10 @@ class HttpAnswer:
 
 @dataclass
 class AnswerPieces:
-    """Collects the pieces of a response; ``seconds`` is the time limit for the whole response.
+    """Collects the pieces of a response; ``seconds`` is the time limit for the whole response."""
 
-    The time limits of httpx apply to each piece separately. A server that sends a byte now and then
-    would never exceed these limits.
-    """
+    # The time limits of httpx apply to each piece. A server that sends a byte now and then would
+    # never exceed them.
 
     response: httpx.Response
     seconds: float
@@ -73,7 +72,7 @@ def unreachable(server: str, error: httpx.TransportError) -> ServerUnreachableEr
 
 
 def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
-    """Return the exception for a response that is not a success."""
+    """Return the exception for an error response."""
     if location := answer.headers.get("location"):
         return UnexpectedAnswerError(
             say(
@@ -99,7 +98,6 @@ def error_in(server: str, answer: HttpAnswer) -> GraderClientError:
 
 
 def _seconds(retry_after: str) -> float:
-    """Parse a header ``Retry-After``, in seconds or as a date; return 0 if it is invalid."""
     if retry_after.isascii() and retry_after.isdigit():
         return float(retry_after[:9])
     try:
@@ -110,7 +108,6 @@ def _seconds(retry_after: str) -> float:
 
 
 def _is_permanent(cause: BaseException) -> bool:
-    """True if a retry is useless: the host is unknown or its certificate is not trusted."""
     if isinstance(cause, gaierror):
         return cause.errno == EAI_NONAME
     return isinstance(cause, ssl.SSLCertVerificationError)

@@ -1,7 +1,6 @@
-"""The calls of the service: how requests are built, and how responses are read.
+"""The calls of the service: build requests, and read responses."""
 
-The clients make their methods from these functions: a method sends the call and returns its result.
-"""
+# The clients make their methods from these functions.
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -40,10 +39,9 @@ def _new_key() -> str:
 
 @dataclass(frozen=True, slots=True)
 class HttpCall(Generic[T]):
-    """One call: POST if it has a body, otherwise GET. ``read`` parses the response.
+    """One call: POST if it has a body, otherwise GET. ``read`` parses the response."""
 
-    Retries have the same ``idempotency_key``, by which the service recognizes them.
-    """
+    # Retries have the same ``idempotency_key``, by which the service recognizes them.
 
     path: str
     read: Callable[[bytes], T]
@@ -105,11 +103,10 @@ def grade(
     echo: bool = False,
     idempotency_key: str | None = None,
 ) -> HttpCall[Report]:
-    """Grade answers to the parts of an exercise, given by part id; return the report.
+    """Grade answers, given by the ids of the exercise's parts; return the report.
 
-    For the service, calls with the same ``idempotency_key`` are one submission. By default, each
-    call is a new submission, to which its retries belong. Raises pydantic.ValidationError, a
-    ValueError.
+    Calls with the same ``idempotency_key`` count as one submission. Raises
+    pydantic.ValidationError.
     """
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
     body = encoded(GradeRequest.model_validate(fields | {"echo": echo}))
@@ -129,7 +126,7 @@ def hint(
 ) -> HttpCall[Hint]:
     """Return a step of the hint for the message ``code`` in the report on these answers.
 
-    ``row`` and ``cell`` are the place of the message. Raises pydantic.ValidationError.
+    ``row`` and ``cell`` say where the message is. Raises pydantic.ValidationError.
     """
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "part": part, "code": code}
     place = {"row": row, "cell": cell, "step": step}
@@ -155,7 +152,7 @@ def preview(
 def grade_many(
     submissions: Iterable[ExerciseSubmission],
 ) -> Iterator[HttpCall[list[GradeResult]]]:
-    """Yield as few calls as the service's limits allow to grade all submissions."""
+    """Yield as few calls as possible to grade all submissions."""
     waiting: list[bytes] = []
     for content in map(encoded, submissions):
         if waiting and not _fits([*waiting, content]):
@@ -177,7 +174,6 @@ def encoded(body: BaseModel) -> bytes:
 
 
 def _path(exercise: str) -> str:
-    """The path of an exercise. The id is escaped, so that it is a single path segment."""
     return "v1/exercises/" + quote(exercise, safe="").replace(".", "%2E")
 
 
@@ -186,7 +182,6 @@ def _together(submissions: list[bytes]) -> bytes:
 
 
 def _fits(submissions: list[bytes]) -> bool:
-    """True if one request may contain all these submissions."""
     body = _together(submissions)
     return (
         len(submissions) <= MAX_SUBMISSIONS

@@ -1,4 +1,6 @@
-"""The clients, with and without ``await``. Their methods build and send the service's calls."""
+"""The clients, with and without ``await``."""
+
+# Their methods build and send the service's calls.
 
 import asyncio
 import threading
@@ -22,8 +24,6 @@ T = TypeVar("T")
 
 
 class _Method(Generic[P, T]):
-    """A method of both clients: a function builds the call, and the client sends the call."""
-
     def __init__(self, call: Callable[P, HttpCall[T]]) -> None:
         self._call = call
 
@@ -44,8 +44,6 @@ class _Method(Generic[P, T]):
 
 
 class _Methods:
-    """The methods of both clients."""
-
     exercises = _Method(calls.exercises)
     exercise = _Method(calls.exercise)
     next_robot = _Method(calls.next_robot)
@@ -85,10 +83,9 @@ class _Methods:
 class GraderClient(_Methods):
     """Calls a DH Grader; several threads may share it. Every method raises GraderClientError.
 
-    ``server`` is the address of the service, including a path before ``/v1``. ``key`` is sent only
-    to this server. ``timeout`` is the limit for one response in seconds. ``transport`` is an httpx
-    transport, for your own certificates or proxies. ``language`` is the language of messages, such
-    as "de"; the default is English. Raises ValueError for an invalid address or key.
+    ``server`` is the address of the service. ``timeout`` is in seconds, for one response.
+    ``transport`` is an httpx transport, for your own certificates or proxies. Raises ValueError for
+    an invalid address or key.
     """
 
     def __init__(
@@ -109,10 +106,8 @@ class GraderClient(_Methods):
         self._http = httpx.Client(transport=transport, **options)
 
     def grade_many(self, submissions: Iterable[ExerciseSubmission]) -> Iterator[GradeResult]:
-        """Grade submissions; yield the results in order, each a report or a problem.
-
-        The submissions are sent in as few requests as the service's limits allow.
-        """
+        """Grade submissions; yield a report or an error for each, in order."""
+        # The submissions are sent in as few requests as the service's limits allow.
         for call in calls.grade_many(submissions):
             yield from self._result(call)
 
@@ -129,8 +124,6 @@ class GraderClient(_Methods):
         self.close()
 
     def _sending(self, call: Callable[P, HttpCall[T]]) -> Callable[P, T]:
-        """Return a function that sends the call and returns its result."""
-
         @wraps(call)
         def send(*args: P.args, **kwargs: P.kwargs) -> T:
             return self._result(call(*args, **kwargs))
@@ -184,10 +177,8 @@ class AsyncGraderClient(_Methods):
     async def grade_many(
         self, submissions: Iterable[ExerciseSubmission]
     ) -> AsyncIterator[GradeResult]:
-        """Grade submissions; yield the results in order, each a report or a problem.
-
-        The submissions are sent in as few requests as the service's limits allow.
-        """
+        """Grade submissions; yield a report or an error for each, in order."""
+        # The submissions are sent in as few requests as the service's limits allow.
         for call in calls.grade_many(submissions):
             for result in await self._result(call):
                 yield result
@@ -204,8 +195,6 @@ class AsyncGraderClient(_Methods):
         await self.close()
 
     def _sending(self, call: Callable[P, HttpCall[T]]) -> Callable[P, Coroutine[Any, Any, T]]:
-        """Return a function that sends the call, to be awaited for its result."""
-
         @wraps(call)
         async def send(*args: P.args, **kwargs: P.kwargs) -> T:
             return await self._result(call(*args, **kwargs))

@@ -1,4 +1,4 @@
-"""The calls of the service for courses. Each function builds a call, which a client sends."""
+"""The calls of the service for courses."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -65,19 +65,19 @@ def change_course(course: str, change: CourseChange) -> HttpCall[Course]:
 
 
 def delete_course(course: str, wanted: DeletionRequest) -> HttpCall[DeletedData]:
-    """Delete a course if ``apply`` is true; return what is deleted, or would be."""
+    """Delete a course, or with ``apply`` False only return what it would delete."""
     return _sending(_path(course, "delete"), wanted, DeletedData)
 
 
 def delete_assignment(
     course: str, assignment: str, wanted: DeletionRequest
 ) -> HttpCall[DeletedData]:
-    """Delete an assignment if ``apply`` is true; return what is deleted, or would be."""
+    """Delete an assignment, or with ``apply`` False only return what it would delete."""
     return _sending(_path(course, "assignments", assignment, "delete"), wanted, DeletedData)
 
 
 def remove_learner(course: str, wanted: RemovalRequest) -> HttpCall[DeletedData]:
-    """Remove a learner if ``apply`` is true; return what is deleted, or would be."""
+    """Remove a learner, or with ``apply`` False only return what it would delete."""
     return _sending(_path(course, "learners", "remove"), wanted, DeletedData)
 
 
@@ -87,12 +87,12 @@ def learners(course: str) -> HttpCall[LearnerList]:
 
 
 def add_learners(course: str, new: LearnersRequest) -> HttpCall[AddedLearners]:
-    """Add learners, or a class list in CSV; return all learners, and how many are new."""
+    """Add learners, or a class list in CSV; return all learners of the course."""
     return _sending(_path(course, "learners"), new, AddedLearners)
 
 
 def links(course: str, wanted: LinksRequest) -> HttpCall[LinkList]:
-    """Return the personal links of learners; make links that are absent or to be renewed."""
+    """Return the personal links of learners, and make missing ones."""
     return _sending(_path(course, "links"), wanted, LinkList)
 
 
@@ -120,7 +120,7 @@ def create_assignment(course: str, new: NewAssignment) -> HttpCall[CourseAssignm
 def change_assignment(
     course: str, assignment: str, change: AssignmentChange
 ) -> HttpCall[CourseAssignment]:
-    """Change the fields of an assignment that are set; None removes a date or a limit."""
+    """Change the given fields of an assignment; None removes a date or a limit."""
     return _sending(_path(course, "assignments", assignment), change, CourseAssignment)
 
 
@@ -131,7 +131,7 @@ def extend(course: str, assignment: str, extension: Extension) -> HttpCall[Cours
 
 
 def variants(course: str, assignment: str, learner: str) -> HttpCall[LearnerVariants]:
-    """Return which variants a learner has in an assignment."""
+    """Return a learner's variants of the exercises in an assignment."""
     path = _path(course, "assignments", assignment, "variants") + _query(learner=learner)
     return HttpCall(path, LearnerVariants.model_validate_json)
 
@@ -166,7 +166,7 @@ def send_scores(course: str, wanted: SendAgainRequest) -> HttpCall[SentAgain]:
 
 
 def gradebook(course: str, assignment: str | None = None) -> HttpCall[Gradebook]:
-    """Return each learner's counting points in each exercise, or in one ``assignment`` only."""
+    """Return the gradebook of a course, or of one ``assignment``."""
     path = _path(course, "gradebook") + _query(assignment=assignment)
     return HttpCall(path, Gradebook.model_validate_json)
 
@@ -185,7 +185,7 @@ def learner_view(course: str, learner: str) -> HttpCall[OwnCourses]:
 
 
 def assigned_solution(course: str, assignment: str, exercise: str) -> HttpCall[ModelSolution]:
-    """Return the solution of an exercise, for the learner whose link or token is the key."""
+    """Return the solution of an exercise; the client's key must be a learner's link or token."""
     path = _path(course, "assignments", assignment, "solutions", exercise)
     return HttpCall(path, _solution)
 
@@ -198,9 +198,9 @@ def regrade(
     force: bool = False,
     cursor: str | None = None,
 ) -> HttpCall[RegradeAnswer]:
-    """Regrade some attempts at an exercise; with ``course``, only attempts in this course.
+    """Regrade some attempts at an exercise.
 
-    Repeat the call with the result's ``next`` as ``cursor``, until the result has no ``next``.
+    Repeat the call with ``next`` of the result as ``cursor``, until ``next`` is None.
     """
     body = RegradeRequest(apply=apply, force=force, cursor=cursor)
     path = f"v1/exercises/{quote(exercise, safe='')}/regrade{_query(course=course)}"
@@ -216,9 +216,9 @@ def hand_in(
     learner: str | None = None,
     idempotency_key: str | None = None,
 ) -> HttpCall[AttemptResponse]:
-    """Hand in answers; return the attempt and its report. Retries are recorded once.
+    """Hand in answers; return the attempt and its report.
 
-    Calls with the same ``idempotency_key`` are one attempt. By default, each call is a new attempt.
+    Calls with the same ``idempotency_key`` are one attempt.
     """
     given = {"exercise": exercise, "answers": dict(answers), "learner": learner}
     body = HandInRequest.model_validate(
@@ -229,7 +229,7 @@ def hand_in(
 
 
 def own_courses() -> HttpCall[OwnCourses]:
-    """Return the courses of the learner whose link or token is the key."""
+    """Return the learner's courses; the client's key must be a learner's link or token."""
     return HttpCall("v1/me", OwnCourses.model_validate_json)
 
 
@@ -242,7 +242,6 @@ def _path(course: str, *rest: str) -> str:
 
 
 def _query(**given: str | None) -> str:
-    """Return "?" and the given parameters as a query string; "" if no parameter is given."""
     query = urlencode({name: value for name, value in given.items() if value is not None})
     return f"?{query}" if query else ""
 

@@ -17,8 +17,7 @@ _TEMPORARY: Final = {
 class GraderClientError(Exception):
     """A call failed; the message says why.
 
-    If ``is_temporary``, the same call may succeed later, ``retry_after`` seconds from now at the
-    earliest.
+    If ``is_temporary``, the call may succeed after ``retry_after`` seconds.
     """
 
     def __init__(
@@ -32,9 +31,8 @@ class GraderClientError(Exception):
 class RequestRefusedError(GraderClientError):
     """The service answered with an error.
 
-    ``status`` is the HTTP status, ``code`` the name of the problem (such as ``unknown-exercise``)
-    or empty, ``message`` its explanation. ``reasons`` has an entry for each fault, with the
-    fault's place in the body.
+    ``status`` is the HTTP status, ``code`` the name of the error, such as ``unknown-exercise``.
+    ``reasons`` describes each fault of the request.
     """
 
     def __init__(
@@ -58,7 +56,6 @@ class ServerUnreachableError(GraderClientError):
 
 
 class UnexpectedAnswerError(GraderClientError):
-    """The response is not from a DH Grader of this version.
+    """The response is not from a DH Grader of this version."""
 
-    A redirect also raises this error: a client that follows a redirect may reveal its key.
-    """
+    # A redirect also raises this error: a client that follows a redirect may reveal its key.

@@ -30,10 +30,7 @@ from service.translations import paragraph, say
 def add_assignment(
     connection: Connection, course: str, new: NewAssignment, known: Collection[str]
 ) -> CourseAssignment:
-    """Add an assignment; ``known`` are the ids of the exercises that it may have.
-
-    Raises CourseError.
-    """
+    """Add an assignment; ``known`` are the ids of all exercises. Raises CourseError."""
     zone = _zone(connection, course)
     values = {"late_worth": 0.5, "solution": "never", "course": course, "id": new.id}
     values |= _values(new, zone, known)
@@ -55,11 +52,9 @@ def change_assignment(
     change: AssignmentChange,
     known: Collection[str],
 ) -> CourseAssignment:
-    """Change an assignment and return it.
-
-    A later due date also applies to recorded attempts that were late. An earlier due date makes no
-    recorded attempt late. Raises CourseError.
-    """
+    """Change an assignment and return it. Raises CourseError."""
+    # A later due date also applies to recorded attempts that were late. An earlier due date makes
+    # no recorded attempt late.
     zone = _zone(connection, course)
     row = assignment_row(connection, course, assignment)
     values = dict(_values(change, zone, known))
@@ -80,11 +75,11 @@ def change_assignment(
 def extend(
     connection: Connection, course: str, assignment: str, extension: Extension
 ) -> CourseAssignment:
-    """Give a learner other dates or another limit.
+    """Give a learner other dates or another limit of attempts. Raises CourseError.
 
-    If the extension has neither dates nor a limit, end the learner's extension. Attempts that are
-    no longer late get their points back. Raises CourseError.
+    An empty extension ends the learner's extension.
     """
+    # Attempts that are no longer late get their points back.
     zone = _zone(connection, course)
     row = assignment_row(connection, course, assignment)
     enrolled = (course_learners.c.course == course) & (
@@ -170,7 +165,6 @@ def _moment(written: datetime | None, zone: ZoneInfo) -> datetime | None:
 
 
 def _values(change: AssignmentChange, zone: ZoneInfo, known: Collection[str]) -> Mapping[str, Any]:
-    """Return the columns that a change sets. Raises CourseError."""
     given = change.model_dump(mode="python", exclude_unset=True, exclude={"id", "renew_variants"})
     values: dict[str, Any] = {}
     for name, value in given.items():
@@ -212,7 +206,6 @@ def _check_exercises(chosen: list[str], known: Collection[str]) -> None:
 
 
 def _checked(connection: Connection, course: str, assignment: str) -> CourseAssignment:
-    """Return an assignment after a change. Raises CourseError if its dates are not in order."""
     found = assignment_of(connection, course, assignment)
     if found.closes is not None and found.due is None:
         raise _closes_needs_due()
@@ -229,7 +222,7 @@ def _closes_needs_due() -> CourseError:
 
 
 def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
-    """Restore the points of attempts that were late, and are in time by the current dates."""
+    # Restore the points of attempts that were late, and are in time by the current dates.
     named = ("number", "learner", "at", "report", "max_points", "hint_price")
     late = select(*(attempts.c[name] for name in named)).where(
         attempts.c.assignment == row.number, attempts.c.is_late

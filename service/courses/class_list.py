@@ -1,4 +1,4 @@
-"""Read a class list: CSV as Moodle or Canvas export it, or as a tutor writes it."""
+"""Read a class list in CSV, such as an export of Moodle or Canvas."""
 
 import codecs
 import csv
@@ -38,10 +38,8 @@ _HAN: Final = re.compile(r"[\u3400-\u9fff]")
 
 
 def decoded(data: bytes) -> str:
-    """Return the text of a file in UTF-8, UTF-16, or, as Excel on Windows writes it, Windows-1252.
-
-    Raises CourseError.
-    """
+    """Return the text of a file in UTF-8, UTF-16 or Windows-1252. Raises CourseError."""
+    # Excel on Windows writes Windows-1252.
     try:
         if data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
             return data.decode("utf-16")
@@ -55,10 +53,8 @@ def decoded(data: bytes) -> str:
 
 
 def read_class_list(text: str) -> list[NewLearner]:
-    """Return the learners of a class list. Raises CourseError, which names the line.
-
-    The first line has the headings. Columns with other headings are ignored.
-    """
+    """Return the learners of a class list with headings. Raises CourseError."""
+    # Columns with unknown headings are ignored. The error names the line.
     text = text.removeprefix("\ufeff")
     head, _, _ = text.lstrip("\r\n").partition("\n")
     delimiter = max(",;\t", key=head.count)

@@ -1,7 +1,6 @@
-"""The variant of an exercise that a learner has in an assignment. Learners never see the seed.
+"""Choose the variant of an exercise for each learner in an assignment.
 
-The service computes the seed from a secret of the assignment: a learner gets the same variant each
-time, and cannot find out its seed.
+A secret of the assignment determines the variants, so that learners cannot guess them.
 """
 
 import json
@@ -28,7 +27,7 @@ _TRIES: Final = 1000
 def assigned(
     connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
 ) -> tuple[LearnerTerms, Exercise]:
-    """Return the terms of an assignment, and the exercise or the learner's variant of it.
+    """Return an assignment's rules for a learner, and the learner's variant of the exercise.
 
     Raises CourseError.
     """
@@ -37,11 +36,11 @@ def assigned(
 
 
 def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
-    """Return the learner's variant, or the exercise if it has no variants.
+    """Return the variant with this seed, or the exercise if ``seed`` is None.
 
-    The variant has the id of the plain exercise. Raises CourseError if the file has a fault in this
-    variant; the message does not have the seed.
+    Raises CourseError.
     """
+    # The variant has the id of the plain exercise. The message of the error does not have the seed.
     if seed is None:
         return exercise
     try:
@@ -58,11 +57,12 @@ def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
 def assigned_seed(
     connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
 ) -> tuple[LearnerTerms, Exercise, str | None]:
-    """Return the terms of an assignment, the exercise, and the seed of the learner's variant.
+    """Return an assignment's rules for a learner, the exercise, and the learner's seed.
 
-    In the exercise, ``[vary]`` has the choices of the assignment. The seed is None if there are no
-    variants. Raises CourseError.
+    The seed determines the learner's variant; it is None if there are no variants. Raises
+    CourseError.
     """
+    # In the exercise, ``[vary]`` has the choices of the assignment.
     terms = terms_of(connection, course, assignment, learner)
     if exercise.id not in terms.exercises:
         message = say(
@@ -78,11 +78,9 @@ def assigned_seed(
 def own_variant(
     connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
 ) -> Exercise:
-    """Return the learner's variant of an exercise, or the exercise itself.
-
-    The variant has the id of the plain exercise. The exercise itself is returned if there are no
-    variants, or if the variant cannot be made.
-    """
+    """Return the learner's variant of an exercise, or the exercise if there is none."""
+    # The variant has the id of the plain exercise. The exercise itself is also returned if the
+    # variant cannot be made.
     own = pinned(exercise, terms.choices)
     seed = _dealt_seed(connection, terms, learner, own)
     try:
@@ -92,11 +90,9 @@ def own_variant(
 
 
 def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
-    """True if an assignment has variants of the exercise, but its choices are not stored yet.
-
-    Choices are missing if an earlier version of the program made the assignment, or if the exercise
-    got variants later.
-    """
+    """True if the assignment does not know yet what the exercise's variants may vary."""
+    # This is so if an earlier version of the program made the assignment, or if the exercise got
+    # variants later.
     if terms.variants is None or exercise.vary is None:
         return False
     return terms.choices is None or exercise.id not in json.loads(terms.choices)
@@ -110,10 +106,11 @@ def pin_choices(
     *,
     renew: bool = False,
 ) -> None:
-    """Store the choices of an assignment's exercises, so that a changed file changes no variant.
+    """Store what the variants of an assignment's exercises may vary. Raises CourseError.
 
-    Choices that are stored already stay, unless ``renew`` is True. Raises CourseError.
+    Stored data stay, unless ``renew`` is True.
     """
+    # Thus a changed exercise file changes no variant.
     row = assignment_row(connection, course, assignment)
     if row.variants is None:
         return
@@ -132,7 +129,6 @@ def pin_choices(
 def _dealt_seed(
     connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
 ) -> str | None:
-    """Return the seed of the learner's variant; None if there are no variants."""
     if terms.variants is None or exercise.vary is None:
         return None
     number = _number(connection, terms, learner, exercise.id) or 0
@@ -162,7 +158,6 @@ def learner_variants(
 
 
 def _told(exercise: Exercise, own: Exercise, seed: str, deal: int) -> LearnerVariant:
-    """Return the data of a variant for tutors; ``own`` has the choices of the assignment."""
     assert exercise.vary is not None
     assert own.vary is not None
     values = own.vary.written(seed)

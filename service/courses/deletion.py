@@ -93,10 +93,11 @@ def delete_assignment(
 def remove_learner(
     connection: Connection, course: str, wanted: RemovalRequest, now: datetime
 ) -> DeletedData:
-    """Remove a learner from a course, and end the learner's links to it. Raises CourseError.
+    """Remove a learner from a course. Raises CourseError.
 
-    Without ``with_attempts`` the attempts stay, and count again if the learner comes back.
+    Without ``with_attempts`` the learner's attempts stay.
     """
+    # The attempts count again if the learner comes back.
     learner = wanted.learner
     if learner not in {each.learner for each in people(connection, course)}:
         raise unknown_learner(learner)
@@ -128,10 +129,7 @@ def remove_learner(
 def _assignments(
     connection: Connection, course: str, chosen: ColumnElement[bool]
 ) -> Select[tuple[int]]:
-    """Return the query for the numbers of some assignments, after locking them.
-
-    Nobody can hand in at these assignments until the transaction ends.
-    """
+    # Nobody can hand in at these assignments until the transaction ends, because they are locked.
     mine = select(assignments.c.number).where(assignments.c.course == course, chosen)
     connection.execute(mine.with_for_update()).all()
     return mine

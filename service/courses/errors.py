@@ -16,7 +16,7 @@ CourseFault = Literal[
 
 
 class CourseError(Exception):
-    """A request about a course is refused. The message says why; ``name`` is for programs."""
+    """A request about a course is refused; ``name`` is a code for programs."""
 
     def __init__(self, name: CourseFault, message: str) -> None:
         self.name = name
@@ -41,6 +41,6 @@ def unknown_assignment(assignment: str) -> CourseError:
 
 
 def links_need_a_secret() -> CourseError:
-    """Return the error that the service has no secret to sign links."""
+    """Return the error for a service without a secret to sign links."""
     message = say("Personal links need a secret: set DH_GRADER_SECRET.")
     return CourseError("unusable", message)

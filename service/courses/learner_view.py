@@ -1,4 +1,4 @@
-"""The courses and assignments of one learner, as this learner sees them."""
+"""The courses and assignments of one learner, as the learner sees them."""
 
 import json
 import logging
@@ -35,19 +35,16 @@ _FULL = 1 - 1e-9
 
 @dataclass(frozen=True, slots=True)
 class _Done:
-    """An attempt, and the points of its report."""
-
     attempt: ListedAttempt
     report_points: float
 
     @property
     def share(self) -> float:
-        """The points that count, as a share of 1."""
         return self._share(self.attempt.earned)
 
     @property
     def whole_share(self) -> float:
-        """The points before a deduction for lateness as a share of 1; a tutor's points if given."""
+        # Before a deduction for lateness.
         done = self.attempt
         if done.awarded is not None:
             return self.share
@@ -57,7 +54,6 @@ class _Done:
 
     @property
     def report_share(self) -> float:
-        """The points of the report as a share of 1; a tutor's points if given."""
         return self.share if self.attempt.awarded is not None else self._share(self.report_points)
 
     def _share(self, points: float) -> float:
@@ -76,10 +72,7 @@ def own_view(
     now: datetime,
     language: Language = ENGLISH,
 ) -> OwnCourses:
-    """Return the courses of a learner; ``only`` restricts the result to one course.
-
-    The titles of exercises are in ``language``.
-    """
+    """Return the courses of a learner; ``only`` restricts the result to one course."""
     mine = course_learners.c.learner == learner
     if only is not None:
         mine &= course_learners.c.course == only
@@ -126,7 +119,6 @@ def own_view(
 
 @cache  # Learners ask often: once is enough.
 def _log_missing(assignment: str, exercise: str) -> None:
-    """Log that the service does not have an exercise of an assignment."""
     _log.warning(
         "The assignment %s sets the exercise %s, which this service does not have. "
         "If its file is new, restart the service.",
@@ -143,11 +135,11 @@ def closed_practice(
     alike: Collection[str],
     now: datetime,
 ) -> tuple[LearnerTerms, str] | None:
-    """Return an assignment that forbids practice now, and its exercise; None if none does.
+    """Return an assignment that forbids practice now, and its exercise, or None.
 
-    If no assignment has the exercise itself, assignments with one of the exercises ``alike``
-    decide.
+    ``alike`` are exercises with the same correct table.
     """
+    # If no assignment has the exercise itself, assignments with one of ``alike`` decide.
     for terms, name in _assigned(connection, learner, only, exercise, alike):
         full = terms.practice == "after" and has_full_marks(connection, learner, terms.number, name)
         if not terms.may_practise(now, is_full=full):
@@ -163,10 +155,9 @@ def hides_solution(
     alike: Collection[str],
     now: datetime,
 ) -> bool:
-    """True if an assignment of the learner does not show the solution of the exercise now.
+    """True if an assignment hides the solution of the exercise from the learner now.
 
-    If no assignment has the exercise itself, assignments with one of the exercises ``alike``
-    decide.
+    ``alike`` are exercises with the same correct table.
     """
     return any(
         not terms.shows_solution(
@@ -179,7 +170,7 @@ def hides_solution(
 def _assigned(
     connection: Connection, learner: str, only: str | None, exercise: str, alike: Collection[str]
 ) -> list[tuple[LearnerTerms, str]]:
-    """Return the assignments of an exercise, or if there are none, of the exercises ``alike``."""
+    # The assignments of the exercise, or if there are none, of the exercises ``alike``.
     found = [terms for _, terms in learner_terms(connection, learner, only)]
     own = [(terms, exercise) for terms in found if exercise in terms.exercises]
     return own or [(terms, name) for terms in found for name in terms.exercises if name in alike]
@@ -193,10 +184,9 @@ def has_priced_hints(
     alike: Collection[str],
     now: datetime,
 ) -> bool:
-    """True if the learner can hand in the exercise now, and its hints have a price.
+    """True if hints on the exercise have a price in an open assignment of the learner.
 
-    If no assignment has the exercise itself, assignments with one of the exercises ``alike``
-    decide.
+    ``alike`` are exercises with the same correct table.
     """
     return any(
         terms.hint_prices(exercise) is not None and terms.state(now) in ("open", "late")

@@ -1,8 +1,9 @@
-"""Personal links: each contains a key for one learner, computed from the installation's secret.
+"""Personal links: each contains an API key for one learner.
 
-Only a hash of the key is stored. The service can compute the key again, so a tutor can print the
-links of a class twice.
+The key is computed from the secret of the installation. Only a hash of the key is stored.
 """
+
+# The service can compute the key again, so a tutor can print the links of a class twice.
 
 import secrets
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -33,10 +34,9 @@ def issue_links(
     address: str,
     now: datetime,
 ) -> list[PersonalLink]:
-    """Return the personal links of learners.
+    """Return the personal links of learners, and make missing ones. Raises CourseError.
 
-    A learner without a valid link gets a new link. With ``wanted.renew``, all learners get new
-    links. ``address`` is the address of the service. Raises CourseError.
+    With ``wanted.renew``, all learners get new links. ``address`` is the address of the service.
     """
     if not settle(connection, secret, now):
         raise CourseError("unusable", WRONG_SECRET)
@@ -60,7 +60,7 @@ def issue_links(
 
 
 def written_links(links: Iterable[PersonalLink]) -> Iterator[bytes]:
-    """Yield links as CSV, line by line, for a mail merge."""
+    """Yield the lines of a CSV file with personal links, for a mail merge."""
     yield spreadsheet.line(("learner", "name", "email", "link", "expires"))
     for each in links:
         until = f"{each.expires_at:%Y-%m-%d}"
@@ -78,7 +78,7 @@ def revoke_links(
 
 
 def links_until(connection: Connection, course: str, now: datetime) -> dict[str, datetime]:
-    """Return when the valid link of each learner expires."""
+    """Return when the link of each learner expires, by learner id."""
     return {learner: key.expires_at for learner, key in _valid(connection, course, now).items()}
 
 
@@ -88,10 +88,7 @@ def _valid(connection: Connection, course: str, now: datetime) -> dict[str, Key]
 
 
 def people(connection: Connection, course: str) -> list[Row[Any]]:
-    """Return the learners of a course with their names and e-mail addresses, in alphabetical order.
-
-    Raises CourseError.
-    """
+    """Return the learners of a course in alphabetical order. Raises CourseError."""
     if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
         raise unknown_course(course)
     of_course = course_learners.c

@@ -1,4 +1,4 @@
-"""The names of learners as tutors read them, and their alphabetical order."""
+"""The names of learners in lists for tutors, and their alphabetical order."""
 
 import unicodedata
 from collections import Counter
@@ -9,7 +9,7 @@ from service.contract.courses import CourseLearner, MissingLearner
 
 
 def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, str]:
-    """Return names by id; learners with equal names also get their e-mail address or id."""
+    """Return different names by id: equal names get the e-mail address or id added."""
     count = Counter(each.name for each in people)
     return {
         each.learner: each.name
@@ -20,10 +20,8 @@ def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, st
 
 
 def place_of(learner: Any) -> tuple[str, str, str]:
-    """Return the key that sorts learners by family name, then by name, then by id.
-
-    A learner without a family name is sorted by the name. Capitals and accents do not matter.
-    """
+    """Return the key for sorting learners: by family name, then name, then id."""
+    # A learner without a family name is sorted by the name. Capitals and accents do not matter.
     name = _plain(learner.name)
     return _plain(learner.family_name) if learner.family_name else name, name, learner.learner
 

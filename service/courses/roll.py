@@ -72,9 +72,9 @@ def learners(connection: Connection, course_id: str, now: datetime) -> list[Cour
 
 
 def add_learners(connection: Connection, course_id: str, new: Iterable[NewLearner]) -> int:
-    """Add learners, or change learners of the course; return the number of new learners.
+    """Add or change learners; return the number of new learners. Raises CourseError.
 
-    A learner without an id is found by the e-mail address. Raises CourseError.
+    A learner without an id is found by the e-mail address.
     """
     course(connection, course_id)
     of_course = course_learners.c

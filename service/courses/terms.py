@@ -1,4 +1,4 @@
-"""The terms of an assignment for one learner: dates, limit, feedback, practice and solution."""
+"""The rules of an assignment for one learner: dates, limit, feedback, practice and solution."""
 
 import json
 from collections.abc import Iterator, Mapping
@@ -42,12 +42,14 @@ _OF_ASSIGNMENT: Final = _OF_COURSE.where(assignments.c.id == bindparam("assignme
 
 @dataclass(frozen=True, slots=True)
 class LearnerTerms:
-    """The terms of an assignment for one learner, including the learner's extension.
+    """The rules of an assignment for one learner, including the learner's extension.
 
-    ``number`` is the row number of the assignment, ``exercises`` has the points of each exercise.
-    ``variants`` is the secret from which the learners' seeds follow; None if there are no variants.
-    ``choices`` says what the variants may vary, as JSON; None if the exercise files define this.
+    ``exercises`` has the points of each exercise. ``variants`` is the secret that determines the
+    learners' variants, or None.
     """
+
+    # ``number`` is the row number of the assignment. ``choices`` says what the variants may vary,
+    # as JSON; None if the exercise files define this.
 
     number: int
     id: str
@@ -63,14 +65,15 @@ class LearnerTerms:
     choices: str | None = field(default=None, repr=False)
 
     def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
-        """The highest feedback level for an attempt; never more than the exercise allows."""
+        """The highest feedback level for the attempt with the number ``ordinal``."""
+        # Never more than the exercise allows.
         if self.feedback is None:
             return exercise.feedback_at(ordinal)
         most = min(exercise.feedback_by_attempt, key=list(FeedbackLevel).index)
         return least(self.feedback[min(ordinal, len(self.feedback)) - 1], most)
 
     def hint_prices(self, exercise: Exercise) -> list[float] | None:
-        """The price of each step of a hint; None if attempts at the exercise have no hints."""
+        """The price of each step of a hint, or None if there are no hints."""
         if self.rules.hint_prices is None:
             return exercise.attempts.hint_prices
         return self.rules.hint_prices
@@ -84,7 +87,7 @@ class LearnerTerms:
         return "late" if self._is_past_due(now) else "open"
 
     def may_practise(self, now: datetime, *, is_full: bool) -> bool:
-        """True if the learner may practise: answers are graded, but not recorded.
+        """True if the learner may practise, that is, answer without a recorded attempt.
 
         ``is_full`` is True if the learner has full marks.
         """
@@ -93,7 +96,7 @@ class LearnerTerms:
         return self.practice == "open"
 
     def shows_solution(self, now: datetime, *, is_full: bool) -> bool:
-        """True if the learner may see the solution."""
+        """True if the learner may see the solution; ``is_full`` is True after full marks."""
         match self.solution:
             case "after_full":
                 return is_full
@@ -110,7 +113,7 @@ class LearnerTerms:
 
 
 def terms_of(connection: Connection, course: str, assignment: str, learner: str) -> LearnerTerms:
-    """Return the terms of an assignment for a learner of the course. Raises CourseError."""
+    """Return the rules of an assignment for a learner of the course. Raises CourseError."""
     which = {"learner": learner, "course": course, "assignment": assignment}
     found = connection.execute(_OF_ASSIGNMENT, which).one_or_none()
     if found is not None:
@@ -126,11 +129,11 @@ def terms_of(connection: Connection, course: str, assignment: str, learner: str)
 def learner_terms(
     connection: Connection, learner: str, only: str | None = None
 ) -> Iterator[tuple[str, LearnerTerms]]:
-    """Yield the course and the terms of each assignment of a learner.
+    """Yield the course and the rules of each assignment of a learner.
 
-    ``only`` restricts the result to one course. The assignments of a course are in the order in
-    which they were added.
+    ``only`` restricts the result to one course.
     """
+    # The assignments of a course are in the order in which they were added.
     if only is None:
         rows = connection.execute(_OF_LEARNER, {"learner": learner})
     else:
@@ -168,7 +171,7 @@ def extended(
     closes: datetime | None = None,
     limit: int | None = None,
 ) -> AttemptsSpec:
-    """Return the rules of an assignment, changed by the dates and the limit of an extension."""
+    """Return the rules of an assignment with the dates and the limit of an extension."""
     new_due, new_closes = own_dates(row, due, closes)
     return AttemptsSpec(
         limit=limit or row.max_attempts,
@@ -183,11 +186,9 @@ def extended(
 def own_dates(
     assignment: Any, due: datetime | None, closes: datetime | None
 ) -> tuple[datetime | None, datetime | None]:
-    """Return the due date and the closing date for a learner with this extension.
-
-    The closing date is the latest date of the assignment and of the extension; None if neither of
-    them has a closing date.
-    """
+    """Return the due date and the closing date of a learner with an extension."""
+    # The closing date is the latest date of the assignment and of the extension; None if neither of
+    # them has a closing date.
     new_due = due or assignment.due
     if new_due is not None and assignment.opens is not None:
         new_due = max(new_due, assignment.opens)

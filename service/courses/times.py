@@ -17,11 +17,9 @@ def zone_named(name: str) -> ZoneInfo:
 
 
 def moment(written: datetime, zone: ZoneInfo) -> datetime:
-    """Return a date in UTC. If it names no zone, it is a time on the clocks of ``zone``.
-
-    If the clocks show a time twice, the second moment is meant. Raises CourseError for a time that
-    the clocks never show, because they are put forward.
-    """
+    """Return a date in UTC; a date without a zone is in ``zone``. Raises CourseError."""
+    # If the clocks show a time twice, the second moment is meant. A time that the clocks never
+    # show, because they are put forward, is an error.
     try:
         if written.tzinfo is not None:
             return written.astimezone(UTC)
@@ -43,5 +41,5 @@ def moment(written: datetime, zone: ZoneInfo) -> datetime:
 
 
 def local(when: datetime | None, zone: ZoneInfo) -> datetime | None:
-    """Return a moment as the clocks of a zone show it."""
+    """Return a moment as the local time in a zone."""
     return None if when is None else when.astimezone(zone)

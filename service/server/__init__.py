@@ -1,1 +1,1 @@
-"""The server around the application: limits for clients, and fair turns between them."""
+"""The server around the application: limits for connections, and fair scheduling."""

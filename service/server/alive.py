@@ -1,8 +1,6 @@
-"""`python -m service.server.alive`: the health check of the image.
+"""`python -m service.server.alive`: the health check of the container image."""
 
-Exit with 0 if the service on this machine answers. This module imports nothing else of the program,
-so the check is cheap to run.
-"""
+# This module imports nothing else of the program, so the check is cheap to run.
 
 import os
 from http.client import HTTPConnection, HTTPException

@@ -29,12 +29,11 @@ _log = logging.getLogger(__name__)
 def installed_app(
     settings: Settings, host: str | None = None, drafts: Path | None = None
 ) -> FastAPI:
-    """Return the application of an installation, with fair turns between clients.
+    """Return the application of an installation. Raises CatalogueError, SettingsError.
 
-    ``host`` is the address on which the service listens, or None if it was checked already.
-    ``drafts`` is the folder in which several processes share the drafts of the editor.
-    Raises CatalogueError, SettingsError.
+    ``drafts`` is the folder with drafts of exercises from the editor.
     """
+    # ``host`` is the address on which the service listens, or None if it was checked already.
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
     store = None
     if settings.database is not None:
@@ -90,10 +89,7 @@ def installed_app(
 
 
 def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) -> Keys | None:
-    """Return the API keys, or None without a database.
-
-    Raises SettingsError if other machines could use the service without a key by mistake.
-    """
+    # Raises SettingsError if other machines could use the service without a key by mistake.
     secret = settings.known_secret()
     ring = None
     if store is not None:
@@ -127,7 +123,6 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
 
 
 def _delete_old(store: "AttemptStore", months: int) -> None:
-    """Delete the attempts that are older than some months; the log says how many."""
     from service.attempts.learner_data import delete_older, months_before
     from service.attempts.storage.database import in_transaction
 

@@ -1,4 +1,4 @@
-"""The limits that one process sets for its clients, and the reasons for these limits."""
+"""The limits that one process sets for its clients."""
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""The problems for requests that are refused before they reach a route."""
+"""The errors for requests that are refused before they reach a route."""
 
 from http import HTTPStatus
 from typing import Final
@@ -15,7 +15,7 @@ _CLOSE: Final = {"Connection": "close"}
 
 
 def refusal_response(problem: ProblemError, path: str, headers: Headers | None = None) -> Response:
-    """Return the response, with a request id, to a request that does not reach the application.
+    """Return the error response to a request that does not reach the application.
 
     ``headers`` are the request's headers, or None if they have not been read.
     """
@@ -26,13 +26,13 @@ def refusal_response(problem: ProblemError, path: str, headers: Headers | None =
 
 
 def malformed(detail: str) -> ProblemError:
-    """Return the problem for bytes that are no HTTP request."""
+    """Return the error for bytes that are no HTTP request."""
     title = "This is no HTTP request"
     return ProblemError(HTTPStatus.BAD_REQUEST, detail, "malformed-request", title, headers=_CLOSE)
 
 
 def late() -> ProblemError:
-    """Return the problem for a request that did not arrive in time."""
+    """Return the error for a request that did not arrive in time."""
     detail = (
         f"The head of a request must arrive within {HEAD_TIMEOUT:.0f} seconds, and the whole "
         f"request within {TIMEOUT:.0f}."
@@ -41,23 +41,23 @@ def late() -> ProblemError:
 
 
 def long_address() -> ProblemError:
-    """Return the problem for a URL that is too long."""
+    """Return the error for a URL that is too long."""
     detail = f"An address may have {MAX_URL} characters; this one has more."
     return ProblemError(HTTPStatus.REQUEST_URI_TOO_LONG, detail, headers=_CLOSE)
 
 
 def too_many_headers() -> ProblemError:
-    """Return the problem for a request with too many headers."""
+    """Return the error for a request with too many headers."""
     return large_frame(f"A request may have {MAX_HEADERS} headers; this one has more.")
 
 
 def large_frame(detail: str) -> ProblemError:
-    """Return the problem for a request whose head, chunk sizes or trailers are too large."""
+    """Return the error for a head, chunk size or trailer that is too large."""
     return ProblemError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE, detail, headers=_CLOSE)
 
 
 def too_many(seconds: int) -> ProblemError:
-    """Return the problem for a client that has too many requests waiting."""
+    """Return the error for a client that has too many requests waiting."""
     return ProblemError(
         HTTPStatus.TOO_MANY_REQUESTS,
         say(
@@ -69,7 +69,7 @@ def too_many(seconds: int) -> ProblemError:
 
 
 def too_busy(seconds: int) -> ProblemError:
-    """Return the problem that says that the service has too much to do."""
+    """Return the error for a service that has too much to do."""
     return ProblemError(
         HTTPStatus.SERVICE_UNAVAILABLE,
         say("The service has too much to do. Wait, then send this request again."),

@@ -57,10 +57,7 @@ def serve(settings: Settings) -> bool:
 
 @contextmanager
 def _delayed_announcement() -> Iterator[Callable[[], None]]:
-    """Suppress uvicorn's log line that the service is running; yield a function that writes it.
-
-    uvicorn would write the line as soon as it has the port, before any worker listens.
-    """
+    # uvicorn would write the line as soon as it has the port, before any worker listens.
     held: list[logging.LogRecord] = []
 
     def hold(record: logging.LogRecord) -> bool:
@@ -98,7 +95,6 @@ def _config(settings: Settings, app: object) -> uvicorn.Config:
 
 
 def _work(settings: Settings, drafts: Path, port: SharedPort) -> None:
-    """Serve on a shared port, as one of several worker processes with a common drafts folder."""
     # Ctrl+C reaches all processes of the terminal. Until the server has its own handlers, only the
     # supervisor reacts.
     signal.signal(signal.SIGINT, signal.SIG_IGN)

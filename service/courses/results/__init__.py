@@ -1,1 +1,1 @@
-"""The points of a course: the gradebook, and the workbook that contains the gradebook."""
+"""The points of a course: the gradebook, also as a workbook."""

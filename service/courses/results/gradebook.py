@@ -88,7 +88,8 @@ def missing(connection: Connection, course: str, assignment: str) -> list[Missin
 
 
 def handed_in(connection: Connection, course: str) -> dict[str, int]:
-    """Return the number of learners with a readable attempt, by assignment."""
+    """Return the number of learners who have handed in, by assignment."""
+    # Attempts that cannot be read do not count.
     rows = connection.execute(
         select(assignments.c.id, func.count(attempts.c.learner.distinct()).label("number"))
         .join_from(attempts, assignments)
@@ -99,11 +100,9 @@ def handed_in(connection: Connection, course: str) -> dict[str, int]:
 
 
 def written_gradebook(book: Gradebook, form: GradebookFormat) -> Iterator[bytes]:
-    """Yield a gradebook as CSV, line by line, with the headings that a platform imports.
-
-    Canvas finds learners by the SIS Login ID. Moodle finds them by the ID number or the e-mail
-    address. Source: Canvas, "How do I import grades in the Gradebook?"; Moodle, "Grade import".
-    """
+    """Yield the lines of a gradebook as CSV, with the headings that a platform imports."""
+    # Canvas finds learners by the SIS Login ID. Moodle finds them by the ID number or the e-mail
+    # address. Source: Canvas, "How do I import grades in the Gradebook?"; Moodle, "Grade import".
     titles = [f"{each.assignment} {each.exercise}" for each in book.columns]
     match form:
         case "canvas":
@@ -134,10 +133,7 @@ def _chosen(connection: Connection, course: str, assignment: str | None) -> list
 def _shares(
     connection: Connection, course: str, assignment: str | None
 ) -> Iterator[tuple[str, str, str, float | None]]:
-    """Yield learner, assignment, exercise, and the share of the points that counts.
-
-    Exercises without an attempt that counts are left out.
-    """
+    # Exercises without an attempt that counts are left out.
     chosen = select(assignments.c.number, assignments.c.id).where(
         assignments.c.course == course,
         true() if assignment is None else assignments.c.id == assignment,

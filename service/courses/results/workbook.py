@@ -1,4 +1,6 @@
-"""The gradebook as a workbook (Office Open XML); no text in it becomes a formula."""
+"""The gradebook as a workbook (Office Open XML)."""
+
+# No text in the workbook becomes a formula.
 
 import io
 from collections.abc import Mapping
@@ -26,10 +28,9 @@ class HandIns(NamedTuple):
 
 
 def gradebook_workbook(connection: Connection, course: str, assignment: str | None = None) -> bytes:
-    """Return the gradebook of a course, or of one assignment, as a workbook. Raises CourseError.
+    """Return the gradebook of a course as a workbook. Raises CourseError.
 
-    The first sheet has the points, as in the CSV file. The second sheet has the number of attempts
-    and the time of the last hand-in, in the time zone of the course.
+    The first sheet has the points; the second has the numbers and times of attempts.
     """
     zone = ZoneInfo(roll.course(connection, course).zone)
     book = gradebook(connection, course, assignment)
@@ -84,7 +85,6 @@ def _written(book: Gradebook, hand_ins: Mapping[GradebookPlace, HandIns], zone: 
 
 
 def _head(sheet: Any, titles: list[str], bold: Any) -> None:
-    """Write the headings; freeze the headings and the columns of names."""
     for i, title in enumerate((*_PEOPLE, *titles)):
         sheet.write_string(0, i, visible(title), bold)
         sheet.set_column(i, i, _WIDTHS[i] if i < len(_WIDTHS) else max(12, len(title)))

@@ -16,11 +16,9 @@ def origin_in(head: bytes) -> str:
 
 
 def cors_headers(origins: Sequence[str], origin: str) -> Mapping[str, str]:
-    """Return the headers that let a page read the response, if ``origins`` has the page's origin.
-
-    ``origin`` is "" if the request was refused before its head was read. In this case, the only
-    entry of ``origins`` is used, if there is only one.
-    """
+    """Return the headers that allow a page of ``origin`` to read the response."""
+    # ``origin`` is "" if the request was refused before its head was read. In this case, the only
+    # entry of ``origins`` is used, if there is only one.
     if "*" in origins:
         allowed = "*"
     elif origin in origins:

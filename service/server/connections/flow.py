@@ -18,12 +18,14 @@ class LingeringTransport:
 
 
 class Valve(FlowControl):
-    """Flow control that uvicorn cannot resume while the next request has to wait."""
+    """Flow control that keeps reading paused from ``hold`` to ``release``."""
+
+    # uvicorn cannot resume it while the next request has to wait.
 
     shut = False
 
     def resume_reading(self) -> None:
-        """Resume reading, unless the next request has to wait."""
+        """Resume reading, unless ``hold`` has paused it."""
         if not self.shut:
             super().resume_reading()
 

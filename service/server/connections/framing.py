@@ -1,9 +1,11 @@
 """Cut the bytes of a connection into pieces that each belong to one request.
 
-The parser reads all bytes that it gets, stores a head of any size, and begins the next request of a
-pipeline before the previous one is answered. So the parser gets only what it should read now. The
-parser alone decides whether the pieces are valid; this module only finds where they end (RFC 9112).
+The parser gets one piece at a time. This module only finds where the pieces end (RFC 9112); the
+parser decides whether they are valid.
 """
+
+# The parser reads all bytes that it gets, stores a head of any size, and begins the next request of
+# a pipeline before the previous one is answered. So it gets only what it should read now.
 
 import re
 from enum import Enum, auto
@@ -30,10 +32,10 @@ class _Expected(Enum):
 
 
 class Framing:
-    """Cuts the requests of one connection into pieces.
+    """Cuts the bytes of one connection into pieces that each belong to one request.
 
-    ``whole`` is True once the last piece of a request has been returned; ``content`` is the number
-    of bytes of the request's body so far.
+    ``whole`` is True after the last piece of a request.  ``content`` is the number of bytes of the
+    request's body so far.
     """
 
     def __init__(self) -> None:
@@ -48,12 +50,11 @@ class Framing:
         self.whole = False
 
     def __len__(self) -> int:
-        """The number of bytes received that are in no piece yet."""
         return len(self._buffer)
 
     @property
     def pending(self) -> bytes:
-        """The bytes received that are in no piece yet."""
+        """The received bytes that have not been returned yet."""
         return bytes(self._buffer)
 
     @property
@@ -63,7 +64,7 @@ class Framing:
 
     @property
     def in_head(self) -> bool:
-        """True if the head is still incomplete."""
+        """True until the head of the request has been returned."""
         return self._expected is _Expected.HEAD and not self.whole
 
     def receive(self, data: bytes) -> None:
@@ -84,9 +85,9 @@ class Framing:
             self.whole = length == 0
 
     def piece(self) -> bytes | None:
-        """Return the next piece for the parser, or None if more bytes are needed first.
+        """Return the next bytes of the request, or None if more must be received first.
 
-        Raises ProblemError if the head, a chunk size or a trailer is too large or invalid.
+        Raises ProblemError.
         """
         match self._expected:
             case _Expected.HEAD:

@@ -1,4 +1,4 @@
-"""The state that all connections of a server share, with the responses to refused requests."""
+"""The state that all connections of a server share."""
 
 from collections.abc import Sequence
 
@@ -26,7 +26,7 @@ class GuardedState(ServerState):
         self._monitor = monitor
 
     def note_refusal(self, answer: str) -> None:
-        """Count a refusal; ``answer`` is the status code of the response, or "none"."""
+        """Count a refused request; ``answer`` is the status code of the response, or "none"."""
         if self._monitor is not None:
             self._monitor.refused(answer)
 

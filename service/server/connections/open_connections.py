@@ -1,9 +1,6 @@
-"""All open connections of one process: count them and their bytes, and close some if needed.
+"""The open connections of one process, with limits for their number and their bytes.
 
-If there are too many connections, or if they hold too many bytes, the process closes some of the
-connections without a complete request. It begins with the client that has the largest share, and
-first closes the connection of this client that has waited longest. A complete request is never
-dropped.
+Beyond a limit, the process closes connections that have no complete request.
 """
 
 import asyncio
@@ -19,7 +16,7 @@ _CLOSED_SHARE: Final = 16
 
 
 class OpenConnection(Protocol):
-    """The part of a connection that ``OpenConnections`` uses."""
+    """The interface of a connection that ``OpenConnections`` uses."""
 
     address: str
     # The time of the event loop at which the connection expires.
@@ -38,7 +35,7 @@ class OpenConnection(Protocol):
 
 @dataclass(frozen=True, slots=True)
 class ConnectionLimits:
-    """The most connections, and the most bytes that they may hold in unfinished requests."""
+    """The largest number of connections, and of bytes in their unfinished requests."""
 
     connections: int = MAX_CONNECTIONS
     unfinished: int = MAX_UNFINISHED
@@ -59,11 +56,13 @@ class OpenConnections:
 
     @property
     def full(self) -> bool:
-        """True if there are too many connections. The service then answers only health checks."""
+        """True if there are too many connections."""
+        # The service then answers only health checks.
         return len(self._connections) > self._limits.connections
 
     def enter(self, connection: OpenConnection, loop: asyncio.AbstractEventLoop) -> bool:
-        """Add a connection; return False if there are too many, even after closing some."""
+        """Add a connection; return False if there are too many."""
+        # Waiting connections are closed first.
         if len(self._connections) >= self._limits.connections:
             self._close_waiting(_one, 1 + self._limits.connections // _CLOSED_SHARE)
         if len(self._connections) >= self._limits.connections + RESERVE:
@@ -81,7 +80,7 @@ class OpenConnections:
             connection.unfinished = 0
 
     def set_unfinished(self, connection: OpenConnection, size: int) -> None:
-        """Set the number of bytes that a connection holds; close others if the sum is too large."""
+        """Set the number of a connection's unprocessed bytes; close others beyond the limit."""
         if connection not in self._connections:
             return
         self._unfinished += size - connection.unfinished
@@ -91,7 +90,6 @@ class OpenConnections:
             self._close_waiting(_bytes, excess + self._limits.unfinished // 4)
 
     def _close_waiting(self, weight: Callable[[OpenConnection], int], wanted: int) -> None:
-        """Close waiting connections until their weights add up to ``wanted``."""
         waiting = [
             each for each in self._connections if each.waiting_since is not None and weight(each)
         ]
@@ -125,8 +123,7 @@ def closing_order(
 ) -> Iterable[OpenConnection]:
     """Yield waiting connections in the order in which to close them.
 
-    The next connection always belongs to the address with the largest share. Among the connections
-    of this address, it has waited longest.
+    The address with the most connections or bytes comes first.
     """
     queues: dict[str, list[OpenConnection]] = {}
     for connection in sorted(waiting, key=lambda each: each.waiting_since or 0.0, reverse=True):
@@ -141,7 +138,7 @@ def closing_order(
 
 
 def allowed_here() -> ConnectionLimits:
-    """Raise the limit of open files if needed; return the connection limits that it allows."""
+    """Raise the limit of open files, and return the connection limits that it allows."""
     try:
         import resource
     except ImportError:  # Windows, which has no such limit

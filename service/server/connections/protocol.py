@@ -1,8 +1,7 @@
-"""HTTP/1.1 with limits: uvicorn's protocol, which gets one request at a time.
+"""HTTP/1.1 with limits: uvicorn's protocol, which gets one request at a time."""
 
-uvicorn's own protocol reads a head of any size, waits for the end of the head without a time limit,
-and continues to read while a pipeline of requests is being answered.
-"""
+# uvicorn's own protocol reads a head of any size, waits for the end of the head without a time
+# limit, and continues to read while a pipeline of requests is being answered.
 
 import asyncio
 import re
@@ -104,7 +103,7 @@ class GuardedProtocol(HttpToolsProtocol):
         return self._framing.whole and not self._finishing
 
     def data_received(self, data: bytes) -> None:
-        """Take received bytes, and parse as many of them as allowed now."""
+        """Take received bytes, and parse those that may be parsed now."""
         if self._finishing:
             self._discarded += len(data)
             if self._discarded > MAX_DISCARDED:
@@ -117,7 +116,6 @@ class GuardedProtocol(HttpToolsProtocol):
         self._advance()
 
     def _advance(self) -> None:
-        """Give the parser the bytes that it may read now."""
         framing = self._framing
         try:
             while not framing.whole and not self._finishing:
@@ -140,7 +138,6 @@ class GuardedProtocol(HttpToolsProtocol):
             self.flow.hold()
 
     def _note_held(self) -> None:
-        """Report the bytes held for unfinished requests and unread responses of this client."""
         framing = self._framing
         unfinished = 0 if framing.whole else len(framing) + framing.content
         self.open_connections.set_unfinished(self, unfinished + self._unread)
@@ -166,7 +163,6 @@ class GuardedProtocol(HttpToolsProtocol):
             self.finish()
 
     def _check_head(self, head: bytes) -> None:
-        """Check a head more strictly than the parser does. Raises ProblemError."""
         line = head.partition(b"\r\n")[0]
         # The parser also accepts the protocols RTSP and ICE.
         if not line.endswith((b" HTTP/1.0", b" HTTP/1.1")):
@@ -180,7 +176,6 @@ class GuardedProtocol(HttpToolsProtocol):
             raise malformed("The Content-Length has more than 19 digits.")
 
     def _length(self) -> int | None:
-        """Return the length of the body according to the head, or None if the body is chunked."""
         length = 0
         for name, value in self.scope["headers"]:
             if name == b"transfer-encoding":
@@ -193,7 +188,6 @@ class GuardedProtocol(HttpToolsProtocol):
         return self.url.partition(b"?")[0].decode("latin-1")
 
     def _arrived(self) -> None:
-        """Stop the time limit of a client whose request is complete."""
         if self.cycle.response_complete:
             self._start_next()
         else:
@@ -201,12 +195,10 @@ class GuardedProtocol(HttpToolsProtocol):
             self.deadline = float("inf")
 
     def _wait(self, timeout: float) -> None:
-        """Start a time limit for the client, in seconds from now."""
         self.waiting_since = self.loop.time()
         self.deadline = self.waiting_since + timeout
 
     def _start_next(self) -> None:
-        """Begin with the next request of this connection."""
         self._complete = False
         self._framing.start_next()
         head_has_begun = self._framing.begun and not self.flow.write_paused
@@ -231,7 +223,7 @@ class GuardedProtocol(HttpToolsProtocol):
     # Callbacks of the parser and of the answer.
 
     def on_headers_complete(self) -> None:
-        """Start the application, which may read the body as it arrives."""
+        """Start the application when the head of the request is complete."""
         full = self.open_connections.full and self._path() not in HEALTH
         self.app = self._answer_busy if full else self._answer
         super().on_headers_complete()
@@ -246,7 +238,7 @@ class GuardedProtocol(HttpToolsProtocol):
         super().on_message_complete()
 
     def on_response_complete(self) -> None:
-        """Begin with the next request if the answered request has arrived completely."""
+        """Begin with the next request if the answered request is complete."""
         self.server_state.total_requests += 1
         if self.transport.is_closing() or self._finishing:
             return
@@ -258,7 +250,7 @@ class GuardedProtocol(HttpToolsProtocol):
             self.flow.resume_reading()
 
     def pause_writing(self) -> None:
-        """Start a time limit for the client, because the client does not read responses."""
+        """Start a time limit, because the client does not read responses."""
         super().pause_writing()
         self._unread = self._raw.get_write_buffer_size()
         if self.waiting_since is None:
@@ -281,7 +273,6 @@ class GuardedProtocol(HttpToolsProtocol):
     # Closing.
 
     def _refuse(self, problem: ProblemError) -> None:
-        """Answer an invalid or late request with a problem, and close the connection."""
         if self._give_up() and self.cycle.response_started:
             self.reset()
             return
@@ -319,7 +310,7 @@ class GuardedProtocol(HttpToolsProtocol):
             self._raw.write_eof()
 
     def expire(self) -> None:
-        """Close the connection because a request, an unread response or a pause took too long."""
+        """Close the connection because a time limit has passed."""
         unread = self._raw.get_write_buffer_size() > 0
         if self._finishing or unread or self.waiting_since is None:
             self.reset()
@@ -341,7 +332,6 @@ class GuardedProtocol(HttpToolsProtocol):
         self._raw.abort()
 
     def _give_up(self) -> bool:
-        """Tell the app that the client has gone; return False if no response is in progress."""
         # uvicorn's annotation omits that this is None before the first request.
         cycle: RequestResponseCycle | None = self.cycle
         if cycle is None or cycle.response_complete:
@@ -362,7 +352,6 @@ class GuardedProtocol(HttpToolsProtocol):
             self.cycle.keep_alive = False
 
     async def _answer(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Have the application answer a request."""
         try:
             await self.config.loaded_app(scope, receive, send)
         except asyncio.CancelledError:
@@ -371,7 +360,6 @@ class GuardedProtocol(HttpToolsProtocol):
                 raise
 
     async def _answer_busy(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Send a problem: the service is too busy, because too many connections are open."""
         headers = Headers(scope=scope)
         answer = self.server_state.refusal(too_busy(1), scope["path"], self._origin, headers)
         await answer(scope, receive, send)

@@ -49,7 +49,7 @@ class Server(uvicorn.Server):
 
     @contextlib.contextmanager
     def capture_signals(self) -> Iterator[None]:
-        """Handle signals while the server runs: after a signal, the server exits with code 0."""
+        """Handle signals while the server runs, so that a signal ends it with exit code 0."""
         before = {number: signal.signal(number, self.handle_exit) for number in _SIGNALS}
         try:
             yield
@@ -71,7 +71,7 @@ class Server(uvicorn.Server):
             Context().run(_log.info, SHUTTING_DOWN)
 
     async def on_tick(self, counter: int) -> bool:
-        """True if the server has to end: after a signal, or because the supervisor has died."""
+        """True if the server has to end, because of a signal or a dead supervisor."""
         if self._acceptor is not None:
             self._acceptor.publish_count()
         orphaned = self._parent is not None and os.getppid() != self._parent
@@ -119,11 +119,7 @@ class Server(uvicorn.Server):
 
 
 def _force_exit_later() -> None:
-    """Exit the process after some seconds, even if a thread is still running.
-
-    Without this, Python would wait for the thread.
-    """
-
+    # Without this, Python would wait for a thread that is still running.
     def end() -> None:
         _log.warning(
             "Something does not react, for example the database: exiting without waiting for it."

@@ -1,8 +1,9 @@
 """Balance the connections of a shared port between worker processes.
 
-The system wakes all workers, and the first one awake would accept all waiting connections. So a
-worker that has more connections than another one pauses for a moment, and the other accepts some.
+A worker that has more connections than another pauses for a moment, so that the other accepts some.
 """
+
+# The system wakes all workers, and the first one awake would accept all waiting connections.
 
 import asyncio
 import multiprocessing
@@ -36,7 +37,7 @@ class ConnectionCounts:
 
     @classmethod
     def of(cls, number: int) -> "ConnectionCounts":
-        """Return the counts for ``number`` processes, none of which listens yet."""
+        """Return the counts for ``number`` processes."""
         return cls(multiprocessing.get_context("spawn").RawArray("i", [_AWAY] * number))
 
     @property
@@ -45,13 +46,13 @@ class ConnectionCounts:
         return any(count != _AWAY for count in self.numbers)
 
     def stop_listening(self, index: int) -> None:
-        """Note that the process with this index does not listen."""
+        """Note that the process with this index does not listen any more."""
         self.numbers[index] = _AWAY
 
 
 @dataclass(frozen=True)
 class SharedPort:
-    """A shared port, and the index of one worker among the processes that share the port."""
+    """A port that several workers share, and the index of this worker."""
 
     listener: socket.socket
     counts: ConnectionCounts
@@ -88,10 +89,7 @@ class Acceptor:
         self._port.counts.stop_listening(self._port.index)
 
     def publish_count(self) -> int:
-        """Publish how many connections this process has.
-
-        Return the number of the other process that has the fewest connections.
-        """
+        """Publish how many connections this process has; return the least number of another."""
         here, counts = self._port.index, self._port.counts.numbers
         counts[here] = self._count()
         return min((n for index, n in enumerate(counts) if index != here), default=_AWAY)
@@ -116,7 +114,6 @@ class Acceptor:
                 return
 
     def _accept(self) -> bool:
-        """Accept one connection; return False if none waits or none can be opened."""
         try:
             connection, _ = self._port.listener.accept()
         except (BlockingIOError, InterruptedError, ConnectionAbortedError):
@@ -136,7 +133,6 @@ class Acceptor:
         self._waiting = self._loop.call_later(seconds, self._resume)
 
     def _resume(self) -> None:
-        """Accept one connection, if one still waits; then listen again."""
         self._waiting = None
         self._accept()
         if self._waiting is None:

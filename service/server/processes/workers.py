@@ -80,7 +80,6 @@ class Supervisor:
         return worker
 
     def _watch(self, awake: socket.socket) -> bool:
-        """Replace workers that end, until a signal comes; return False if none could start."""
         announced = False
         while True:
             wait(
@@ -113,7 +112,6 @@ class Supervisor:
         return self._signals > 0
 
     def _end(self, awake: socket.socket) -> None:
-        """End the workers; kill them after a second signal, or if they take too long."""
         _log.info(SHUTTING_DOWN)
         for worker in self._workers:
             worker.terminate()

@@ -1,1 +1,1 @@
-"""Fair turns between clients."""
+"""Fair scheduling of the requests of different clients."""

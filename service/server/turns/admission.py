@@ -1,10 +1,9 @@
-"""Give clients fair turns, without leaving the processor idle while a request waits.
+"""Schedule the requests of clients fairly, in time slices of a few milliseconds.
 
-A request runs until it is answered or its time slice is over. Then the process reads its sockets,
-and the next step belongs to the connection that has used the least processor time. So a request
-waits for steps of a few milliseconds, however costly other requests are. Small requests share a
-slice, because reading the sockets costs as much as answering one of them.
+After each slice, the connection that has used the least processor time may continue.
 """
+
+# Small requests share a slice, because reading the sockets costs as much as answering one of them.
 
 import asyncio
 import math
@@ -42,7 +41,7 @@ _LONGEST_RETRY: Final = 30
 
 
 class Metered:
-    """An awaitable that counts the processor time of its own steps."""
+    """An awaitable that measures the processor time of its own steps."""
 
     def __init__(self, awaitable: Awaitable[None]) -> None:
         self._awaitable = awaitable
@@ -55,7 +54,6 @@ class Metered:
         return self._spent + (0.0 if self._began is None else thread_time() - self._began)
 
     def __await__(self) -> Generator[Any, Any, None]:
-        """Run the steps."""
         steps = self._awaitable.__await__()
         resume: Callable[[], Any] = partial(next, steps)
         while True:
@@ -75,18 +73,14 @@ class Metered:
 
 
 class _Lane:
-    """A limit for small responses: their number, and the requests that wait beyond the limit.
-
-    The number starts at 0 whenever the process has read its sockets.
-    """
-
+    # The number starts at 0 whenever the process has read its sockets.
     def __init__(self) -> None:
         self.given = 0
         self.waiting: deque[asyncio.Future[None]] = deque()
 
 
 class FairAdmission:
-    """Passes complete requests to the application step by step, in fair turns between clients."""
+    """Passes complete requests to the application, in fair turns between clients."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app
@@ -130,7 +124,6 @@ class FairAdmission:
             self._queue.leave(ticket)
 
     async def _serve(self, ticket: Ticket, scope: Scope, body: "_Replayed", send: Send) -> None:
-        """Have the application answer a request, one turn for each time slice."""
         charged = 0.0
 
         async def give_way() -> None:
@@ -153,12 +146,11 @@ class FairAdmission:
 
     @property
     def waiting(self) -> int:
-        """The number of requests that wait for their turn."""
+        """The number of waiting requests."""
         return self._queue.length
 
     @property
     def _must_wait(self) -> bool:
-        """True if other requests wait, or the sockets have to be read first."""
         return self._queue.length > 0 or self._spent >= SLICE
 
     def _charge(self, ticket: Ticket, seconds: float) -> None:
@@ -167,7 +159,6 @@ class FairAdmission:
         self._read_soon()
 
     def _refusal(self, ticket: Ticket) -> ProblemError | None:
-        """Return the problem for a request if the queue has no room for it, or None."""
         requests, size = self._queue.waiting(ticket.client)
         is_beyond = requests >= OF_ONE[0] or size + ticket.size > OF_ONE[1]
         if is_beyond and not ticket.client.is_trusted:
@@ -177,11 +168,10 @@ class FairAdmission:
         return None
 
     def _seconds(self, requests: int) -> int:
-        """Return the seconds after which a refused client should try again."""
         return min(max(1, math.ceil(requests * self._mean)), _LONGEST_RETRY)
 
     async def _turn(self, ticket: Ticket, body: "_Replayed") -> None:
-        """Wait until it is this request's turn. Raises ClientDisconnect if its client has gone."""
+        # Raises ClientDisconnect if the client has gone.
         if self._must_wait:
             ticket.turn = asyncio.get_running_loop().create_future()
             self._queue.push(ticket)
@@ -198,7 +188,6 @@ class FairAdmission:
                 raise ClientDisconnect
 
     async def _small_turn(self, lane: _Lane) -> None:
-        """Wait if too many small responses are sent at once."""
         if lane.given >= SMALL:
             turn = asyncio.get_running_loop().create_future()
             lane.waiting.append(turn)
@@ -208,7 +197,6 @@ class FairAdmission:
             self._read_soon()
 
     def _read_soon(self) -> None:
-        """Schedule the next step, which runs as soon as the sockets have been read."""
         if not self._reading:
             self._reading = True
             # Twice: a callback that is scheduled once runs before the sockets are read.
@@ -216,7 +204,6 @@ class FairAdmission:
             loop.call_soon(loop.call_soon, self._next)
 
     def _next(self) -> None:
-        """Let the next waiting request continue, and some requests with small responses."""
         self._reading, self._spent = False, 0.0
         called = 0
         while self._queue.length and not called:
@@ -231,7 +218,6 @@ class FairAdmission:
 
 
 def _wake(turn: asyncio.Future[None]) -> bool:
-    """Resume the request that awaits this future; return False if it no longer waits."""
     if turn.done():
         return False
     turn.set_result(None)
@@ -239,11 +225,8 @@ def _wake(turn: asyncio.Future[None]) -> bool:
 
 
 async def _body(receive: Receive) -> tuple[bytes | None, bool]:
-    """Return the body of a request, and True if the body is complete.
-
-    A body beyond the application's limit is not read to its end. The body is None if the client
-    has gone.
-    """
+    # A body beyond the application's limit is not read to its end. The body is None if the client
+    # has gone.
     parts: list[bytes] = []
     size = 0
     while size <= MAX_BODY_SIZE:
@@ -258,8 +241,6 @@ async def _body(receive: Receive) -> tuple[bytes | None, bool]:
 
 
 class _Replayed:
-    """Lets the application receive a body that has already been read."""
-
     def __init__(self, body: bytes, ended: bool, receive: Receive) -> None:
         self._first: Message | None = {
             "type": "http.request", "body": body, "more_body": not ended,
@@ -268,17 +249,14 @@ class _Replayed:
         self._receive = receive
 
     async def receive(self) -> Message:
-        """Return the next message."""
         if self._first is None:
             return await self._receive()
         message, self._first = self._first, None
         return message
 
     def is_unwanted(self) -> bool:
-        """True if the client has gone. This method does not wait for the client.
-
-        Starlette's ``is_disconnected`` would let the event loop begin the next request.
-        """
+        # Do not wait for the client: Starlette's ``is_disconnected`` would let the event loop begin
+        # the next request.
         if not self._ended:
             return False
         asking = self._receive().__await__()

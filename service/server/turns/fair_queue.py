@@ -1,14 +1,15 @@
-"""The queue of waiting requests, in which all connections have equal shares of the processor.
+"""The queue of waiting requests, in which connections share the processor equally.
 
-Start-time fair queueing (Goyal, Vin and Cheng, 1996) between connections: the next request belongs
-to the connection that has used the least processor time. A whole class may share one address, so
-each connection of an address has a share of its own; but the shares of one address are limited.
-
-If all requests took turns after each slice, a request ten times as long as the mean would wait for
-all the others ten times. So each connection has an allowance: time within it is charged only when
-the connection's next request comes. Thus ordinary requests run in the order of their arrival.
-Connections that send one costly request after the other use up their allowance.
+The next request belongs to the connection that has used the least processor time. This is
+start-time fair queueing (Goyal, Vin and Cheng, 1996).
 """
+
+# A whole class may share one address, so each connection of an address has a share of its own; but
+# the shares of one address are limited. If all requests took turns after each slice, a request ten
+# times as long as the mean would wait for all the others ten times. So each connection has an
+# allowance: time within it is charged only when the connection's next request comes. Thus ordinary
+# requests run in the order of their arrival. Connections that send one costly request after the
+# other use up their allowance.
 
 from collections import deque
 from dataclasses import dataclass, field
@@ -39,10 +40,9 @@ _ACCOUNTS: Final = 1000
 
 @dataclass(eq=False, slots=True)
 class Ticket:
-    """One request that waits or is being answered; ``turn`` is the future that it awaits.
+    """One request that waits or is being answered; ``turn`` is the future that it awaits."""
 
-    ``connection`` is 0 if the connections of the client cannot be distinguished.
-    """
+    # ``connection`` is 0 if the connections of the client cannot be distinguished.
 
     client: Client
     connection: int
@@ -51,14 +51,12 @@ class Ticket:
 
     @property
     def key(self) -> tuple[str, int]:
-        """The key of the account that is charged for this request."""
+        """The key of the account to which processor time is charged."""
         return self.client.name, self.connection
 
 
 @dataclass(slots=True)
 class _Requests:
-    """The number of a client's requests, the number of waiting ones, and their bytes."""
-
     present: int = 0
     waiting: int = 0
     size: int = 0
@@ -66,13 +64,8 @@ class _Requests:
 
 @dataclass(slots=True)
 class _Account:
-    """The time that a connection has used, and its requests.
-
-    ``spent`` is the time of the last request; up to ``allowed`` seconds of this time are not yet
-    charged to ``used``. Charged time is multiplied by ``excess``. ``queue`` has the waiting
-    requests of the connection.
-    """
-
+    # ``spent`` is the time of the last request; up to ``allowed`` seconds of this time are not yet
+    # charged to ``used``. Charged time is multiplied by ``excess``.
     used: float
     allowed: float
     spent: float = 0.0
@@ -82,12 +75,13 @@ class _Account:
 
 
 class FairQueue:
-    """The requests present, and the order of the waiting ones.
+    """The requests of all connections, and the processor time that the connections have used.
 
-    Times are on a common clock that advances with the time that all connections use. A connection
-    that was idle has a small credit, and a new connection has none. ``ordinary`` is the time in
-    seconds of an ordinary request on this machine.
+    ``ordinary`` is the time in seconds of an ordinary request on this machine.
     """
+
+    # Times are on a common clock that advances with the time that all connections use. A connection
+    # that was idle has a small credit, and a new connection has none.
 
     def __init__(self, ordinary: float) -> None:
         self.ordinary = ordinary
@@ -126,7 +120,6 @@ class FairQueue:
                 del self._accounts[key]
 
     def _settle(self, account: _Account) -> None:
-        """Charge the uncharged time of the last request, and grant an allowance for the next."""
         due = min(account.spent, max(0.0, account.allowed))
         used = max(account.used + due * account.excess, self._now - CREDIT)
         account.used = min(used, self._now + DEBT * account.excess)
@@ -144,21 +137,22 @@ class FairQueue:
             del self._clients[ticket.client.name]
 
     def push(self, ticket: Ticket) -> None:
-        """Add a request to the queue, after ``enter`` has noted the arrival of the request."""
+        """Add a request to the queue."""
+        # Call ``enter`` before.
         account = self._accounts[ticket.key]
         account.queue.append(ticket)
         self._waiting[ticket.key] = account
         self._count(ticket, 1)
 
     def pop(self) -> Ticket:
-        """Remove and return the request whose turn it is. Raises ValueError if none waits."""
+        """Remove and return the next request. Raises ValueError if none waits."""
         account = min(self._waiting.values(), key=attrgetter("used"))
         ticket = account.queue[0]
         self.remove(ticket)
         return ticket
 
     def remove(self, ticket: Ticket) -> None:
-        """Remove a request from the queue, because its turn has come or it was cancelled."""
+        """Remove a request from the queue."""
         queue = self._accounts[ticket.key].queue
         if ticket in queue:
             queue.remove(ticket)
@@ -167,7 +161,7 @@ class FairQueue:
                 del self._waiting[ticket.key]
 
     def charge(self, ticket: Ticket, seconds: float) -> None:
-        """Charge the processor time that a step of a request took."""
+        """Charge the processor time of a request's step to its connection."""
         account = self._accounts[ticket.key]
         self._now = max(self._now, account.used)
         self._now += PACE * seconds / (1 + len(self._waiting))

@@ -1,8 +1,6 @@
-"""Estimate how long an ordinary request takes on this machine.
+"""Measure how long an ordinary request takes on this machine.
 
-The queue lets ordinary requests run to their end, on a slow machine as on a fast one. Costly
-requests must not change what counts as ordinary, so the estimate does not come from requests: it is
-the time of a fixed computation, measured again and again.
+The measure is the time of a fixed computation, because costly requests must not change it.
 """
 
 from collections import deque
@@ -31,7 +29,7 @@ class Speed:
         self.ordinary = ORDINARY * median(self._measured)
 
     def after_request(self) -> float:
-        """Return the time of an ordinary request; measure again after some requests."""
+        """Return the time of an ordinary request, which is measured again now and then."""
         self._requests += 1
         if self._requests % _BETWEEN == 0:
             self._measured.append(_measured())
@@ -40,7 +38,6 @@ class Speed:
 
 
 def _measured() -> float:
-    """Return the processor seconds of the fixed computation."""
     began = thread_time()
     pose(_LINKS, Convention.STANDARD)
     return thread_time() - began

@@ -4,14 +4,11 @@ import logging
 
 
 class _AccessLogFilter(logging.Filter):
-    """Removes the query string, and optionally the client's address, from uvicorn's lines."""
-
     def __init__(self, *, addresses: bool) -> None:
         super().__init__()
         self.addresses = addresses
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Shorten the line; return True, so that it is written."""
         if isinstance(record.args, tuple) and len(record.args) == 5:
             client, method, path, version, status = record.args
             path = str(path).partition("?")[0]

@@ -1,4 +1,4 @@
-"""The format of the log: text or JSON objects. Lines about a request contain its id."""
+"""The format of the log: text, or one JSON object for each line."""
 
 import json
 import logging
@@ -22,7 +22,7 @@ _JSON: Final = {name: {"()": "service.server.watching.logs.JsonLines"} for name 
 
 
 def log_config(form: Literal["text", "json"]) -> dict[str, Any]:
-    """Return the configuration for ``logging.config``; requests are logged to standard output."""
+    """Return the configuration of the log for ``logging.config``."""
     return {
         "version": 1,
         "disable_existing_loggers": False,
@@ -48,10 +48,10 @@ def log_config(form: Literal["text", "json"]) -> dict[str, Any]:
 
 
 class RequestIds(logging.Filter):
-    """Adds the id of the request that is being answered to a line of the log."""
+    """Adds the id of the current request to each line of the log."""
 
     def filter(self, record: logging.LogRecord) -> bool:
-        """Add the request id; return True, so that the line is written."""
+        """Add the id of the current request to a line; return True, to keep the line."""
         request = current_request()
         record.request = request
         record.of_request = f" [{request.id}]" if request else ""
@@ -62,7 +62,7 @@ class JsonLines(logging.Formatter):
     """Formats each line as a JSON object."""
 
     def format(self, record: logging.LogRecord) -> str:
-        """Return the line as a JSON object; it contains the request id if there is a request."""
+        """Return the line as a JSON object."""
         line: dict[str, Any] = {
             "time": datetime.fromtimestamp(record.created, UTC).isoformat(timespec="milliseconds"),
             "level": record.levelname.lower(),

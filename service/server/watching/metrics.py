@@ -1,8 +1,9 @@
-"""Metrics for Prometheus. This module is imported only if metrics are switched on.
+"""Metrics for Prometheus.
 
-Every label has few values: patterns of paths, statuses, kinds, verdicts, codes of the program.
-Text from a client never becomes a label.
+A label has few values, and never contains text from a client.
 """
+
+# This module is imported only if metrics are switched on.
 
 import os
 import time
@@ -47,7 +48,7 @@ _STORE: Final = (0.001, 0.0025, 0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2
 class Metrics:
     """The metrics of one process, or of all processes that share a folder.
 
-    Unless ``is_public``, only clients on this machine may read them.
+    Unless ``is_public``, only clients on this machine may read the metrics.
     """
 
     def __init__(self, *, is_public: bool = False) -> None:
@@ -129,7 +130,7 @@ class Metrics:
         self._admission: FairAdmission | None = None
 
     def fair_admission(self, app: ASGIApp) -> ASGIApp:
-        """Wrap the application in a FairAdmission, and count the requests that wait there."""
+        """Wrap the application in a FairAdmission, and count its waiting requests."""
         self._admission = FairAdmission(app)
         return self._admission
 
@@ -187,7 +188,7 @@ class Metrics:
             self._codes.labels(self._bounded(name)).inc()
 
     def refused(self, answer: str) -> None:
-        """Count a refusal before the application; ``answer`` is the response's status or "none"."""
+        """Count a request that was refused; ``answer`` is the response's status or "none"."""
         self._refusals.labels(answer).inc()
 
     def _bounded(self, name: str) -> str:

@@ -1,4 +1,6 @@
-"""The folder in which processes share their metrics. This module does not import the metrics."""
+"""The folder in which processes share their metrics."""
+
+# This module does not import the metrics.
 
 import os
 import tempfile
@@ -16,10 +18,9 @@ FOLDER: Final = "PROMETHEUS_MULTIPROC_DIR"
 
 @contextmanager
 def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]:
-    """Create a metrics folder for processes started in this context; remove the folder at its end.
+    """Create a metrics folder for processes started in this context. Raises SettingsError.
 
-    Yields a function that removes the gauges of a process that has ended. Raises SettingsError if
-    no folder can be written.
+    Yields a function that removes the gauges of an ended process.
     """
     if settings.metrics == "off" or settings.workers == 1:
         yield lambda _: None
@@ -44,7 +45,7 @@ def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]
 
 
 def _forget(process: int) -> None:
-    """Remove the gauges of a process that has ended; its counters stay."""
+    # The counters of the process stay.
     from prometheus_client.multiprocess import mark_process_dead
 
     mark_process_dead(process)  # type: ignore[no-untyped-call]
