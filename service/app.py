@@ -1,4 +1,4 @@
-"""`uvicorn service.app:app`: the service, configured by environment variables."""
+"""The application for `uvicorn service.app:app`, configured by environment variables."""
 
 from fastapi import FastAPI
 

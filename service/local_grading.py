@@ -28,8 +28,8 @@ _LONGEST_NAME = 60
 class GradingTerms:
     """The assignment to grade, and the options of the reports.
 
-    ``feedback`` is the level of detail; if None, the submission chooses it. ``echo`` adds how each
-    cell was read.
+    ``feedback`` is the level of detail; if None, the submission chooses it. ``echo`` adds to a
+    report how each entry was read.
     """
 
     # With ``for_students``, the exercise limits the level that the submission chooses.
@@ -43,7 +43,7 @@ class GradingTerms:
 
     @property
     def answered(self) -> tuple[AnsweredExercise, ...]:
-        """The assigned exercises for the results, with texts in ``language``."""
+        """The assigned exercises, with texts in ``language``."""
         return tuple(
             answered(self._told(assigned.exercise), assigned.worth)
             for assigned in self.assignment.exercises
@@ -53,7 +53,7 @@ class GradingTerms:
         return in_language(exercise, self.language) if isinstance(exercise, Exercise) else exercise
 
     def submission(self, body: GradeRequest, assigned: AssignedExercise) -> Submission:
-        """Return the submission for the grader, with the chosen level of feedback."""
+        """Return ``body`` as a submission for the grader, with the chosen feedback level."""
         most = self.assignment.ceiling(assigned) if self.for_students else FeedbackLevel.FULL
         submission = body.submission(most)
         feedback = submission.feedback if self.feedback is None else self.feedback
@@ -65,7 +65,7 @@ ReportOn = Callable[[GradeRequest, AssignedExercise, GradingTerms], tuple[Report
 
 
 def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
-    """Return an error message if the exercise lacks a part that the answers name, else ""."""
+    """Return an error message if the answers name an unknown part of the exercise, else ""."""
     known = [part.id for part in assigned.exercise.parts]
     unknown = next((part for part in body.answers if part not in known), None)
     if unknown is None:

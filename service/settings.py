@@ -227,7 +227,7 @@ class Settings(BaseSettings):
 
     @property
     def open_access(self) -> OpenAccess:
-        """The operations that need no key."""
+        """The operations that need no API key."""
         return open_access(self.open)
 
     def known_secret(self) -> Secret | None:

@@ -99,7 +99,7 @@ class KeyRing:
         return await self._holder("digest", self.secret.key_digest(credential))
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token for the learner for whom ``caller`` acts."""
+        """Return a token for the caller's learner, valid until ``expires_at``."""
         from service.access.tokens import LearnerToken, signed
 
         assert self.secret is not None
@@ -129,7 +129,7 @@ class KeyRing:
         return signed_session(caller.key_id, expires_at, self.secret.session_secret)
 
     def close(self) -> None:
-        """Record the latest uses of keys, and stop the threads."""
+        """Save when keys were last used, and stop the threads."""
         self._known_lookups.close()
         self._new_lookups.close()
         self._thread.shutdown()

@@ -79,7 +79,7 @@ class Keys(Protocol):
         """Note that a key was created just now."""
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token for the learner for whom ``caller`` acts."""
+        """Return a token for the caller's learner, valid until ``expires_at``."""
 
     async def session_caller(self, session: str) -> Caller:
         """Return the caller with this session token.
@@ -95,7 +95,7 @@ class Keys(Protocol):
         """The secret of the installation, or None if it is not known."""
 
     def close(self) -> None:
-        """Record the latest uses of keys, and stop all threads."""
+        """Save when keys were last used, and stop all threads."""
 
 
 class Secret:

@@ -1,4 +1,4 @@
-"""The web pages of the service, as the application gets them."""
+"""The interface between the application and the web pages."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -10,7 +10,7 @@ from service.catalogue.drafts import Drafts
 
 
 class WebPages(NamedTuple):
-    """The routes of the web pages, and what the application needs of the pages.
+    """The routes of the web pages, with functions and data for the application.
 
     ``of_problem`` makes an HTML page from an error response. ``drafts`` are the exercises that
     tutors preview.

@@ -4,7 +4,7 @@ import gc
 
 
 def main() -> None:
-    """Run the command-line program in this process."""
+    """Run the command-line program."""
     # Loaded modules stay to the end: searching them for garbage takes a tenth of a short run.
     gc.disable()
     try:

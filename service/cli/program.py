@@ -129,7 +129,7 @@ def _open_closed_streams() -> None:
 
 
 def run() -> None:
-    """Run the command-line program in this process."""
+    """Run the command-line program."""
     _open_closed_streams()
     # Replace characters that a stream cannot encode instead of failing within a report.
     for stream in (sys.stdout, sys.stderr):

@@ -70,7 +70,7 @@ def complain(message: str | Exception) -> None:
 
 
 def give_up(message: str | Exception) -> NoReturn:
-    """Print a message to standard error, and exit with the code for unusable input."""
+    """Print a message to standard error, and exit because the input is unusable."""
     complain(message)
     raise SystemExit(UNUSABLE)
 

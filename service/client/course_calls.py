@@ -65,19 +65,19 @@ def change_course(course: str, change: CourseChange) -> HttpCall[Course]:
 
 
 def delete_course(course: str, wanted: DeletionRequest) -> HttpCall[DeletedData]:
-    """Delete a course, or with ``apply`` False only return what it would delete."""
+    """Delete a course; without ``apply``, only return what would be deleted."""
     return _sending(_path(course, "delete"), wanted, DeletedData)
 
 
 def delete_assignment(
     course: str, assignment: str, wanted: DeletionRequest
 ) -> HttpCall[DeletedData]:
-    """Delete an assignment, or with ``apply`` False only return what it would delete."""
+    """Delete an assignment; without ``apply``, only return what would be deleted."""
     return _sending(_path(course, "assignments", assignment, "delete"), wanted, DeletedData)
 
 
 def remove_learner(course: str, wanted: RemovalRequest) -> HttpCall[DeletedData]:
-    """Remove a learner, or with ``apply`` False only return what it would delete."""
+    """Remove a learner; without ``apply``, only return what would be deleted."""
     return _sending(_path(course, "learners", "remove"), wanted, DeletedData)
 
 
@@ -97,7 +97,7 @@ def links(course: str, wanted: LinksRequest) -> HttpCall[LinkList]:
 
 
 def revoke_links(course: str, wanted: RevokeLinksRequest) -> HttpCall[RevokedLinks]:
-    """End personal links."""
+    """Revoke personal links."""
     return _sending(_path(course, "links", "revoke"), wanted, RevokedLinks)
 
 

@@ -90,7 +90,7 @@ def own_variant(
 
 
 def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
-    """True if the assignment does not know yet what the exercise's variants may vary."""
+    """True if the assignment has not stored yet what the exercise's variants may vary."""
     # This is so if an earlier version of the program made the assignment, or if the exercise got
     # variants later.
     if terms.variants is None or exercise.vary is None:

@@ -135,7 +135,7 @@ def closed_practice(
     alike: Collection[str],
     now: datetime,
 ) -> tuple[LearnerTerms, str] | None:
-    """Return an assignment that forbids practice now, and its exercise, or None.
+    """Return an assignment that forbids practice now and the exercise in it, or None.
 
     ``alike`` are exercises with the same correct table.
     """

@@ -70,7 +70,7 @@ def written_links(links: Iterable[PersonalLink]) -> Iterator[bytes]:
 def revoke_links(
     connection: Connection, course: str, learners: Collection[str] | None, now: datetime
 ) -> int:
-    """End the links of ``learners``, or of all learners; return the number of ended links."""
+    """Revoke the links of ``learners``, or of all learners; return the number of revoked links."""
     mine = (keys.c.course == course) & keys.c.learner.is_not(None) & keys.c.revoked_at.is_(None)
     if learners is not None:
         mine &= keys.c.learner.in_(learners)

@@ -65,7 +65,7 @@ class LearnerTerms:
     choices: str | None = field(default=None, repr=False)
 
     def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
-        """The highest feedback level for the attempt with the number ``ordinal``."""
+        """The highest feedback level for the attempt with this number."""
         # Never more than the exercise allows.
         if self.feedback is None:
             return exercise.feedback_at(ordinal)

@@ -96,7 +96,7 @@ def answer(
 
 
 def content(response: httpx.Response, until: float, largest: int = LARGEST) -> bytes:
-    """Read and return the body of a response, with limits. Raises FetchError."""
+    """Read and return the body of a response, up to a size and a time. Raises FetchError."""
     if response.headers.get("content-encoding", "identity") != "identity":
         raise FetchError(say("the answer is compressed"))
     found = bytearray()

@@ -35,7 +35,7 @@ _NEEDED: Final = ("iss", "login_hint", "target_link_uri")
 
 @dataclass(frozen=True, slots=True)
 class NewLogin:
-    """A login that begins now; ``browser`` is the secret that only this browser has."""
+    """A login that begins now; ``browser`` is the secret that the browser stores."""
 
     state: str
     nonce: str

@@ -69,7 +69,7 @@ def ensure_key(connection: Connection, secret: Secret, now: datetime) -> None:
 
 
 def rotate(connection: Connection, secret: Secret, now: datetime) -> datetime:
-    """Add a key; return when it begins to sign. Only the newest older key is kept."""
+    """Add a key and return when it begins to sign; keep only one older key."""
     # If the newest key does not sign yet, nothing changes.
     ensure_key(connection, secret, now)
     waiting: datetime | None = connection.scalar(

@@ -20,7 +20,7 @@ _JWS: Final = jwt.PyJWS()
 
 
 class FormTicket(BaseModel):
-    """The common fields of all tickets."""
+    """The common fields of all tickets (signed texts in the forms of a page)."""
 
     # Each kind of ticket has its own ``iss``, so kinds cannot be confused.
 
@@ -32,7 +32,7 @@ class FormTicket(BaseModel):
 
 
 class LtiTicket(FormTicket):
-    """The ticket in a tutor's page about a course and a link to exercises.
+    """The ticket (signed text) in a tutor's page about a course and a link to exercises.
 
     ``learner`` is the learner whose attempts the tutor wants to see, or "".
     """
@@ -44,7 +44,7 @@ class LtiTicket(FormTicket):
 
 
 class LinkingTicket(FormTicket):
-    """The ticket of a deep-linking page, with the data of the platform's request.
+    """The ticket (signed text) in a page on which a tutor chooses exercises for the platform.
 
     ``data`` is sent back unchanged.
     """

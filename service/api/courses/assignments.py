@@ -1,4 +1,4 @@
-"""Routes for tutors: assignments, and extensions for single learners."""
+"""Routes for tutors: assignments, and extensions (other dates for single learners)."""
 
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated

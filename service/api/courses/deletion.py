@@ -1,4 +1,4 @@
-"""The routes that delete courses and assignments and remove learners; for tutors."""
+"""Routes for tutors: delete courses and assignments, and remove learners."""
 
 from datetime import UTC, datetime
 from http import HTTPStatus

@@ -17,7 +17,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
-    """Return the routes with which tutors make and end personal links."""
+    """Return the routes with which tutors create and revoke personal links."""
     router = APIRouter(prefix="/v1/courses", tags=["courses"])
 
     @router.post(

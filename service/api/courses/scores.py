@@ -19,7 +19,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 def routes(store: "AttemptStore | None") -> APIRouter:
-    """Return the routes of scores that go to learning platforms."""
+    """Return the routes for scores at learning platforms."""
     router = APIRouter(prefix="/v1/courses/{course_id}/scores", tags=["courses"])
 
     @router.get(

@@ -91,7 +91,7 @@ program does not know a code, show its message. Fields without a value are left 
 
 
 def example(name: str) -> Any:
-    """Return the JSON value of an example file."""
+    """Return the parsed JSON of an example file."""
     return json.loads((EXAMPLES / f"{name}.json").read_text(encoding="utf-8"))
 
 
@@ -119,8 +119,7 @@ def posting(
 ) -> dict[str, Any]:
     """Return FastAPI's arguments for a route that reads a request body with ``read_body``.
 
-    ``name`` is the prefix of the names of two example files. ``further`` are additional error
-    statuses of the route.
+    ``name`` is the prefix of the example files. ``further`` are additional error statuses.
     """
     schema = _BODY_SCHEMAS.setdefault(body, {})
     content: dict[str, Any] = {"schema": schema}

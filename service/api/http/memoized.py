@@ -1,4 +1,4 @@
-"""Results that are slow to compute: computed in a thread, one at a time, and kept in memory."""
+"""Compute slow results in a thread, one at a time, and memoize them."""
 
 import asyncio
 from collections import OrderedDict

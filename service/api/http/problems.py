@@ -32,7 +32,7 @@ Detail = Mapping[str, str | int]
 class ProblemError(Exception):
     """An error that is sent as the response; its attributes are the fields of the response.
 
-    ``name`` is the end of the problem's type. Each of ``challenges`` is sent as a header
+    ``name`` is the last part of the problem type (RFC 9457). ``challenges`` are the headers
     ``WWW-Authenticate``.
     """
 
@@ -136,7 +136,7 @@ def invalid(
 ) -> ProblemError:
     """Return the error for a request body with faults; ``details`` are pydantic's errors.
 
-    For an unknown field at the place ``at``, the error suggests a name from ``fields``.
+    ``fields`` are the names to suggest for an unknown field.
     """
     errors = [
         {

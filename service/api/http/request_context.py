@@ -31,7 +31,7 @@ _current: ContextVar[RequestContext | None] = ContextVar("request", default=None
 
 
 def begin_request(wished: str | None = None) -> RequestContext:
-    """Start a new request in the current task; ``wished`` is the id that the client wishes."""
+    """Start a new request in the current task; ``wished`` is the id that the client asks for."""
     usable = wished is not None and _WELL_FORMED.fullmatch(wished)
     context = RequestContext(wished if usable and wished else secrets.token_hex(16))
     _current.set(context)

@@ -1,7 +1,7 @@
 """Check that the caller of each request has the right that the request's route needs.
 
-While the service has no API keys, grading and recording are open, and the users of this machine
-count as tutors.
+While the service has no API keys, everybody may grade and record. The users of this machine are
+then the tutors.
 """
 
 # A request that a proxy has forwarded does not count as a tutor's, because the proxy also forwards
@@ -62,7 +62,7 @@ class Identity:
     """The caller of a request.
 
     ``refusal`` is the error to send if the key is not valid. ``in_browser`` is True if a browser
-    has added the key by itself.
+    has sent the key automatically.
     """
 
     caller: Caller
@@ -77,8 +77,8 @@ _UNKNOWN: Final = Identity(NOBODY, by_key=True)
 class Access:
     """Checks who the callers are and what they may do.
 
-    ``solutions`` and ``read_attempts`` apply while the service has no keys: True for everybody,
-    None for tutors only, False for nobody.
+    ``solutions`` and ``read_attempts`` say who sees these data while the service has no keys. True
+    means everybody, None means tutors, False means nobody.
     """
 
     def __init__(
@@ -163,12 +163,12 @@ class Access:
         return True
 
     def token(self, caller: Caller, expires_at: datetime) -> str:
-        """Return a token for the learner for whom ``caller`` acts, valid until ``expires_at``."""
+        """Return a token for the caller's learner, valid until ``expires_at``."""
         assert self.keys is not None, "only keys make tokens"
         return self.keys.token(caller, expires_at)
 
     def close(self) -> None:
-        """Record the latest uses of keys, and stop the threads."""
+        """Save when keys were last used, and stop the threads."""
         if self.keys is not None:
             self.keys.close()
 

@@ -16,7 +16,7 @@ from service.access.caller import Scope
 
 
 class Reach(Enum):
-    """The exercises that a route is about; a restricted key must include them."""
+    """Which exercises a route is about, to check keys that are for some exercises only."""
 
     PATH = "the one in the path"
     QUERY = "the one in `?exercise=`, else all"

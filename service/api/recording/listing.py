@@ -184,7 +184,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
 
 
 def course_of(caller: Caller, course: str | None) -> str | None:
-    """Return the course whose attempts the caller asks for; None for all. Raises ProblemError."""
+    """Return the course whose attempts the caller asks for, or None. Raises ProblemError."""
     if caller.course is not None and course not in (None, caller.course):
         raise access_problem("other-course")
     return caller.course or course

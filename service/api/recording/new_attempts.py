@@ -41,7 +41,7 @@ def routes(
     monitor: Monitor | None = None,
     origins: Collection[str] = (),
 ) -> APIRouter:
-    """Return the route that records attempts; ``feedback`` is the highest level of reports."""
+    """Return the route that records attempts; ``feedback`` is the highest feedback level."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.post(

@@ -23,7 +23,7 @@ NO_STORE: Final = {"Cache-Control": "no-store"}
 async def ask(
     store: "AttemptStore | None", question: Callable[["AttemptStore"], Awaitable[R]]
 ) -> R:
-    """Call ``question`` with the store of attempts, and return its result.
+    """Call ``question`` with the store of attempts; return the result.
 
     Raises ProblemError if the database is missing or does not respond.
     """

@@ -1,4 +1,4 @@
-"""The routes that tell whether the service works, for supervisors of processes."""
+"""The routes for health checks."""
 
 import asyncio
 from http import HTTPStatus
@@ -34,7 +34,7 @@ class Ready(BaseModel):
 
 
 def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
-    """Return the routes that tell whether the service works."""
+    """Return the routes for health checks."""
     router = APIRouter(tags=["health"])
     checks = None if store is None else _Checks(store)
 

@@ -1,4 +1,4 @@
-"""The routes for hints on demand, pictures of DH rules, and other valid choices of frames."""
+"""The routes for hints, pictures of DH rules, and other correct tables."""
 
 from functools import partial
 from http import HTTPStatus
@@ -48,7 +48,7 @@ def routes(
     practice: PracticeGate,
     own: OwnVariants,
 ) -> APIRouter:
-    """Return the routes for hints. They give no hints if ``feedback`` allows no messages."""
+    """Return the routes for hints; ``feedback`` is the highest feedback level of reports."""
     router = APIRouter(prefix="/v1", tags=["grading"])
     pictures = MemoizedResults()
 

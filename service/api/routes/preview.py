@@ -100,7 +100,7 @@ def _shown(body: PreviewRequest, exercise: Exercise | None, language: Language) 
 
 
 def routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
-    """Return the routes of previews."""
+    """Return the routes that preview answers."""
     router = APIRouter(prefix="/v1", tags=["preview"])
 
     @router.post(

@@ -1,4 +1,4 @@
-"""`dh-grader assignments`: check assignment files, which set several exercises together."""
+"""`dh-grader assignments`: check assignment files, each of which lists several exercises."""
 
 from collections.abc import Iterator
 from pathlib import Path

@@ -74,7 +74,7 @@ ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", 
 def database(*, create: bool = False) -> Iterator[Engine]:
     """Open the database of this installation; exit if it cannot be used.
 
-    ``create`` allows it to make a missing database.
+    With ``create``, a missing database is created.
     """
     url = load_settings().database
     if url is None:

@@ -274,7 +274,7 @@ def command(
 def chosen_assignment(
     exercise: str | None, file: Path | None, part: str | None, find: Callable[[str], SetExercise]
 ) -> Assignment:
-    """Return the assignment that the options name; exit if they contradict each other."""
+    """Return the assignment that the options name; exit if the options contradict each other."""
     if (exercise is None) == (file is None):
         give_up(say("Name what is answered: --exercise ID, or --assignment F instead."))
     if file is not None:

@@ -115,7 +115,7 @@ def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: in
 
 
 def work(exercise_id: str, course: str | None) -> None:
-    """Regrade attempts until the queue is empty, as the main function of a process."""
+    """Regrade attempts until the queue is empty; this is the main function of a process."""
     settings = load_settings()
     assert settings.database is not None
     try:

@@ -17,7 +17,7 @@ _IN_MEMORY: Final = 1024 * 1024
 
 
 def console_of(output: Path | None) -> Console:
-    """Return the console for reports: the screen, or 80 columns without colour."""
+    """Return the console that lays out reports; a file has 80 columns and no colour."""
     if output is None:
         return stdout()
     page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
@@ -27,9 +27,9 @@ def console_of(output: Path | None) -> Console:
 def write(
     pieces: Iterable[bytes], output: Path | None, *, at_once: bool, quiet: bool = False
 ) -> None:
-    """Write the pieces to the file ``output``, or without it, to the screen.
+    """Write the pieces to the file ``output``, or to the screen if ``output`` is None.
 
-    With ``at_once``, the screen shows nothing before the last piece exists.
+    With ``at_once``, the screen shows all pieces at the end.
     """
     # A file appears only when it is complete, and a pipe never gets an incomplete document.
     if output is not None:

@@ -9,7 +9,7 @@ from service.translations import say
 
 
 def require_no_input(output: Path, read: Iterable[Path]) -> None:
-    """Exit if the output file would replace a file that is read."""
+    """Exit if the output file would replace an input file."""
     for path in read:
         if path.is_file() and output.exists() and path.samefile(output):
             give_up(

@@ -1,4 +1,4 @@
-"""Changes and deletions in courses by the command line."""
+"""Change and delete courses from the command line."""
 
 from collections.abc import Callable, Mapping
 from typing import Final, TypeVar
@@ -30,7 +30,7 @@ _COUNTS: Final[Mapping[str, str]] = {
 def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
     """Run ``work`` in a transaction and return its result; exit on an error.
 
-    ``create`` allows it to make a missing database.
+    With ``create``, a missing database is created.
     """
     with database(create=create) as engine:
         try:

@@ -31,7 +31,7 @@ def journal_beside(output: Path | None) -> Path:
 
 
 def digest(content: Sequence[object]) -> str:
-    """The SHA-256 digest of the content, written as JSON."""
+    """Return the SHA-256 digest of the JSON text of ``content``."""
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 

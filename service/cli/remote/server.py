@@ -51,7 +51,7 @@ def _key(settings: Settings) -> str | None:
 
 
 def set_exercise(exercise_id: str, *, server: "GraderClient | None") -> SetExercise:
-    """Return the exercise from the server, or without a server, from this installation.
+    """Return the exercise from the server, or from this installation if ``server`` is None.
 
     Raises UnknownExerciseError.
     """

@@ -34,9 +34,9 @@ class _Signals:
 
 @contextmanager
 def interruptible() -> Iterator[Callable[[], None]]:
-    """Let SIGTERM end this process like Ctrl-C, after files and processes are cleaned up.
+    """Clean up files and processes before SIGTERM or Ctrl-C ends this process.
 
-    Yields a function to call between two pieces of work.
+    Yields a function that ends the process after a signal. Call it between two pieces of work.
     """
     # The function ends the process if the exception of a signal was lost.
     signals = _Signals()

@@ -34,7 +34,7 @@ class UnusableShardsError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of ``count`` shares of the submissions; ``number`` begins with 1."""
+    """One of ``count`` sets of submissions; ``number`` begins with 1."""
 
     number: int
     count: int
@@ -58,7 +58,7 @@ def shard_of(text: str) -> Shard:
 
 @dataclass(frozen=True, slots=True)
 class ShardHeader:
-    """The first line of a shard's file.
+    """The first line of a file with the results of one shard (subset of the submissions).
 
     ``exercises`` is the number of lines for each submission. ``run`` is a hash of the names of all
     submissions and exercises.
@@ -74,7 +74,7 @@ class ShardHeader:
 def with_header(
     lines: Iterable[bytes], shard: Shard, submissions: Sequence[str], exercises: Sequence[str]
 ) -> Iterator[bytes]:
-    """Yield the header of a shard, then its lines.
+    """Yield the header of a shard's file, then the lines.
 
     ``submissions`` and ``exercises`` are all names in the run, not only in this shard.
     """

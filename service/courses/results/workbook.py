@@ -21,7 +21,7 @@ _WIDTHS: Final = (14, 28, 30)
 
 
 class HandIns(NamedTuple):
-    """The number of a learner's attempts at an exercise, and the moment of the last attempt."""
+    """The number of a learner's attempts at an exercise, and the time of the last attempt."""
 
     number: int
     last: datetime

@@ -22,7 +22,7 @@ _MOST: Final = 200
 
 @dataclass(frozen=True, slots=True)
 class MissingReport:
-    """A report that did not reach the platform. Without ``next_try_at``, no more tries follow."""
+    """A report that did not reach the platform; ``next_try_at`` is None after the last try."""
 
     learner: str
     name: str

@@ -45,7 +45,7 @@ class Invitation:
 
     @property
     def is_development(self) -> bool:
-        """True if the address of this service is local, so that the platform may be local, too."""
+        """True if the address of this service is local, as in development."""
         return any(self.address.startswith(f"http://{host}") for host in LOCAL_HOSTS)
 
 

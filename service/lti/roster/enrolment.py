@@ -28,7 +28,7 @@ class RosterError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class RosterQuestion:
-    """The data for reading a roster: the course's context, its platform, and our signing key."""
+    """The data for reading a course's roster from its platform."""
 
     context: Row[Any]
     registration: Registration
@@ -38,7 +38,10 @@ class RosterQuestion:
 
 @dataclass(frozen=True, slots=True)
 class RosterChange:
-    """The changes of a course by a roster; ``learners`` is the number of learners in the roster."""
+    """How many learners a roster has added, removed and renamed in a course.
+
+    ``learners`` is the number of learners in the roster.
+    """
 
     learners: int
     added: int

@@ -1,1 +1,1 @@
-"""HTTP connections under limits."""
+"""HTTP connections with limits."""

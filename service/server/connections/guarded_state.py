@@ -33,7 +33,7 @@ class GuardedState(ServerState):
     def refusal(
         self, problem: ProblemError, path: str, origin: str, headers: Headers | None = None
     ) -> Response:
-        """Count a refused request from a page of ``origin``, and return the response."""
+        """Count a refused request from a page of ``origin``, and return the error response."""
         self.note_refusal(str(problem.status.value))
         answer = refusal_response(problem, path, headers)
         answer.headers.update(cors_headers(self._origins, origin))

@@ -37,7 +37,7 @@ class ConnectionCounts:
 
     @classmethod
     def of(cls, number: int) -> "ConnectionCounts":
-        """Return the counts for ``number`` processes."""
+        """Return new counts for ``number`` processes."""
         return cls(multiprocessing.get_context("spawn").RawArray("i", [_AWAY] * number))
 
     @property
@@ -89,7 +89,7 @@ class Acceptor:
         self._port.counts.stop_listening(self._port.index)
 
     def publish_count(self) -> int:
-        """Publish how many connections this process has; return the least number of another."""
+        """Publish the number of own connections; return the smallest number of other processes."""
         here, counts = self._port.index, self._port.counts.numbers
         counts[here] = self._count()
         return min((n for index, n in enumerate(counts) if index != here), default=_AWAY)

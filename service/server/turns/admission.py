@@ -80,7 +80,7 @@ class _Lane:
 
 
 class FairAdmission:
-    """Passes complete requests to the application, in fair turns between clients."""
+    """Middleware that shares the processor fairly between the requests of clients."""
 
     def __init__(self, app: ASGIApp) -> None:
         self.app = app

@@ -130,7 +130,7 @@ class Metrics:
         self._admission: FairAdmission | None = None
 
     def fair_admission(self, app: ASGIApp) -> ASGIApp:
-        """Wrap the application in a FairAdmission, and count its waiting requests."""
+        """Wrap the application in a FairAdmission (a scheduler), and count waiting requests."""
         self._admission = FairAdmission(app)
         return self._admission
 
