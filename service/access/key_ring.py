@@ -1,4 +1,4 @@
-"""The keys of the database, memoized for a few seconds."""
+"""The API keys of the database, memoized for a few seconds."""
 
 import asyncio
 from collections import OrderedDict
@@ -45,7 +45,7 @@ class _Found:
 
 
 class KeyRing:
-    """The keys of one database. Known keys work while the database is down."""
+    """The API keys of one database. Known keys work while the database is down."""
 
     def __init__(
         self, engine: Engine, secret: Secret | None, seconds: float = MEMOIZED_SECONDS

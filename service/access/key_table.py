@@ -22,7 +22,7 @@ def any_key(connection: Connection) -> bool:
 
 def fits(connection: Connection, secret: Secret) -> bool:
     """True if this secret belongs to the keys in the database."""
-    # Also True if the database has recorded no secret.
+    # The result is also True if the database has recorded no secret.
     return connection.scalar(select(key_secrets.c.digest)) in (None, secret.check)
 
 

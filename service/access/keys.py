@@ -63,7 +63,7 @@ WRONG_SECRET: Final = say(
 
 
 class Keys(Protocol):
-    """The keys of an installation."""
+    """The API keys of an installation."""
 
     async def are_needed(self) -> bool:
         """True if any key exists."""

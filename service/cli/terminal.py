@@ -33,7 +33,7 @@ class _Terminal(Console):
 
 def stdout() -> Console:
     """Return a console for standard output."""
-    # Without a terminal and without COLUMNS, it has 80 columns.
+    # Without a terminal and without COLUMNS, the console has 80 columns.
     width = None if sys.stdout.isatty() or "COLUMNS" in os.environ else 80
     return _Terminal(file=sys.stdout, width=width, highlight=False, markup=False, soft_wrap=False)
 

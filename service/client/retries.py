@@ -13,10 +13,10 @@ class Retries:
     The waits double from ``first_wait`` up to ``longest_wait``.
     """
 
-    # By default, they last 15 seconds in all, so that a service can restart meanwhile. Each wait is
-    # shortened at random by up to half, so that clients that failed together do not retry together.
-    # A wait that the service asks for is added; if it is longer than ``longest_wait``, the client
-    # gives up.
+    # By default, the waits last 15 seconds in all, so that a service can restart meanwhile. Each
+    # wait is shortened at random by up to half, so that clients that failed together do not retry
+    # together. A wait that the service asks for is added; if it is longer than
+    # ``longest_wait``, the client gives up.
 
     number: int = 5
     first_wait: float = 0.5

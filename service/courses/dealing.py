@@ -90,7 +90,7 @@ def own_variant(
 
 
 def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
-    """True if the assignment has not stored yet what the exercise's variants may vary."""
+    """True if the rules by which the exercise varies are not stored in the assignment yet."""
     # This is so if an earlier version of the program made the assignment, or if the exercise got
     # variants later.
     if terms.variants is None or exercise.vary is None:
@@ -106,9 +106,9 @@ def pin_choices(
     *,
     renew: bool = False,
 ) -> None:
-    """Store what the variants of an assignment's exercises may vary. Raises CourseError.
+    """Store the rules by which the exercises of an assignment vary. Raises CourseError.
 
-    Stored data stay, unless ``renew`` is True.
+    Rules that are stored already stay, unless ``renew`` is True.
     """
     # Thus a changed exercise file changes no variant.
     row = assignment_row(connection, course, assignment)

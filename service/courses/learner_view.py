@@ -44,7 +44,7 @@ class _Done:
 
     @property
     def whole_share(self) -> float:
-        # Before a deduction for lateness.
+        # The share of the points before a deduction for lateness.
         done = self.attempt
         if done.awarded is not None:
             return self.share

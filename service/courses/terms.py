@@ -66,7 +66,7 @@ class LearnerTerms:
 
     def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
         """The highest feedback level for the attempt with this number."""
-        # Never more than the exercise allows.
+        # The level is never higher than the exercise allows.
         if self.feedback is None:
             return exercise.feedback_at(ordinal)
         most = min(exercise.feedback_by_attempt, key=list(FeedbackLevel).index)

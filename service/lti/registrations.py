@@ -155,7 +155,7 @@ class Registration:
         )
 
     def is_own(self, address: str) -> bool:
-        """True if an address is usable and belongs to the platform."""
+        """True if a usable address belongs to the platform."""
         origin = origin_of(address)
         if origin in self.frame_origins:
             return True
@@ -248,7 +248,7 @@ def deployments_of(connection: Connection, registration_id: str) -> list[str]:
 
 def remove_registration(connection: Connection, registration_id: str) -> None:
     """Remove a registration. Raises RegistrationError."""
-    # Its courses and their attempts stay.
+    # The courses of the registration and their attempts stay.
     registration(connection, registration_id)
     mine = select(tables.contexts.c.number).where(tables.contexts.c.registration == registration_id)
     items = select(tables.line_items.c.number).where(tables.line_items.c.context.in_(mine))

@@ -1,4 +1,4 @@
-"""Code that the routes of courses share: parameters, options, and access to the store."""
+"""Helper functions for the routes of courses."""
 
 from collections.abc import Callable
 from http import HTTPStatus
@@ -53,7 +53,7 @@ def changing(
 
 
 async def read(store: "AttemptStore | None", work: "Callable[[Connection], R]") -> R:
-    """Call ``work``, which only reads from the database, and return its result.
+    """Call ``work`` to read from the database, and return the result.
 
     Raises ProblemError.
     """
@@ -61,7 +61,7 @@ async def read(store: "AttemptStore | None", work: "Callable[[Connection], R]") 
 
 
 async def write(store: "AttemptStore | None", work: "Callable[[Connection], R]") -> R:
-    """Call ``work`` in one transaction of the database, and return its result.
+    """Call ``work`` in a transaction of the database, and return the result.
 
     Raises ProblemError.
     """

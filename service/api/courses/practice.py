@@ -114,7 +114,7 @@ class PracticeGate:
         return ProblemError(HTTPStatus.FORBIDDEN, detail, "no-practice", title)
 
     def _alike(self, exercise: str) -> set[str]:
-        # The ids of all exercises with the same correct table as this exercise.
+        # Return the ids of all exercises with the same correct table as this exercise.
         reference = getattr(self._catalogue.get(exercise), "reference", None)
         return {
             name

@@ -160,8 +160,8 @@ class _Attempting:
         return earlier
 
     def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
-        # None if the attempt is not allowed, is recorded already, or must be graded with another
-        # feedback level first.
+        # Return None if the attempt is not allowed, is recorded already, or must be graded with
+        # another feedback level first.
         if standing.earlier is not None:
             return None
         try:

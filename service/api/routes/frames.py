@@ -179,7 +179,7 @@ def _refused(place: Location, message: Sentence) -> ProblemError:
 
 
 def _amounts(body: FramesRequest, scope: DrawingScope, numbers: Mapping[str, float]) -> Numbers:
-    # An array of shape (poses, joints).
+    # Return an array of shape (poses, joints).
     if body.joints is None:
         return np.array([[numbers[joint.variable] for joint in scope.joints]])
     for i, values in enumerate(body.joints):
@@ -351,5 +351,5 @@ def _configuration(shown: Configuration, frames: Matrices) -> DrawnConfiguration
 
 
 def _plain(numbers: Numbers) -> Any:
-    # Rounded to 12 decimals and without a negative 0.
+    # The numbers are rounded to 12 decimals, and have no negative 0.
     return (np.round(numbers, 12) + 0.0).tolist()

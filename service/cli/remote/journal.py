@@ -86,7 +86,7 @@ class Journal:
 
 
 def _places(path: Path) -> list[tuple[str, int]]:
-    # The digests, and the offsets of their lines; other lines are ignored.
+    # Return the digests, and the offsets of their lines; other lines are ignored.
     found = []
     try:
         with path.open("rb") as file:

@@ -38,7 +38,7 @@ def interruptible() -> Iterator[Callable[[], None]]:
 
     Yields a function that ends the process after a signal. Call it between two pieces of work.
     """
-    # The function ends the process if the exception of a signal was lost.
+    # Without it, the process would go on if the exception of a signal was lost.
     signals = _Signals()
     with _handled(signals.receive):
         try:

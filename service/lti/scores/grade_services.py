@@ -142,7 +142,7 @@ class GradeServices:
 
 def scores_address(url: str) -> str:
     """Return the address for the scores of a line item (gradebook column)."""
-    # Its query string stays at the end.
+    # The query string of the line item's address stays at the end.
     parts = urlsplit(url)
     return urlunsplit(parts._replace(path=f"{parts.path.rstrip('/')}/scores"))
 

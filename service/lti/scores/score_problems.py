@@ -76,7 +76,7 @@ class ThisLaterError(ScoreError):
 
 
 def told(stored: str | None, language: Language = ENGLISH, *, of_report: bool = False) -> str:
-    """Return the sentence of a stored problem, or "".
+    """Return the sentence that describes a stored problem, or "".
 
     ``of_report`` is True for a report on files, False for a score.
     """

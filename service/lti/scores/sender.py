@@ -142,7 +142,7 @@ class ScoreSender:
         return url
 
     def _rest(self, taken: TakenScore, error: LaterError) -> None:
-        # At least as long as the platform asks, up to a limit.
+        # The pause is at least as long as the platform asks, up to a limit.
         name, now = taken.registration.id, self.now()
         before = self._pauses.get(name)
         failures = 0 if before is None else before.failures

@@ -80,7 +80,7 @@ class OpenConnections:
             connection.unfinished = 0
 
     def set_unfinished(self, connection: OpenConnection, size: int) -> None:
-        """Set the number of a connection's unprocessed bytes; close others beyond the limit."""
+        """Set the size of a connection's unfinished request; enforce the limit of all sizes."""
         if connection not in self._connections:
             return
         self._unfinished += size - connection.unfinished
