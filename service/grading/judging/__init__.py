@@ -1,1 +1,1 @@
-"""Decide what is right or wrong, by numbers; messages are made elsewhere."""
+"""Decide which answers are right, by comparing numbers."""

@@ -1,9 +1,7 @@
-"""Find the content cells of a correct answer: the cells that earn points.
+"""Find the content cells of a correct answer: the cells that need knowledge and earn points.
 
-Most cells of a DH table are 0, and every row has its joint variable in the usual place. An answer
-with nothing else is called lazy; it needs no knowledge of geometry. The content cells are those
-cells of the correct answer that differ from the lazy answer. In these functions, ``known`` is a
-mask of these cells.
+An answer with only zeros and joint variables is called lazy. A content cell is a cell in which the
+correct answer differs from the lazy one. ``known`` is a mask of these cells.
 """
 
 from collections.abc import Sequence
@@ -26,11 +24,11 @@ KnownCells = NDArray[np.bool_]
 def known_cells(
     right: Numbers, lazy: ArrayLike, scale: ArrayLike = 1.0, angle: ArrayLike = False
 ) -> KnownCells:
-    """Return a mask ``(...)`` of the cells in which the correct answer differs from the lazy one.
+    """Return a mask of the cells in which the correct answer differs from the lazy one.
 
-    ``right`` is ``(..., samples)``. ``scale`` is the unit of the tolerance; ``angle`` is true for
-    angles.
+    A lazy answer needs no knowledge. ``scale`` is the unit of the tolerance.
     """
+    # ``right`` is ``(..., samples)``, the result ``(...)``; ``angle`` is true for angles.
     error = np.abs(difference(right, np.asarray(lazy), angle)).max(axis=-1)
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
 
@@ -41,38 +39,32 @@ def of_rows(
     most: int | None = None,
     usual: tuple[int, int] | None = None,
 ) -> Content:
-    """Return the content cells of a table or of screw axes: ``known`` ``(rows, cells)``.
+    """Return the content cells (those that earn points) of a table or of screw axes.
 
-    Each row is also worth something besides its content cells. ``Content`` explains ``most`` and
-    ``usual``.
+    ``Content`` explains ``most`` and ``usual``.
     """
+    # ``known`` is ``(rows, cells)``. Each row is also worth something besides its content cells.
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
     return Content(rows, groups, besides=True, most=most, usual=usual)
 
 
 def of_one_row(known: KnownCells) -> Content:
-    """Return the content cells of a single row: ``known`` ``(cells,)``, or all cells if none."""
+    """Return the content cells (those that earn points) of a single row."""
     return Content(_rows(_all_if_none(known)[None]), ((0,) * len(known),))
 
 
 def of_list(known: KnownCells, reference: KnownCells | None = None) -> Content:
-    """Return the content cells of a list of single values: ``known`` ``(values,)``.
-
-    If no value is known, all values are content cells. At most as many of them count as
-    ``reference`` marks.
-    """
+    """Return the content cells (those that earn points) of a list of single values."""
+    # At most as many values count as ``reference`` marks.
     return Content(
         _rows(_all_if_none(known)[:, None]), ((0,),) * len(known), most=_count(reference)
     )
 
 
 def of_rigid(right: Numbers, part: PartSpec, grading: Grading) -> Content:
-    """Return the content cells of a rotation ``(3, 3, samples)`` or transform ``(4, 4, samples)``.
-
-    The content cells are the entries that differ from the identity. If there are such entries
-    both in the rotation and in the position, each of the two is worth one half.
-    """
+    """Return the content cells of a rotation or transform: the entries that earn points."""
+    # If both the rotation and the position have content cells, each of the two is worth one half.
     exercise = grading.exercise
     if grading.following:
         return _of_rigid(right, exercise.length_scale)
@@ -81,8 +73,7 @@ def of_rigid(right: Numbers, part: PartSpec, grading: Grading) -> Content:
 
 @dataclass(frozen=True)
 class _Asked:
-    """The right answer to a part, as a cache key that does not depend on the samples."""
-
+    # A cache key that does not depend on the samples.
     version: str
     part: str
     right: Numbers = field(compare=False)
@@ -103,10 +94,8 @@ def _of_rigid(right: Numbers, length_scale: float) -> Content:
 
 
 def of_matrix(right: Numbers, scale: Numbers) -> Content:
-    """Return the content cells of any other matrix ``(rows, columns, samples)``.
-
-    The zero matrix and the identity are both lazy answers, so a content cell differs from both.
-    """
+    """Return the content cells (those that earn points) of a matrix that is not a pose."""
+    # The zero matrix and the identity are both lazy, so a content cell differs from both.
     known = known_cells(right, 0.0, scale)
     if known.shape[0] == known.shape[1]:
         known &= known_cells(right, np.eye(len(right))[..., None], scale)
@@ -116,11 +105,8 @@ def of_matrix(right: Numbers, scale: Numbers) -> Content:
 def of_links(
     right: Matrices, reference: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
 ) -> Content:
-    """Return the content cells of link transforms ``(links, samples, 4, 4)``, with four rows each.
-
-    The lazy link transform of a joint contains only the joint's motion. ``reference`` are the link
-    transforms of the reference: at most as many cells count as these have content cells.
-    """
+    """Return the content cells of link transforms: the entries that earn points."""
+    # At most as many cells count as the ``reference`` links have content cells.
     known = _differs_from_motion(right, joints, samples, scale)
     most = _differs_from_motion(reference, joints, samples, scale)
     groups = tuple((i // 4,) * 4 for i in range(4 * len(right)))
@@ -133,7 +119,6 @@ def of_links(
 def _differs_from_motion(
     links: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
 ) -> KnownCells:
-    """Return a mask ``(links, 4, 4)`` of the entries that differ from the joint's motion alone."""
     lazy = np.tile(np.eye(4), (len(links), samples.count, 1, 1))
     for link, joint in zip(lazy, joints, strict=False):
         q = samples.values[joint.variable]
@@ -158,7 +143,6 @@ def _rows(known: KnownCells) -> tuple[tuple[bool, ...], ...]:
 
 
 def _all_if_none(known: KnownCells) -> KnownCells:
-    """Return ``known``, or a mask of all cells if ``known`` marks none."""
     return known if known.any() else np.ones_like(known)
 
 

@@ -40,9 +40,9 @@ def judged_in_convention(
 ) -> tuple[Convention, Judgement, tuple[Finding, ...]]:
     """Return the table's convention, the judgement in it, and findings on the convention.
 
-    If the part allows both conventions and the answer names none, choose the one in which fewer
-    cells are wrong. If the counts are equal, choose the reference's convention.
+    If both conventions are allowed, the one with fewer wrong cells is chosen.
     """
+    # If the counts are equal, the reference's convention is chosen.
     if part.convention == "either" and table.convention is None:
         convention, judgement = _fitting(part, table, grading)
         return convention, judgement, (_taken(convention),)
@@ -65,10 +65,6 @@ def _fitting(
 
 
 def _misfit(judgement: Judgement) -> int:
-    """Return the number of wrong, missing and extra cells.
-
-    The number is one larger if the table does not lead to the tool frame.
-    """
     return judgement.wrong + len(COLUMNS) * len(judgement.extra) + (not judgement.reached)
 
 
@@ -87,7 +83,6 @@ def _taken(convention: Convention) -> Finding:
 
 
 def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...]:
-    """Return a finding if the answer names another convention than the part asks for."""
     if table.convention in (None, asked):
         return ()
     if asked is Convention.STANDARD:

@@ -14,7 +14,7 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
     """Return the values of the formulas in the part's file, ``(rows, columns, SAMPLES)``.
 
-    Return None if the file has no formulas; the correct answer then follows from the robot.
+    Return None if the file has no formulas.
     """
     grid = grading.exercise.formulas.get(part.id)
     return None if grid is None else grid_values(grid, grading.samples.values, SAMPLES)
@@ -45,18 +45,14 @@ def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matr
 
 
 def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
-    """Return the expected pose ``(SAMPLES, 4, 4)``, from the robot or from an earlier answer.
-
-    The student's chain is used if the part is judged by the student's earlier answer, and if the
-    chain has both frames that the part asks for.
-    """
+    """Return the expected pose ``(SAMPLES, 4, 4)``, from the robot or from an earlier answer."""
+    # The student's chain must have both frames that the part asks for.
     chain, exercise, samples = grading.student_chain, grading.exercise, grading.samples
     if chain is None or not grading.following:
         return robot_pose(part, exercise, samples)
     tool = len(chain.frames) - 1
 
     def place(frame: int | str) -> int:
-        """Return the number of links from the base to the frame."""
         if isinstance(frame, str):
             return {"base": 0, "tool": tool}[frame]
         return frame - exercise.joints[0].index + 1

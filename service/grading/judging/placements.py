@@ -76,10 +76,7 @@ class PlacedFrame:
 
 @dataclass(frozen=True, slots=True)
 class JudgedFrames:
-    """The correct places of the frames, and the Match of each cell ``(frames, 6)``.
-
-    A cell that was not read has the Match UNDEFINED.
-    """
+    """The correct places of the frames, and the comparison result of each cell ``(frames, 6)``."""
 
     places: list[RightPlace]
     found: NDArray[np.int_]
@@ -137,10 +134,6 @@ def placed_frame(frame: StudentFrame, home: Samples) -> PlacedFrame:
 
 
 def _direction(direction: Direction, home: Samples) -> tuple[Numbers | None, float]:
-    """Return the unit vector ``(SAMPLES, 3)`` and its rounding error.
-
-    A vector without a direction is NaN.
-    """
     values = direction.values(home)
     if values is None:
         return None, 0.0
@@ -158,14 +151,14 @@ def ways_to_judge(
     written: Sequence[StudentFrame] | None,
     home: Samples,
 ) -> list[JudgedFrames]:
-    """Judge frames in all sensible ways, each frame relative to its neighbour as placed.
+    """Judge placed frames in several ways, which differ in the axes of sliding joints.
 
-    The axis of a sliding joint has no fixed place. The first way puts each sliding axis through the
-    origin that the student chose, if the rules allow that. If cells are then wrong, the other ways
-    leave some sliding axes where the figure draws them, or put one sliding axis where the
-    neighbouring frames need it. So one wrong origin need not make another frame wrong. ``written``
-    are the entries of the student, which may be rounded.
+    ``written`` are the student's entries, which may be rounded.
     """
+    # The axis of a sliding joint has no fixed place. The first way puts each sliding axis through
+    # the origin that the student chose, if the rules allow that. If cells are then wrong, the other
+    # ways leave some sliding axes where the figure draws them, or put one sliding axis where the
+    # neighbouring frames need it. So one wrong origin need not make another frame wrong.
     everywhere = (True,) * len(robot.asked)
     first = _judged(robot, placed, written, home, everywhere)
     moved = [i for i, place in enumerate(first.places) if place.own is not robot.asked[i].own]
@@ -190,11 +183,8 @@ def ways_to_judge(
 def _axis_by_others(
     i: int, robot: FramesAtHome, placed: Sequence[PlacedFrame], place: RightPlace
 ) -> AxisLine | None:
-    """Return the axis of a sliding joint, moved to where the student's x axes meet it.
-
-    A sliding joint determines only the direction of its axis. Return None if the student's origin
-    is on the axis as drawn, or if no x axis determines where the axis is.
-    """
+    # The axis is moved to where the student's x axes meet it. None if the student's origin is on
+    # the axis as drawn, or if no x axis determines where the axis is.
     asked, own = robot.asked[i], placed[i]
     if not asked.slides or own.point is None:
         return None

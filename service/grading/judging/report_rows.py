@@ -1,4 +1,4 @@
-"""Make report rows from entries and their Matches with the expected values."""
+"""Make report rows from entries and the results of their comparison."""
 
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
@@ -28,9 +28,8 @@ def entry_rows(
     labels: Sequence[str] | None = None,
     remarks: Mapping[int, Finding] | None = None,
 ) -> tuple[RowReport, ...]:
-    """Return report rows of entries; ``found`` is each entry's Match, ``(rows, columns)``.
+    """Return report rows of entries; ``found`` has the comparison result of each entry.
 
-    Rows and columns have the labels "1", "2" …, unless ``labels`` are given for the rows.
     ``remarks`` are findings on whole rows.
     """
     names = labels or [str(i + 1) for i in range(len(entries))]
@@ -55,7 +54,7 @@ def entry_rows(
 def value_rows(
     student: StudentValues, found: NDArray[np.int_], slips: Slips, grading: Grading
 ) -> tuple[RowReport, ...]:
-    """Return a report row for each value; ``found`` is the Match of each value, ``(n,)``."""
+    """Return a report row for each value; ``found`` has the comparison results ``(n,)``."""
     column = [[entry] for entry in student.entries]
     return entry_rows(column, found[:, None], slips, grading)
 
@@ -67,7 +66,6 @@ def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
 
 @lru_cache(maxsize=64)
 def _right(column: str) -> CellReport:
-    """Return the report on a correct entry, without a message."""
     return CellReport(column, Verdict.CORRECT)
 
 
@@ -78,7 +76,7 @@ def right_row(label: str, columns: tuple[str, ...]) -> RowReport:
 
 
 def is_right_throughout(entries: Sequence[Entry], found: list[int], grading: Grading) -> bool:
-    """True if a row is correct and has no messages; ``found`` are the Matches of its entries."""
+    """True if a row is correct and has no messages; ``found`` has the comparison results."""
     if grading.echo or found.count(_EXACT) < len(found):
         return False
     return all(entry.expression is not None and not entry.findings for entry in entries)
@@ -89,9 +87,9 @@ def cell_report(
 ) -> CellReport:
     """Return the report on an entry; ``column`` is the label of the cell.
 
-    ``match`` is the Match of the entry. If a wrong entry has no ``slip``, a message on the part
-    explains it.
+    ``match`` is the result of comparing the entry.
     """
+    # If a wrong entry has no ``slip``, a message on the part explains it.
     verdict, findings = entry.verdict, entry.findings
     if match == _EXACT and not findings and entry.expression is not None and not grading.echo:
         return _right(column)
@@ -105,7 +103,6 @@ def cell_report(
 
 
 def _read(entry: Entry, grading: Grading) -> ReadEntry | None:
-    """Return the entry as it was read, if the submission asks for that."""
     if not grading.echo or entry.expression is None:
         return None
     return ReadEntry(entry.expression.text(), entry.expression.latex())

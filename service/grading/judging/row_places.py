@@ -1,4 +1,4 @@
-"""The messages on rows that are graded under another number, missing, or too many."""
+"""Messages on missing rows, extra rows, and rows that are graded under another number."""
 
 from functools import reduce
 from typing import Final

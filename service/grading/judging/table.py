@@ -1,9 +1,7 @@
 """Judge a submitted table cell by cell.
 
-If the frames are given, the submitted rows are paired with the rows of the reference. If the frames
-are free, the submitted rows are paired with the joints, and the valid table nearest to them is
-found (``own_frames``). The submitted cells are then compared with the cells of the reference or of
-the nearest table.
+It is compared with the reference table. If the student chose the frames, it is compared with the
+nearest table that describes the robot (``own_frames``).
 """
 
 import math
@@ -53,10 +51,10 @@ _ARE_ANGLES: Final = tuple(IS_ANGLE.tolist())
 class JudgedRow:
     """A submitted row (None if missing), and its correct values ``(4, SAMPLES)``.
 
-    ``shared`` is true if the axis of the row is parallel to a neighbouring axis, so that offsets
-    along both axes add up.
+    ``shared`` is true if the axis of the row is parallel to a neighbouring axis.
     """
 
+    # Then offsets along both axes add up.
     label: str
     joint: Joint | None
     row: StudentRow | None
@@ -66,17 +64,15 @@ class JudgedRow:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A submitted table compared with the correct table, in the frames in which it is judged.
+    """A submitted table compared with the correct table, in the frames in which it is judged."""
 
-    ``matches`` is the Match of each cell, ``(rows, 4)``; no cell of a missing row matches.
-    ``roles`` are the roles of the submitted rows if the student chose the frames. ``departures`` is
-    the cost of these frames, infinite if the intended frames are unknown. ``extra`` are the rows
-    without a counterpart. ``in_place`` is true if each row was compared with the reference's row of
-    the same place. ``reached`` is true if the rows lead to the given tool frame. ``lost`` is the
-    number of units that the wrong cells lose, in the frames in which they lose the fewest; a single
-    wrong cell loses one unit.
-    """
-
+    # ``matches`` is the Match of each cell, ``(rows, 4)``; no cell of a missing row matches.
+    # ``roles`` are the roles of the submitted rows if the student chose the frames. ``departures``
+    # is the cost of these frames, infinite if the intended frames are unknown. ``extra`` are the
+    # rows without a counterpart. ``in_place`` is true if each row was compared with the reference's
+    # row of the same place. ``reached`` is true if the rows lead to the given tool frame. ``lost``
+    # is the number of units that the wrong cells lose, in the frames in which they lose the fewest;
+    # a single wrong cell loses one unit.
     rows: tuple[JudgedRow, ...]
     matches: NDArray[np.int_]
     roles: tuple[Role, ...] = ()
@@ -130,7 +126,7 @@ class Judgement:
 def judged_table(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge a student's table by the reference, or by the valid table nearest to the student's."""
+    """Compare a student's table with the reference, or with the nearest valid table."""
     reference = grading.exercise.robot.tables.get(convention)
     if reference is None:
         return _judged_by_nearest(part, rows, convention, grading)
@@ -151,7 +147,6 @@ def judged_table(
 def _plainly_differs(
     rows: tuple[StudentRow, ...], reference: ReferenceTable, grading: Grading
 ) -> bool:
-    """True if the first sample shows that the table differs from the reference table."""
     expected = reference_values(reference, grading.samples)
     if len(rows) != len(expected):
         return False
@@ -169,7 +164,6 @@ def _plainly_differs(
 def _judged_by_reference(
     rows: tuple[StudentRow, ...], reference: ReferenceTable, grading: Grading
 ) -> Judgement:
-    """Judge the table by the reference's rows."""
     expected = reference_values(reference, grading.samples)
     is_in_place = len(rows) == len(expected)
     if not is_in_place:
@@ -189,7 +183,6 @@ def _judged_by_reference(
 def _paired(
     rows: tuple[StudentRow, ...], expected: Table, grading: Grading
 ) -> list[tuple[int | None, int | None]]:
-    """Pair submitted rows with expected rows, in order if there are equally many of both."""
     if len(rows) == len(expected):
         return [(i, i) for i in range(len(rows))]
     actual = values_of(rows)[:, None]
@@ -200,7 +193,6 @@ def _paired(
 def _judged_by_nearest(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge the table by the valid table nearest to it."""
     roles, nearest = best_roles(part, rows, convention, grading)
     judgement = _judged_by(nearest, roles, convention, grading)
     if not np.isfinite(values_of(rows)).all():
@@ -220,11 +212,8 @@ def _judged_as_read(
     convention: Convention,
     grading: Grading,
 ) -> Judgement:
-    """Judge a table with unread cells: cells that are empty or could not be read.
-
-    If some values in the unread cells make the table valid, no other cell is wrong. There are no
-    remarks on the frames, which are unknown.
-    """
+    # If some values in the unread cells make the table valid, no other cell is wrong. There are no
+    # remarks on the frames, which are unknown.
     if judgement.wrong_as_read or len(judgement.rows) != len(rows):
         roles = roles_in(rows, convention, grading, in_order=True)
         valid = completed(roles, convention, freedom_of(part), grading)
@@ -265,7 +254,7 @@ _UNREACHED = _TOOL_NOT_REACHED.finding(
 def judged_by_intended(
     intended: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge the table by the ``intended`` table ``(rows, 4, SAMPLES)``; no row is missing."""
+    """Compare the table with the ``intended`` table ``(rows, 4, SAMPLES)``; no row is missing."""
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)
     judgement = _judged_by(nearest, roles, convention, grading)
@@ -276,7 +265,6 @@ def judged_by_intended(
 def _judged_by(
     nearest: NearestTable, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Judge the rows by the nearest valid table; ``roles`` has each row with its joint."""
     right = nearest.cost < WRONG_CELL
     shared = [False] * len(nearest.roles)
     if not right:
@@ -312,10 +300,7 @@ def _judged_by(
 def _rows_right(
     judged: Sequence[JudgedRow], cell_matches: NDArray[np.int_], convention: Convention
 ) -> NDArray[np.bool_]:
-    """Return, for each joint axis, if the rows before and after it are correct: ``(joints, 2)``.
-
-    A row beyond the ends of the table counts as correct.
-    """
+    # A row beyond the ends of the table counts as correct.
     right = np.ones(len(cell_matches) + 2, np.bool_)
     right[1:-1] = (cell_matches >= Match.ROUNDED).all(axis=1)
     places = np.array([i for i, row in enumerate(judged) if row.joint], dtype=np.int_)
@@ -324,7 +309,6 @@ def _rows_right(
 
 
 def _is_as_written(nearest: NearestTable) -> bool:
-    """True if each number of the nearest table is exactly the written number, without rounding."""
     rows = [role.row for role in nearest.roles if role.row is not None]
     if len(rows) < len(nearest.roles) or not all(row.is_exact for row in rows):
         return False
@@ -337,10 +321,7 @@ def departures_of(frames: Matrices, grading: Grading) -> float:
 
 
 def _labels(roles: Sequence[Role]) -> list[str]:
-    """Return row labels: the joint's number; "e", "e2" … for fixed rows after the last joint.
-
-    Fixed rows before the last joint have the labels "0", "0b", "0c" …
-    """
+    # "e", "e2" … for fixed rows after the last joint; "0", "0b", "0c" … for fixed rows before it.
     last = max((i for i, role in enumerate(roles) if role.joint), default=-1)
     behind = chain(["e"], (f"e{i}" for i in count(2)))
     before = chain(["0"], (f"0{letter}" for letter in ascii_lowercase[1:]), repeat("0z"))
@@ -351,7 +332,6 @@ def _labels(roles: Sequence[Role]) -> list[str]:
 
 
 def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int_]:
-    """Return the Match of each cell of each row, ``(rows, 4)``."""
     nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
     actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     expected = np.array([row.expected for row in judged])

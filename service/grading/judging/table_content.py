@@ -62,8 +62,7 @@ def _differs_from_lazy(
 
 @dataclass(frozen=True)
 class _Task:
-    """A cache key for a part's table: equal for the same exercise version, part and convention."""
-
+    # A cache key: equal for the same exercise version, part and convention.
     version: str
     part_id: str
     convention: Convention
@@ -73,7 +72,6 @@ class _Task:
 
 @lru_cache(maxsize=256)
 def _of_reference(task: _Task) -> Content:
-    """Return the content cells of the reference's table."""
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
     joints = _joints_of_rows(task)
@@ -85,7 +83,6 @@ def _of_reference(task: _Task) -> Content:
 
 
 def _without_given(content: Content, part: DhTableSpec) -> Content:
-    """Return the content without the cells of the rows that the exercise gives."""
     if not part.given:
         return content
     given = tuple(i + 1 in part.given for i in range(len(content.known)))
@@ -100,14 +97,12 @@ def _without_given(content: Content, part: DhTableSpec) -> Content:
 
 
 def _own_grading(exercise: Exercise) -> Grading:
-    """Return a grading without a submission, for values that only the exercise determines."""
     samples = draw(exercise, None)
     reader = Reader.of(exercise, samples, "radians")
     return Grading(exercise, samples, reader)
 
 
 def _joints_of_rows(task: _Task) -> list[Joint | None]:
-    """Return the joint of each row of the reference's table; None for a fixed row."""
     joints, reference = task.exercise.joints, task.exercise.robot.tables.get(task.convention)
     count = len(joints if reference is None else reference.rows)
     return [*joints, *[None] * (count - len(joints))]
@@ -115,11 +110,8 @@ def _joints_of_rows(task: _Task) -> list[Joint | None]:
 
 @lru_cache(maxsize=256)
 def _fewest(task: _Task) -> int:
-    """Return the smallest number of cells in which a valid table differs from the lazy table.
-
-    Along parallel axes, a table may have the sum of two lengths in one cell, or arbitrary numbers
-    in other cells that cancel out. Such additional cells have no worth.
-    """
+    # Along parallel axes, a table may have the sum of two lengths in one cell, or arbitrary numbers
+    # in other cells that cancel out. Such additional cells have no worth.
     grading, joints = _own_grading(task.exercise), _joints_of_rows(task)
     lazy = joint_variables(joints, grading.samples)
     roles = tuple(Role(computed_row(row), joint) for row, joint in zip(lazy, joints, strict=True))

@@ -27,10 +27,7 @@ from service.kinematics.dh import Convention
 
 
 def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
-    """Return the table with a lazy entry in each cell without a value.
-
-    The lazy entry is the joint variable if it belongs in the cell, else 0.
-    """
+    """Return the table with each empty or unreadable cell set to its joint variable or 0."""
     roles = roles_in(answer.rows, convention, grading, in_order=True)
     lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
     return _filled(answer, np.asarray(np.isnan(answer.values).any(axis=-1)), lazy)
@@ -81,10 +78,7 @@ def written_content(answer: StudentTable, given: Sequence[bool], grading: Gradin
 
 
 def with_zeros(answer: StudentTable) -> Table:
-    """Return the numbers of the table, with 0 in empty cells.
-
-    So a joint does not move if its cell is empty.
-    """
+    """Return the numbers of the table, with 0 in empty cells."""
     return np.where(empty_cells(answer)[..., None], 0.0, answer.values)
 
 
@@ -98,7 +92,6 @@ def empty_cells(answer: StudentTable) -> KnownCells:
 def _filled(
     answer: StudentTable, cells: KnownCells, numbers: Table, filling: Entry = COMPUTED
 ) -> StudentTable:
-    """Return the table with these numbers ``(rows, 4, SAMPLES)`` in ``cells``."""
     values = np.where(cells[..., None], numbers, answer.values)
     rows = tuple(
         StudentRow(

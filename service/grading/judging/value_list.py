@@ -18,8 +18,7 @@ from service.kinematics.transforms import Numbers
 class ComparedValues:
     """A list as read and the expected values, ``(n, SAMPLES)``.
 
-    ``corrections`` are the expected values as formulas, None for an unknown formula. Only the
-    diagnosis needs the corrections.
+    ``corrections`` are the expected values as formulas, None for an unknown formula.
     """
 
     student: StudentValues
@@ -32,7 +31,7 @@ class ComparedValues:
         return np.where(lengths, grading.exercise.length_scale, 1.0)
 
     def matches(self, grading: Grading) -> NDArray[np.int_]:
-        """Return the Match of each value, ``(n,)``; angles modulo 2π."""
+        """Return the comparison result of each value, ``(n,)``; angles are equal modulo 2π."""
         student, scales = self.student, self.scales(grading)
         angle = np.array([[quantity == "angle"] for quantity in student.quantities])
         return entry_matches(

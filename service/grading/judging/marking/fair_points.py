@@ -1,4 +1,4 @@
-"""Make sure that an empty row or cell of a table never earns more than anything written there.
+"""Limit the points of a wrong table, so that an empty row never earns more than a wrong row.
 
 The frames that a student chose are found by comparing rows. A wrong row can mislead this search, so
 that correct rows look wrong; an empty row cannot. So a wrong table earns at least as much as the
@@ -7,6 +7,10 @@ cells earns at most as much as the same table with such numbers in these cells. 
 rows after the rows of all joints earns at least as much as the table without these rows, because
 empty rows at the end are left out.
 """
+
+# So a wrong table earns at least as much as the same table with one wrong row replaced by numbers
+# that are wrong in all frames. A table with empty cells earns at most as much as the same table
+# with such numbers in these cells.
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -42,9 +46,9 @@ AGAIN = 0.5
 class FairPoints:
     """Limits the points of wrong tables.
 
-    ``judged_again`` judges other tables, whose points are the limits. ``work`` is the work of
-    judging a table with messages.
+    ``judged_again`` judges other tables, whose points are the limits.
     """
+    # ``work`` is the work of judging a table with messages.
 
     part: DhTableSpec
     judged_again: Callable[[StudentTable], Judged]
@@ -152,12 +156,11 @@ def _shortened(
 
 
 def _convention_of(part: DhTableSpec, answer: StudentTable) -> Convention | None:
-    """Return the convention in which a table is judged; None if the convention is open."""
     return answer.convention if part.convention == "either" else part.convention
 
 
 def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
-    """Return the wrong rows that may make others look wrong; most wrong cells come first."""
+    # Rows with the most wrong cells come first.
     if part.frames == "given":
         return []
     if judged.whole_cost is not None:
@@ -179,23 +182,18 @@ def _wrong_rows(part: DhTableSpec, judged: Judged, rows: int) -> list[int]:
 
 
 def _counts_wrong(judged: Judged) -> list[int]:
-    """Return, for each row, the number of its cells that are not right."""
     return [sum(c.verdict is not Verdict.CORRECT for c in row.cells) for row in judged.rows]
 
 
 def _has_given_ends(part: DhTableSpec, judged: Judged) -> bool:
-    """True if base, tool and directions are given, and the table has no extra row."""
     return freedom_of(part) == FrameFreedom() and judged.at_most is None
 
 
 def _content_in_any_frames(
     part: DhTableSpec, answer: StudentTable, rows: list[int], grading: Grading
 ) -> list[tuple[int, int]]:
-    """Return the rows, each with the number of its cells that are not trivial in any frames.
-
-    A row has at most two such cells: the angle between its two axes, unless the axes are parallel;
-    and the distance between the axes, unless one axis only has a direction.
-    """
+    # Two cells of a row are not trivial in any frames: the angle between its two axes, unless they
+    # are parallel; and their distance, unless one axis only has a direction.
     convention = _convention_of(part, answer)
     table = grading.exercise.robot.tables.get(convention) if convention else None
     if not rows or table is None or len(table.rows) != len(answer.rows):

@@ -1,7 +1,6 @@
-"""The points of a part, from the verdicts on its cells and the worth of the cells.
+"""The points of a part, from the verdicts on its cells.
 
-Points are counted in steps of a quarter or a hundredth of a point. ``docs/marks.md`` explains the
-rules to students and tutors, with an example.
+Points are counted in quarters or hundredths of a point. ``docs/marks.md`` explains the rules.
 """
 
 import math
@@ -42,11 +41,9 @@ _Verdicts = Sequence[Sequence[Verdict]]
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """Points lost in one row, or in the whole answer if ``row`` is None.
+    """Points lost in one row, or in the whole answer if ``row`` is None."""
 
-    ``steps`` counts them in quarters or hundredths of a point.
-    """
-
+    # ``steps`` are quarters or hundredths of a point.
     code: str
     steps: int
     row: int | None = None
@@ -54,10 +51,7 @@ class _Loss:
 
 @dataclass(frozen=True, slots=True)
 class _Marks:
-    """What an answer has lost, in steps (quarters or hundredths of a point).
-
-    ``lost`` is the sum; ``losses`` has the reasons, ``rows`` the loss of each row.
-    """
+    """What an answer has lost, in quarters or hundredths of a point."""
 
     worth: CellWorth
     lost: int
@@ -103,25 +97,24 @@ def unjudged_report(
 def has_earned(part: PartSpec, judged: Judged, share: float) -> bool:
     """True if an answer has earned ``share`` (0 to 1) of its points.
 
-    Points are counted as in the marking "content", in which only cells that need knowledge earn
-    points. A rotation with a position must have earned more than ``share``, because later parts
-    that need only a correct rotation are easy.
+    Only cells that need knowledge count.
     """
+    # A rotation with a position must have earned more than ``share``, because later parts that need
+    # only a correct rotation are easy.
     marks = _marks(judged, "content", part.points)
     earned, least = marks.worth.total - marks.lost, share * marks.worth.total
     return earned > least if judged.content.equal else earned >= least
 
 
 def steps_lost(part: PartSpec, judged: Judged) -> int:
-    """Return the steps (quarters or hundredths of a point) that an answer loses."""
+    """Return the loss of points of an answer, in quarters or hundredths of a point."""
     return _marks(judged, part.marking, part.points).lost
 
 
 def least_lost(part: PartSpec, judged: Judged, cells: int) -> int:
-    """Return the smallest possible loss of a wrong row with ``cells`` content cells.
+    """Return the smallest loss of a wrong row with ``cells`` cells that earn points.
 
-    A content cell is a cell that needs knowledge. The loss is in steps (quarters or hundredths of a
-    point).
+    The loss is in quarters or hundredths of a point.
     """
     if part.marking != "content":
         return 0
@@ -130,7 +123,6 @@ def least_lost(part: PartSpec, judged: Judged, cells: int) -> int:
 
 
 def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
-    """Return the points that an answer loses in a part worth ``points``, with the reasons."""
     if judged.is_right:
         return _of_right(judged.content, marking, points)
     worth = worth_of(judged.content, marking, points)
@@ -143,7 +135,6 @@ def _marks(judged: Judged, marking: Marking, points: float) -> _Marks:
 
 @lru_cache(maxsize=1024)
 def _of_right(content: Content, marking: Marking, points: float) -> _Marks:
-    """Return the result of ``_marks`` for a correct answer, memoized."""
     worth = worth_of(content, marking, points)
     return _Marks(worth, 0, (), (0,) * len(worth.rows))
 
@@ -151,7 +142,6 @@ def _of_right(content: Content, marking: Marking, points: float) -> _Marks:
 def _losses(
     judged: Judged, marking: Marking, points: float, worth: CellWorth, charges: list[int]
 ) -> tuple[_Loss, ...]:
-    """Return the steps that a wrong answer has lost, one ``_Loss`` for each place."""
     if judged.stands_still:
         return (_Loss(NO_JOINT_MOVES, worth.total),)
     if marking == "whole":
@@ -182,7 +172,6 @@ def _losses(
 
 
 def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: CellWorth) -> int:
-    """Return ``lost``, raised or lowered to the limits that the judgement sets for the loss."""
     if judged.at_most is not None:
         least = _marks(judged.at_most, marking, points).lost
         if judged.needs_all:
@@ -198,12 +187,8 @@ def _limited(lost: int, judged: Judged, marking: Marking, points: float, worth: 
 
 
 def _charges(worth: CellWorth, verdicts: _Verdicts, marking: Marking) -> list[int]:
-    """Return, for each row, the cost of its cells that are not right.
-
-    A wrong cell costs what it is worth. A wrong cell that needs no knowledge costs as much as a
-    cheap one that does, or a fifth of it if the cell is only unreadable. A group of cells cannot
-    lose more than it is worth.
-    """
+    # A wrong cell that needs no knowledge costs as much as a cheap one that does, or a fifth of it
+    # if the cell is only unreadable. A group of cells cannot lose more than it is worth.
     if marking == "rows":
         pairs = zip(worth.rows, verdicts, strict=True)
         return [0 if _is_right(row) else max(1, steps) for steps, row in pairs]
@@ -239,11 +224,8 @@ def _is_right(row: Sequence[Verdict]) -> bool:
 
 
 def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
-    """Distribute the loss over the rows; no row loses more than it is worth.
-
-    A row loses the cost of its cells. If the row is worth less, other rows lose the rest: first the
-    rows of the same group, then the rows with a cost, then all rows.
-    """
+    # If a row is worth less than its cells cost, other rows lose the rest: first the rows of the
+    # same group, then the rows with a cost, then all rows.
     rows = apportioned(min(lost, sum(charges)), charges)
     groups = worth.content.groups
     overdrawn = {
@@ -285,14 +267,13 @@ def _little_worth(
 
 
 def _with_points(row: RowReport, possible: float, earned: float) -> RowReport:
-    """Return the row with its points."""
     points = rounded_points(earned)
     verdict = row.verdict if points else _without_points(row.verdict, [row])
     return RowReport(row.label, verdict, points, rounded_points(possible), row.cells, row.feedback)
 
 
 def _without_points(verdict: Verdict, rows: Sequence[RowReport]) -> Verdict:
-    """Return the verdict on rows that earn nothing: never "partly right"."""
+    # Rows that earn nothing are never "partly right".
     if verdict is not Verdict.PARTIAL:
         return verdict
     of_cells = {cell.verdict for row in rows for cell in row.cells}

@@ -1,6 +1,6 @@
-"""The worth of the cells of an answer in whole steps (quarters or hundredths of a point).
+"""The points of each cell of an answer, in quarters or hundredths of a point.
 
-All points are counted in steps, so that they add up. ``docs/marks.md`` explains the rules.
+Such a quarter or hundredth is called a step. ``docs/marks.md`` explains the rules.
 """
 
 from dataclasses import dataclass
@@ -27,15 +27,16 @@ _ROUNDING_ERROR: Final = 1e-9
 
 @dataclass(frozen=True)
 class CellWorth:
-    """The worth of the cells and rows of an answer, in steps of ``step`` points.
+    """The points of the cells and rows of an answer, in steps of ``step`` points.
 
-    ``cells`` ``(rows, cells)`` is the worth of each cell. ``besides`` ``(rows,)`` is the worth of
-    each row in addition to its cells. All of them sum to ``total``. A cell that needs no knowledge
-    is worth nothing, but costs ``unit`` if it is wrong. If ``is_fixed`` is true, every wrong cell
-    costs ``unit``. ``slip`` is the cost of a mistake that no cell shows. ``least_besides`` is the
-    smallest worth that a group of cells has besides its cells.
+    A step is a quarter or a hundredth of a point.
     """
 
+    # ``cells`` ``(rows, cells)`` is the worth of each cell, ``besides`` ``(rows,)`` that of each
+    # row in addition to its cells; all of them sum to ``total``. A cell that needs no knowledge is
+    # worth nothing, but costs ``unit`` if it is wrong. If ``is_fixed`` is true, every wrong cell
+    # costs ``unit``. ``slip`` is the cost of a mistake that no cell shows. ``least_besides`` is the
+    # smallest worth that a group of cells has besides its cells.
     step: float
     total: int
     content: Content
@@ -53,12 +54,12 @@ class CellWorth:
 
     @cached_property
     def rows(self) -> tuple[int, ...]:
-        """The worth of each row."""
+        """The points of each row, in steps."""
         return tuple(sum(row) + more for row, more in zip(self.cells, self.besides, strict=True))
 
     @cached_property
     def groups(self) -> dict[int, int]:
-        """The largest number of steps that each group of cells can lose, at least 1."""
+        """The largest loss of each group of cells, in steps."""
         if self.is_fixed:
             counts = _counts(self.content)
             return {g: max(1, n * self.unit + self.least_besides) for g, n in counts.items()}
@@ -86,17 +87,17 @@ class CellWorth:
         return units
 
     def fifth(self, group: int) -> int:
-        """Return what the unread cells of a row that are no content cells cost together."""
+        """Return the cost of a row's unreadable cells that need no knowledge."""
         return max(1, round(self.units[group] * BESIDES))
 
     def points(self, steps: int) -> float:
-        """Return steps as points."""
+        """Convert steps to points."""
         return steps * self.step
 
 
 @lru_cache(maxsize=2048)
 def worth_of(content: Content, marking: Marking, points: float) -> CellWorth:
-    """Return the worth of the cells of an answer to a part that is worth ``points``."""
+    """Return the points of each cell in a part that is worth ``points``."""
     step, total = _steps(content, points)
     if marking == "content" or marking == "whole":
         return _by_content(content, step, total)
@@ -117,10 +118,7 @@ def worth_of(content: Content, marking: Marking, points: float) -> CellWorth:
 
 
 def _steps(content: Content, points: float) -> tuple[float, int]:
-    """Return the size of a step in points, and the number of steps of the part.
-
-    Neither of them depends on the answer.
-    """
+    # Neither the size of a step nor their number depends on the answer.
     rows, cells = content.usual or (sum(content.earning), content.most or content.count)
     is_coarse = points >= max(POINTS_PER_ROW * rows, POINTS_PER_CELL * cells)
     quarters = round(points / QUARTER)
@@ -173,12 +171,8 @@ def _by_content(content: Content, step: float, total: int) -> CellWorth:
 
 
 def _unit(cells: int, groups: int, total: int) -> int:
-    """Return the worth of a cell that needs knowledge, in steps.
-
-    ``cells`` is the number of such cells. The remaining steps are shared by the ``groups`` of
-    cells; an answer without knowledge earns them. They are at most a quarter of all steps and, if
-    possible, at least one for each group.
-    """
+    # The remaining steps are shared by the ``groups``; an answer without knowledge earns them. They
+    # are at most a quarter of all steps and, if possible, at least one for each group.
     if not cells:
         return total
     exact = total / (cells + groups * min(BESIDES, MOST_BESIDES * cells / groups))
@@ -194,11 +188,9 @@ def evenly(total: int, count: int) -> list[int]:
 
 
 def apportioned(total: int, weights: list[int]) -> list[int]:
-    """Return whole numbers in proportion to ``weights`` that sum to ``total``.
-
-    The largest remainders are rounded up. If ``total`` is at most the sum of the weights, no number
-    is larger than its weight.
-    """
+    """Return whole numbers in proportion to ``weights`` that sum to ``total``."""
+    # The largest remainders are rounded up. If ``total`` is at most the sum of the weights, no
+    # number is larger than its weight.
     whole = sum(weights)
     if not whole:
         return [0] * len(weights)
@@ -210,13 +202,11 @@ def apportioned(total: int, weights: list[int]) -> list[int]:
 
 
 def _cells(content: Content, worth: list[int]) -> tuple[tuple[int, ...], ...]:
-    """Return the worth of each cell, by row; ``worth`` lists it for the cells that earn points."""
     steps = iter(worth)
     return tuple(tuple(next(steps) if known else 0 for known in row) for row in content.known)
 
 
 def _counts(content: Content) -> dict[int, int]:
-    """Return, for each group of cells, the number of its cells that earn points."""
     counts: dict[int, int] = {}
     for row, groups in zip(content.known, content.groups, strict=True):
         for known, number in zip(row, groups, strict=True):

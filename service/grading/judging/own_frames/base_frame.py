@@ -1,7 +1,6 @@
 """Find the poses that frame 0 may have if the student chose it.
 
-All comparisons are in the home configuration (all joint variables 0), where the positive direction
-of a joint does not matter. The joint screws and the pose in this configuration determine a chain
+Poses are compared with all joint variables 0. The joint screws and the pose there determine a chain
 (Lynch and Park, *Modern Robotics*, section 4.1).
 """
 
@@ -28,10 +27,11 @@ def possible_bases(
 ) -> Iterator[Matrices | None]:
     """Yield the poses ``(L, 4, 4)`` that the student's frame 0 may have in the reference frame 0.
 
-    None stands for the identity. ``links`` ``(rows + 1, 4, L)`` are the constants of the table,
-    ``joint_signs`` ``(rows + 1,)`` the signs of its joint variables. A given tool frame allows one
-    pose. Otherwise the joint axes must lie on those of the reference.
+    None stands for the identity.
     """
+    # ``links`` ``(rows + 1, 4, L)`` are the constants of the table, ``joint_signs`` ``(rows + 1,)``
+    # the signs of its joint variables. A given tool frame allows one pose. Otherwise the joint axes
+    # must lie on those of the reference.
     if not freedom.base:
         yield None
         return

@@ -1,4 +1,4 @@
-"""Choose which joint each submitted row belongs to, so that the nearest valid table is near."""
+"""Choose which joint each submitted row belongs to."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -22,7 +22,7 @@ from service.kinematics.frames.frame_choice import WRONG_CELL
 def best_roles(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
-    """Return each row with its joint, and the valid table nearest to the rows."""
+    """Return each row with its joint, and the nearest table that describes the robot."""
     freedom = freedom_of(part)
     roles, nearest = _best_as_written(rows, convention, freedom, grading)
     return roles, with_rounded_cells(nearest, convention, freedom, grading)
@@ -31,7 +31,6 @@ def best_roles(
 def _best_as_written(
     rows: tuple[StudentRow, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> tuple[tuple[Role, ...], NearestTable]:
-    """Return the best roles and nearest table, without correcting the table for rounding."""
     joints = grading.exercise.robot.joints
     roles = roles_in(rows, convention, grading)
     roles = with_true_numbers(roles, convention, freedom, grading)
@@ -67,8 +66,7 @@ def roles_in(
 ) -> tuple[Role, ...]:
     """Return each submitted row with its joint, and with rounded angles made exact.
 
-    ``expected_rows`` is by default the number of rows of the reference. ``in_order`` is true if the
-    rows are in the order of the joints, None if unknown.
+    ``in_order`` is true if the rows are in the order of the joints, None if unknown.
     """
     expected_rows = expected_rows or usual_rows(convention, grading)
     rows = without_idle_rows(rows, expected_rows)
@@ -80,7 +78,7 @@ def roles_in(
 def nearest_with_tool_row(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the nearest valid table, with the given rows or with a missing tool row added."""
+    """Return the valid table nearest to the rows, which may lack the row of the tool."""
     nearest = nearest_for_roles(roles, convention, freedom, grading)
     if nearest.cost < WRONG_CELL or len(roles) >= usual_rows(convention, grading):
         return nearest
@@ -99,10 +97,8 @@ def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple
 def rows_of_mechanism(
     rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> list[int]:
-    """Return the indices of the joints' rows and of the first tool rows, up to the usual number.
-
-    The choice depends only on the joint variables in the rows, not on what is correct.
-    """
+    """Return the indices of the rows that belong to the robot, without extra rows."""
+    # The choice depends only on the joint variables in the rows, not on what is correct.
     usual, joints = usual_rows(convention, grading), grading.exercise.robot.joints
     if len(rows) <= usual:
         return list(range(len(rows)))
@@ -113,7 +109,7 @@ def rows_of_mechanism(
 
 
 def usual_rows(convention: Convention, grading: Grading) -> int:
-    """Return the number of rows of the reference table, or of joints if there is no such table."""
+    """Return the number of rows that a table of this robot usually has."""
     robot = grading.exercise.robot
     reference = robot.tables.get(convention)
     return len(robot.joints if reference is None else reference.rows)

@@ -1,14 +1,12 @@
-"""Search for values of the unreadable cells of a table with which the table describes the robot.
+"""Search for values of a table's unreadable cells with which the table describes the robot.
 
-An unread cell is empty or could not be read, so it has no value. If such values exist, no other
-cell is wrong. The search uses one set of link lengths. So the value of an unread cell is a
-constant, or a constant plus or minus the joint variable that belongs in the cell. The tool
-frame must agree with the reference tool frame at all joint values. The method is Newton's with
-damping (Levenberg and Marquardt), from many starts at once.
-
-Shapes: S starts, L joint values, U unknowns (the unread cells, and the pose of a free base or
-tool).
+If such values exist, no other cell is wrong. The method is Newton's with damping (Levenberg and
+Marquardt), from many starts.
 """
+
+# The value of an unread cell is a constant, or a constant plus or minus the joint variable that
+# belongs in the cell. Shapes: S starts, L joint values, U unknowns (the unread cells, and the pose
+# of a base or tool that the student chose).
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -51,13 +49,11 @@ _LEAST_DAMPING = 1e-12
 
 @dataclass(frozen=True)
 class _Case:
-    """A table with unread cells at one set of link lengths; the unit is the typical length.
+    """A table with unread cells at one set of link lengths."""
 
-    ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells ``(U, 2)``. ``variables`` ``(U,
-    L)`` is the joint variable that belongs in each unread cell. ``target`` ``(L, 4, 4)`` are the
-    tool frames of the reference.
-    """
-
+    # The unit is the typical length. ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells
+    # ``(U, 2)``. ``variables`` ``(U, L)`` is the joint variable that belongs in each unread cell.
+    # ``target`` ``(L, 4, 4)`` are the tool frames of the reference.
     table: Table
     unread: NDArray[np.int_]
     variables: Numbers
@@ -67,7 +63,7 @@ class _Case:
 
     @cached_property
     def axes(self) -> tuple[NDArray[np.int_], NDArray[np.int_]]:
-        """The frame and the axis (z or x) along which each unread cell acts: ``(U,)`` each."""
+        # The frame and the axis (z or x) along which each unread cell acts.
         rows, columns = self.unread.T
         about_z = columns >= D
         first = about_z == (self.convention is Convention.STANDARD)
@@ -75,10 +71,7 @@ class _Case:
 
     @cached_property
     def slides(self) -> NDArray[np.bool_]:
-        """A mask of the unknowns that are lengths.
-
-        The unknowns are the unread cells, then the twists of a free base and of a free tool.
-        """
+        # The unknowns are the unread cells, then the twists of a free base and of a free tool.
         twists = self.freedom.base + self.freedom.tool
         return np.concatenate([~IS_ANGLE[self.unread[:, 1]], *[np.arange(6) >= 3] * twists])
 
@@ -88,9 +81,10 @@ def completed(
 ) -> NearestTable | None:
     """Return the table if some values in its unread cells make it describe the robot, else None.
 
-    These values are not unique, so the result has 0 in the unread cells, and its frames are those
-    of the reference. The directions of the joint axes count as given.
+    The result has 0 in the unread cells, because these values are not unique.
     """
+    # The frames of the result are those of the reference. The directions of the joint axes count as
+    # given.
     if any(role.row is None for role in roles):
         return None
     case = _case(roles, convention, freedom, grading)
@@ -124,7 +118,7 @@ def _case(
 
 
 def _of_one_robot(samples: Samples, joints: Sequence[str]) -> Samples:
-    """Return the samples with all joint values, but with the first link lengths at every sample."""
+    # All joint values, but the first link lengths at every sample.
     return Samples(
         {
             name: values if name in joints else np.full_like(values, values[0])
@@ -134,14 +128,12 @@ def _of_one_robot(samples: Samples, joints: Sequence[str]) -> Samples:
 
 
 def _values_at(role: Role, samples: Samples) -> Table:
-    """Return a row's values at other samples, with rounded angles made exact."""
     assert role.row is not None
     made_exact = np.nan_to_num(role.row.values - role.row.handed_in)[:, :1]
     return np.asarray(role.row.values_at(samples) + made_exact)
 
 
 def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
-    """True if the search finds values of the unread cells before the budget is used up."""
     if not budget.affords_search(START_WORK):
         return False
     rng = np.random.default_rng(HALF)
@@ -189,7 +181,7 @@ def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
 
 
 def _signs(holds_variable: Sequence[bool]) -> Numbers:
-    """Return all combinations of signs of the joint variables in the unread cells, ``(S, U)``."""
+    # All combinations of signs, ``(S, U)``.
     signs = np.ones((STARTS, len(holds_variable)))
     places = [k for k, holds in enumerate(holds_variable) if holds]
     for bit, k in enumerate(places):
@@ -200,12 +192,10 @@ def _signs(holds_variable: Sequence[bool]) -> Numbers:
 def _linearised(
     case: _Case, constants: Numbers, signs: Numbers, base: Matrices, tool: Matrices
 ) -> tuple[Numbers, Numbers]:
-    """Return the error of the tool, ``(S, 6 L)``, and its derivative ``(S, U, …)``.
-
-    The error is the rotation vector and the displacement from the tool at p to the reference tool.
-    The derivative for an angle is ω and ω × (p - point): a turn about an axis with direction ω
-    through the point. The derivative for a length is a shift along the axis.
-    """
+    # The error ``(S, 6 L)`` is the rotation vector and the displacement from the tool at p to the
+    # reference tool. Its derivative ``(S, U, …)`` for an angle is ω and ω × (p - point): a turn
+    # about an axis with direction ω through the point. The derivative for a length is a shift along
+    # the axis.
     starts, postures = len(constants), len(case.target)
     table = np.repeat(case.table[:, :, None], starts, axis=2)
     rows, columns = case.unread.T
@@ -232,10 +222,7 @@ def _linearised(
 
 
 def _rotation_vector(rotation: Matrices) -> Numbers:
-    """Return the axis times the angle of rotations ``(..., 3, 3)``: ``(..., 3)``.
-
-    The result is wrong for half a turn, which is far from any solution.
-    """
+    # Axis times angle. The result is wrong for half a turn, which is far from any solution.
     upper, lower = (2, 0, 1), (1, 2, 0)
     twice_sine = rotation[..., upper, lower] - rotation[..., lower, upper]
     sine = np.sqrt((twice_sine**2).sum(axis=-1)) / 2
@@ -244,20 +231,20 @@ def _rotation_vector(rotation: Matrices) -> Numbers:
 
 
 def _cross(one: Numbers, other: Numbers) -> Numbers:
-    """Return the vector products ``(..., 3)``, several times faster than numpy.cross."""
+    # Several times faster than numpy.cross.
     (a, b, c), (x, y, z) = np.moveaxis(one, -1, 0), np.moveaxis(other, -1, 0)
     return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
 
 
 def _step(error: Numbers, columns: Numbers, damping: Numbers) -> Numbers:
-    """Return the step ``(S, U)`` that reduces the error ``(S, E)``; columns are ``(S, U, E)``."""
+    # ``error`` is ``(S, E)``, ``columns`` ``(S, U, E)``, the step ``(S, U)``.
     square = columns @ columns.swapaxes(-1, -2)
     square += damping[:, None, None] * np.eye(columns.shape[1])
     return np.asarray(np.linalg.solve(square, columns @ error[..., None])[..., 0])
 
 
 def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
-    """Return the share ``(S,)`` of the squared error that a step removes, to first order."""
+    # The share ``(S,)`` of the squared error that a step removes, to first order.
     undone = (change * (columns @ error[..., None])[..., 0]).sum(axis=-1)
     return np.asarray(undone / (error**2).sum(axis=-1))
 
@@ -265,7 +252,7 @@ def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
 def _moved(
     freedom: FrameFreedom, base: Matrices, tool: Matrices, twists: Numbers
 ) -> tuple[Matrices, Matrices]:
-    """Return the base and the tool, ``(S, 1, 4, 4)`` each, moved by ``twists`` if they are free."""
+    # ``(S, 1, 4, 4)`` each.
     if freedom.base:
         base = exponential(twists[:, None, :6], 1.0) @ base
     if freedom.tool:

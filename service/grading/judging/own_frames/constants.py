@@ -26,10 +26,8 @@ from service.kinematics.transforms import Numbers
 def row_constants(
     roles: tuple[Role, ...], joints: tuple[Joint, ...], convention: Convention, samples: Samples
 ) -> list[RowConstants]:
-    """Return the constants of a table, regrouped into rows that each lead to the next joint axis.
-
-    A cell that depends wrongly on the joint variables is wrong whatever frames are chosen.
-    """
+    """Return the constants of a table, regrouped into rows between neighbouring joint axes."""
+    # A cell that depends wrongly on the joint variables is wrong whatever frames are chosen.
     cells = handed_in_values(roles)
     is_gradable = np.array(
         [[bool(role.row and role.row.entries[c].readable) for c in range(4)] for role in roles]
@@ -64,11 +62,12 @@ def row_constants(
 def without_variables(
     tables: Numbers, roles: tuple[Role, ...], samples: Samples
 ) -> tuple[Numbers, NDArray[np.int_]]:
-    """Return the constants of tables ``(T, rows, 4, samples)`` and the signs of their variables.
+    """Return the constants of tables, and the signs of their joint variables.
 
-    The constants are ``(T, rows, 4, samples / 2)``, with NaN for a cell that depends wrongly on the
-    joint variables. The signs are ``(T, rows)``.
+    A constant is NaN if its cell depends wrongly on the joint variables.
     """
+    # Tables are ``(T, rows, 4, samples)``, constants ``(T, rows, 4, samples / 2)``, signs ``(T,
+    # rows)``.
     tables = tables.copy()
     signs = np.zeros(tables.shape[:2], dtype=np.int_)
     for (i, column), joint in joint_cells(roles).items():

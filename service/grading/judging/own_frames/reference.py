@@ -1,4 +1,4 @@
-"""Convert the reference table for its comparison with tables in a student's own frames."""
+"""Convert the reference table for comparisons with a student's table."""
 
 from dataclasses import dataclass
 from itertools import accumulate
@@ -20,14 +20,13 @@ _Cell = TypeVar("_Cell", bound=np.generic)
 
 @dataclass(frozen=True, slots=True)
 class Mechanism:
-    """The constants of the reference robot, at the first half of the samples (L of them).
+    """The constants of the reference robot, for several sets of link lengths."""
 
-    ``joints`` ``(n, L, 4, 4)`` are the poses of the joint frames, each in the frame of the previous
-    joint. ``fixed`` are the frames of the fixed rows and ``tool`` is the end-effector frame, ``(L,
-    4, 4)`` each, in the last joint's frame. ``offsets`` ``(n, L, 4, 4)`` is, for each joint, the
-    transform Z that consists of the constants in d and θ.
-    """
-
+    # They are given at the first half of the samples (L of them). ``joints`` ``(n, L, 4, 4)`` are
+    # the poses of the joint frames, each in the frame of the previous joint. ``fixed`` are the
+    # frames of the fixed rows and ``tool`` is the end-effector frame, ``(L, 4, 4)`` each, in the
+    # last joint's frame. ``offsets`` ``(n, L, 4, 4)`` is, for each joint, the transform Z that
+    # consists of the constants in d and θ.
     joints: Matrices
     offsets: Matrices
     fixed: list[Matrices]
@@ -35,7 +34,7 @@ class Mechanism:
 
 
 def mechanism_at(exercise: Exercise, samples: Samples) -> Mechanism:
-    """Return the mechanism that the reference table of the exercise describes."""
+    """Return the constants of the robot in the exercise's reference table."""
     return samples.cached("mechanism", lambda: _mechanism(exercise, samples))
 
 
@@ -53,7 +52,7 @@ def _mechanism(exercise: Exercise, samples: Samples) -> Mechanism:
 
 
 def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
-    """Return the reference's table in numbers, ``(rows, 4, samples)``. Do not modify it."""
+    """Return the reference table in numbers, ``(rows, 4, samples)``. Do not modify it."""
     return samples.cached(
         reference.convention, lambda: reference.values(samples.values, samples.count)
     )
@@ -62,9 +61,9 @@ def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
 def reference_frames(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
     """Return the reference's frames on the joint axes and its tool frame.
 
-    The shape is ``(joints + 1, samples, 4, 4)``. The frames are those of a table in ``convention``,
-    even if the robot has no such table.
+    The shape is ``(joints + 1, samples, 4, 4)``.
     """
+    # The frames are those of a table in ``convention``, even if the robot has no such table.
 
     def compute() -> Matrices:
         robot = exercise.robot
@@ -83,12 +82,13 @@ def frames_on_axes(
     convention: Convention,
     mechanism: Mechanism,
 ) -> Matrices:
-    """Return the student's frames on the joint axes, as seen from the reference's frames.
+    """Return the student's frames on the joint axes, as seen from the reference frames.
 
-    The shape is ``(joints, ..., 4, 4)``. ``relative_poses`` ``(rows + 1, ..., 4, 4)`` compare the
-    frames of both tables before the motion by d and θ. ``links`` ``(rows + 1, 4, ...)`` are the
-    constants of the student's table, as ``regrouped`` returns them.
+    The shape is ``(joints, ..., 4, 4)``.
     """
+    # ``relative_poses`` ``(rows + 1, ..., 4, 4)`` compare the frames of both tables before the
+    # motion by d and θ. ``links`` ``(rows + 1, 4, ...)`` are the constants of the student's table,
+    # as ``regrouped`` returns them.
     places = [i for i, _ in joint_cells(roles)]
     on_axes = relative_poses[places]
     if convention is Convention.STANDARD:
@@ -108,10 +108,10 @@ def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
 def regrouped(cells: NDArray[_Cell], convention: Convention) -> NDArray[_Cell]:
     """Regroup the cells of a table into rows that each lead from one joint axis to the next.
 
-    Each new row is a product Z X: first the motion along z by d and θ, then the motion along x by a
-    and α. ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``, with zeros for cells that the table
-    lacks.
+    ``(rows, 4, ...)`` becomes ``(rows + 1, 4, ...)``.
     """
+    # Each new row is a product Z X: first the motion along z by d and θ, then the motion along x by
+    # a and α. Cells that the table lacks are 0.
     none = np.zeros_like(cells[:1])
     z = np.concatenate([none, cells])
     x = z if convention is Convention.STANDARD else np.concatenate([cells, none])

@@ -24,13 +24,13 @@ def remarks_on(
     exercise: Exercise,
     rows_right: NDArray[np.bool_] | None = None,
 ) -> tuple[Finding, ...]:
-    """Return one finding for each frame that differs from the frame of the reference.
+    """Return a finding (message) for each frame that differs from the reference frame.
 
-    ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the joint axes, as
-    seen from the reference's frames. ``rows_right`` ``(joints, 2)`` says, for each axis, whether
-    the rows before and after it are correct. A frame that differs because of a wrong row gets no
-    finding.
+    A frame that differs because of a wrong row gets no finding.
     """
+    # ``relative_poses`` ``(joints, samples, 4, 4)`` are the student's frames on the joint axes, as
+    # seen from the reference's frames. ``rows_right`` ``(joints, 2)`` says, for each axis, whether
+    # the rows before and after it are correct.
     error = np.abs(relative_poses - _IDENTITY)
     error[..., :3, 3] /= exercise.length_scale
     departs = error.reshape(len(error), -1).max(axis=1) > SAME_POSE
@@ -48,7 +48,6 @@ def remarks_on(
 
 
 def _chosen(departs: NDArray[np.bool_], rows_right: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Return a mask of the differing frames, except those that a wrong row causes."""
     runs = np.cumsum(~departs)
     implied = runs[departs & ~rows_right.all(axis=1)]
     return departs & ~np.isin(runs, implied)

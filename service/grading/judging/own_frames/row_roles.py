@@ -23,7 +23,7 @@ _NOTHING = np.full((len(COLUMNS), SAMPLES), np.nan)
 
 @dataclass(frozen=True, slots=True)
 class FrameFreedom:
-    """What the student may choose: base frame, tool frame, directions of the joint axes."""
+    """Which of base frame, tool frame and axis directions the student may choose."""
 
     base: bool = False
     tool: bool = False
@@ -52,7 +52,7 @@ def variable_column(joint: Joint) -> int:
 
 
 def joint_cells(roles: Sequence[Role]) -> dict[CellIndex, Joint]:
-    """Return the cells of the joint variables with their joints, in the order of the rows."""
+    """Return the cells that should contain joint variables, with their joints."""
     return {
         (i, variable_column(role.joint)): role.joint for i, role in enumerate(roles) if role.joint
     }
@@ -69,9 +69,9 @@ def variables_of(roles: Sequence[Role], samples: Samples) -> Table:
 
 
 def joint_variables(joints: Sequence[Joint | None], samples: Samples) -> Table:
-    """Return the joint variable, or 0, of each cell in the rows of ``joints``. Do not modify it.
+    """Return the joint variable that belongs in each cell, or 0. Do not modify the array.
 
-    A fixed row has the joint None.
+    ``joints`` has the joint of each row, None for a row without a joint.
     """
 
     def compute() -> Table:
@@ -93,13 +93,14 @@ def roles_of(
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Return each row with its joint; the reference's table has ``expected_rows`` rows.
+    """Return each row with its joint.
 
-    If there are as many rows as joints, they are paired in order, unless ``in_order`` is false.
-    Otherwise the pairing in order is taken in which most rows have their joint's variable; the
-    remaining rows are fixed. If the variable of some joint is missing, and the number of rows is as
-    expected, the joints' rows come first.
+    ``expected_rows`` is the number of rows of the reference table.
     """
+    # If there are as many rows as joints, they are paired in order, unless ``in_order`` is false.
+    # Otherwise the pairing in order is taken in which most rows have their joint's variable; the
+    # remaining rows are fixed. If the variable of some joint is missing, and the number of rows is
+    # as expected, the joints' rows come first.
     one_by_one = tuple(Role(row, joint) for row, joint in zip_longest(rows, joints))
     if len(rows) == len(joints) if in_order is None else in_order:
         return one_by_one
@@ -121,11 +122,10 @@ def roles_of(
 def pair_in_order(scores: Numbers) -> list[tuple[int | None, int | None]]:
     """Pair submitted rows with expected rows, in order, so that the sum of scores is the largest.
 
-    ``scores`` is ``(submitted, expected)``. A row without a partner is paired with None: (None, j)
-    is a missing row, (i, None) an extra row. For equal sums, the last rows have no partner.
-
-    The method is the weighted recurrence of the longest common subsequence.
+    ``scores`` is ``(submitted, expected)``. (None, j) is a missing row, (i, None) an extra row.
     """
+    # For equal sums, the last rows have no partner. The method is the weighted recurrence of the
+    # longest common subsequence.
     m, n = scores.shape
     best = np.zeros((m + 1, n + 1))
     for i in reversed(range(m)):

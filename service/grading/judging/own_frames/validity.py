@@ -33,9 +33,9 @@ def valid_tables(
 ) -> NDArray[np.bool_]:
     """Return a mask ``(T,)`` of the tables that describe the robot in some allowed frames.
 
-    ``tables`` is ``(T, rows, 4, samples)``; all tables have the same ``roles``. The base counts as
-    given, even if it is free.
+    ``tables`` is ``(T, rows, 4, samples)``.
     """
+    # All tables have the same ``roles``. The base counts as given, even if it is free.
     if not (freedom.tool or freedom.directions):
         return _valid_by_pose(tables, roles, convention, exercise, samples, tolerance)
     constants, signs = without_variables(tables, roles, samples)
@@ -55,11 +55,7 @@ def _valid_by_pose(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """Return a mask ``(T,)`` of the valid tables if base, tool and directions are given.
-
-    Then a table is valid if its pose is correct and its cells depend correctly on the joints. The
-    tolerance is relative to the reach of the arm.
-    """
+    # Base, tool and directions are given. The tolerance is relative to the reach of the arm.
     moves = moves_with(tables, changes(variables_of(roles, samples)), IS_ANGLE[:, None])
     valid = np.asarray(moves.all(axis=(1, 2)))
     expected = reference_frames(exercise, convention, samples)[-1]

@@ -1,4 +1,4 @@
-"""A student's table split into constants and motion, and the slips that make most cells wrong."""
+"""Split a student's table into constants and motion, and find a misread convention or unit."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -16,21 +16,18 @@ from service.translations import say, template
 
 
 class Rereadable:
-    """A table that may have been written in the other convention or in the other angle unit.
-
-    A student may have one of these misconceptions and make another slip, or have both at once.
-    """
+    """A table that may have been written in the other convention or in the other angle unit."""
 
 
 @dataclass(frozen=True, slots=True)
 class WrittenTable(Rereadable):
     """A student's table ``(rows, 4, samples)``, angles in radians, every cell with a value.
 
-    Each value is the sum of ``constants`` and ``motion``, the part that depends on the joint
-    variables. ``reference`` is the reference's table if both have equally many rows. ``exchanges``
-    lists pairs of lengths, each with the change of the table if the two are exchanged.
+    Each value is the sum of ``constants`` and ``motion``, which depends on the joint variables.
     """
 
+    # ``reference`` is the reference's table if both have equally many rows. ``exchanges`` lists
+    # pairs of lengths, each with the change of the table if the two are exchanged.
     constants: Table
     motion: Table
     convention: Convention

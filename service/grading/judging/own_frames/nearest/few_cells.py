@@ -1,10 +1,11 @@
-"""Find the valid table that differs from a submitted one in no cell, one or two cells or one row.
+"""Find the valid table that differs from a submitted one in at most two cells or one row.
 
-A table is valid if it describes the robot. If base, tool and directions are given, this is so if
-the tool pose equals that of the reference at all joint values, and every cell changes only as its
-own joint variable does. So no search is needed: the correct value of a cell, or of a whole row,
-follows from all other cells.
+A table is valid if it describes the robot. Base, tool and directions are given here, so the right
+value of a cell follows from all other cells.
 """
+
+# A table is valid if its tool pose equals that of the reference at all joint values, and every cell
+# changes only as its own joint variable does.
 
 from collections.abc import Container, Iterable, Sequence
 from dataclasses import dataclass, replace
@@ -52,13 +53,13 @@ UNREAD = WRONG_CELL / 10
 class NearestTable:
     """The valid table, which describes the robot, that is nearest to the submitted table.
 
-    ``frames`` ``(joints, samples, 4, 4)`` are the frames of the valid table on the joint axes, as
-    seen from the reference's frames. ``cost`` is explained in ``frame_choice``; if it is below 1,
-    the submitted table is valid. ``lost`` is the number of units that the wrong cells lose: a
-    single wrong cell loses one unit. It is computed for the valid table with the smallest loss (not
-    always this table), and infinite if unknown.
+    ``frames`` are its frames on the joint axes, as seen from the reference frames. The submitted
+    table is valid if ``cost`` is below 1.
     """
 
+    # ``frames`` is ``(joints, samples, 4, 4)``; ``frame_choice`` explains ``cost``. ``lost`` is the
+    # loss for the wrong cells: a single wrong cell loses one unit. It is computed for the valid
+    # table with the smallest loss (not always this table), and infinite if unknown.
     roles: tuple[Role, ...]
     expected: Table
     frames: Matrices
@@ -68,12 +69,10 @@ class NearestTable:
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A table to be repaired.
+    """A table to be repaired."""
 
-    ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable that belongs in each
-    cell, or 0. ``wrong`` has the indices of the cells that change with the joints in another way.
-    """
-
+    # ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable that belongs in each
+    # cell, or 0. ``wrong`` has the indices of the cells that change with the joints in another way.
     roles: tuple[Role, ...]
     table: Table
     variables: Table
@@ -83,30 +82,25 @@ class _Case:
 
     @property
     def unit(self) -> float:
-        """The unit of length for comparing poses."""
+        # The unit of length for comparing poses.
         return self.grading.exercise.length_scale
 
     @property
     def reference(self) -> Matrices:
-        """The reference's frames on the joint axes and its tool frame, ``(joints + 1, …)``."""
         return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
 
     def from_reference(self, reached: Matrices) -> Matrices:
-        """Return the frames on the joint axes, as seen from the reference's frames.
-
-        ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables. The result is
-        ``(joints, T, subset, 4, 4)``.
-        """
+        # ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables; the result is
+        # ``(joints, T, subset, 4, 4)``.
         return _from_reference(reached, self.roles, self.convention, self.grading)
 
 
 def nearest_by_few_cells(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NearestTable | None:
-    """Return the valid table that differs from the written one in at most two cells or in one row.
+    """Return the valid table that differs from the written one in at most two cells or one row.
 
-    If there are several such tables, return the table with the likeliest slip; None if there is no
-    such table. No row may be missing.
+    Of several such tables, the one with the likeliest mistake is taken. No row may be missing.
     """
     case = _case(roles, convention, grading)
     if len(case.wrong) > MAX_CELLS and len({row for row, _ in case.wrong}) > 1:
@@ -126,9 +120,9 @@ def nearest_by_few_cells(
 def single_repairs(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> frozenset[CellIndex]:
-    """Return the cells that can each be repaired alone, so that the table becomes valid.
+    """Return the cells that can each be repaired alone, so that the table describes the robot.
 
-    No row may be missing, and every cell must have a value.
+    Every row and every cell must have a value.
     """
     case = _case(roles, convention, grading)
     factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
@@ -151,11 +145,8 @@ def frames_from_reference(
 def _from_reference(
     reached: Matrices, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:
-    """Return the frames on the joint axes, as seen from the reference's frames.
-
-    The shape is ``(joints, T, subset, 4, 4)``. ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all
-    frames of T tables.
-    """
+    # ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables; the result is
+    # ``(joints, T, subset, 4, 4)``.
     of_joints = [role.joint is not None for role in roles]
     on_axes = joint_frames(reached, convention)[of_joints]
     reference = reference_frames(grading.exercise, convention, grading.samples)
@@ -174,7 +165,6 @@ def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> 
 
 
 def _repairs(case: _Case) -> list[CellRepair]:
-    """Return the repairs by one cell, or else by two cells or one row."""
     factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
     pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
     by_factor = one_factor_repairs(factors, pose)
@@ -188,11 +178,8 @@ def _repairs(case: _Case) -> list[CellRepair]:
 def _admissible(
     repairs: Iterable[CellRepair], counts: Container[int], case: _Case
 ) -> list[CellRepair]:
-    """Return the repairs after which all cells depend correctly on the joints.
-
-    The number of cells of a repair must be in ``counts``. The lengths in the returned repairs are
-    in the table's unit.
-    """
+    # The number of cells of a repair must be in ``counts``; lengths are returned in the table's
+    # unit.
     of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) in counts)
     return [
         repair
@@ -206,11 +193,8 @@ def _in_one_row(repair: CellRepair) -> bool:
 
 
 def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | None:
-    """Return the table after the likeliest repair.
-
-    A repair is likely if it has few cells, if these are in one row, if it leads to frames near the
-    reference's frames, and if students often make the mistake that it repairs.
-    """
+    # A repair is likely if it has few cells, if these are in one row, if it leads to frames near
+    # the reference's frames, and if students often make the mistake that it repairs.
     tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
     for k, repair in enumerate(repairs):
         _fill(tables[:, :, k], repair)
@@ -235,7 +219,6 @@ def _likeliest(repairs: Sequence[CellRepair], case: _Case) -> NearestTable | Non
 
 
 def _lost(repair: CellRepair, case: _Case) -> float:
-    """Return the number of units that the repaired cells lose; a single cell loses one unit."""
     if len(repair.cells) == 1:
         return WRONG_CELL
     repaired = case.table[..., SUBSET_SAMPLES].copy()
@@ -246,7 +229,7 @@ def _lost(repair: CellRepair, case: _Case) -> float:
 
 
 def _base_cost(repair: CellRepair, departures: float, case: _Case) -> float:
-    """Return the cost of a repair for the number of cells; ``departures`` is that of the frames."""
+    # ``departures`` is the cost of the frames.
     rows = [role.row for role in case.roles]
     if all((row := rows[i]) and not row.entries[c].readable for i, c in repair.cells):
         return UNREAD
@@ -257,24 +240,19 @@ def _base_cost(repair: CellRepair, departures: float, case: _Case) -> float:
 
 
 def _penalty(cell: CellIndex, repaired: Table, case: _Case) -> float:
-    """Return how unlikely the student's mistake in this cell is, at least 0."""
     right = _constant(repaired[cell], cell, case)
     written = None if cell in case.wrong else _constant(case.table[cell], cell, case)
     return slip_penalty(written, right, bool(IS_ANGLE[cell[1]]), case.grading)
 
 
 def _constant(values: Numbers, cell: CellIndex, case: _Case) -> Numbers:
-    """Return the constant part of the ``values`` of a cell.
-
-    The values must be this constant, plus or minus the joint variable that belongs in the cell.
-    """
+    # The values must be a constant, plus or minus the joint variable that belongs in the cell.
     variable: Numbers = case.variables[cell]
     error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
     return values - variable if error.max() < SAME_MOTION else values + variable
 
 
 def _repaired(cells: Sequence[CellIndex], factors: Factors, case: _Case) -> Table | None:
-    """Return the table with these cells repaired, ``(rows, 4, SAMPLES)``; None if that fails."""
     pose = _in_unit(case.reference[-1], case.unit)
     if len(cells) <= MAX_CELLS:
         values = repaired_values(factors, pose, cells)
@@ -292,7 +270,6 @@ def _repaired(cells: Sequence[CellIndex], factors: Factors, case: _Case) -> Tabl
 
 
 def _moves_rightly(repair: CellRepair, case: _Case, samples: slice) -> bool:
-    """True if each repaired value changes with the joints as its cell should."""
     return all(
         moves_with(value, changes(case.variables[cell])[samples], IS_ANGLE[cell[1]])
         for cell, value in zip(repair.cells, repair.values, strict=True)
@@ -300,13 +277,11 @@ def _moves_rightly(repair: CellRepair, case: _Case, samples: slice) -> bool:
 
 
 def _fill(table: Table, repair: CellRepair) -> None:
-    """Write the values of a repair into their cells of a table ``(rows, 4, samples)``."""
     for cell, value in zip(repair.cells, repair.values, strict=True):
         table[cell] = value
 
 
 def _in_table_unit(repair: CellRepair, case: _Case) -> CellRepair:
-    """Convert a repair from the unit for comparing poses to the unit of the table."""
     units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in repair.cells]
     return CellRepair(repair.cells, repair.values * np.array(units))
 

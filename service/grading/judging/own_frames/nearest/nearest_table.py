@@ -1,4 +1,4 @@
-"""Find the valid table nearest to a submitted table; the joint of each row is known."""
+"""Find the valid table (one that describes the robot) nearest to a submitted table."""
 
 from dataclasses import replace
 from functools import partial
@@ -61,7 +61,7 @@ from service.kinematics.transforms import cross
 def nearest_for_roles(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the valid table nearest to the rows in ``roles``, whose joints are known."""
+    """Return the valid table nearest to rows whose joints are known."""
     if freedom == FrameFreedom() and all(role.row is not None for role in roles):
         nearest = nearest_by_few_cells(roles, convention, grading)
         nearest = nearest or _as_intended(roles, convention, freedom, grading)
@@ -77,7 +77,6 @@ def nearest_for_roles(
 def _as_intended(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
-    """Return the intended table if only its convention or angle unit is wrong, else None."""
     values = handed_in_values(roles)
     if not np.isfinite(values).all():
         return None
@@ -98,10 +97,7 @@ def _as_intended(
 
 
 def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
-    """Convert a table to a convention, ``(rows, 4, samples)``.
-
-    Return None if the table needs another number of rows in this convention.
-    """
+    """Convert a table to a convention; return None if that needs another number of rows."""
     links = regrouped(table.values, table.convention)
     left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
     return None if left_out.any() else as_table(links, convention)
@@ -110,11 +106,7 @@ def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
 def _link_by_link(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the nearest valid table, found by comparing the links between the joint axes.
-
-    Base, tool and directions may be free or given. Try the table as written, then tables that
-    differ in one cell, then a search.
-    """
+    # Try the table as written, then tables that differ in one cell, then a search.
     exercise, samples = grading.exercise, grading.samples
     scale = exercise.length_scale
     mechanism = mechanism_at(exercise, samples)
@@ -152,7 +144,6 @@ def _as_written(
     freedom: FrameFreedom,
     scale: float,
 ) -> ChainMatch | None:
-    """Return the table as written if it is valid from any possible base, else None."""
     written = np.array([row.written for row in rows])
     signs = np.array([row.joint_sign for row in rows])
     for base in possible_bases(written, signs, roles, mechanism, freedom):
@@ -173,7 +164,6 @@ def _searched(
     freedom: FrameFreedom,
     scale: float,
 ) -> ChainMatch:
-    """Search for the nearest valid table, starting at the base or at a given tool."""
     search = partial(
         search_nearest_table, length_scale=scale, directions_given=not freedom.directions
     )

@@ -1,11 +1,12 @@
-"""Find the valid table that differs from a submitted one in one cell, if some frames are free.
+"""Find the valid table that differs from a submitted one in one cell, if frames may be chosen.
 
-A table is valid if it describes the robot. ``few_cells`` compares poses at all joint values, which
-is impossible if the student chooses base, tool or directions. So this module compares the joint
-axes with all joints at 0: they must lie on the joint axes of the reference. The axes give the value
-that each cell would need if no other cell were wrong (``kinematics.axis_repairs``). All repaired
-tables are then tested at once.
+A table is valid if it describes the robot. Its joint axes, with all joints at 0, must lie on those
+of the reference.
 """
+
+# ``few_cells`` compares poses at all joint values, which is impossible if the student chooses base,
+# tool or directions. The axes give the value that each cell would need if no other cell were wrong
+# (``kinematics.axis_repairs``). All repaired tables are then tested at once.
 
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass, replace
@@ -48,12 +49,11 @@ SUBSET = 2
 
 @dataclass(frozen=True, slots=True)
 class _Repair:
-    """A new constant ``(L,)`` for a cell, and the pose of one end of the chain after this repair.
+    """A new constant for a cell, and the pose of one end of the chain after this repair."""
 
-    The end is the last frame if ``is_last`` is true, else frame 0. Its pose ``(L, 4, 4)`` is in the
-    reference's frame 0. ``attempt`` is the index of the assumption on which the repair is based.
-    """
-
+    # The end is the last frame if ``is_last`` is true, else frame 0. Its pose ``(L, 4, 4)`` is in
+    # the reference's frame 0. ``attempt`` is the index of the assumption on which the repair is
+    # based.
     cell: CellIndex
     value: Numbers
     end: Matrices
@@ -63,13 +63,11 @@ class _Repair:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """A table as a product of factors, and the reference's axes in the same order.
+    """A table as a product of factors, and the reference's axes in the same order."""
 
-    ``joints`` ``(n,)`` are the indices of the factors that a joint moves. ``axes`` ``(n, L, 4, 4)``
-    are the correct poses of the joint axes in the reference's frame 0. ``is_reversed`` is true if
-    the factors start from the last frame instead of frame 0.
-    """
-
+    # ``joints`` ``(n,)`` are the indices of the factors that a joint moves. ``axes`` ``(n, L, 4,
+    # 4)`` are the correct poses of the joint axes in the reference's frame 0. ``is_reversed`` is
+    # true if the factors start from the last frame instead of frame 0.
     factors: Factors
     joints: Integers
     axes: Matrices
@@ -78,7 +76,6 @@ class _Body:
 
     @property
     def reversed(self) -> "_Body":
-        """Return the same table with its factors in reverse order, starting from the last frame."""
         return _Body(
             reversed_factors(self.factors),
             len(self.factors.axes) - 1 - self.joints[::-1],
@@ -88,24 +85,20 @@ class _Body:
         )
 
     def cell(self, k: int, kind: int) -> CellIndex:
-        """Return the cell of the table with the SHIFT or TURN of the k-th factor."""
         in_table = len(self.factors.axes) - 1 - k if self.is_reversed else k
         return in_table // 2, (A if self.factors.axes[k] == X else D) + kind
 
     def factor(self, cell: CellIndex) -> int:
-        """Return the index of the factor that a cell of the table belongs to."""
         in_table = self.factors.position(cell)[0]
         return len(self.factors.axes) - 1 - in_table if self.is_reversed else in_table
 
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A table to be repaired, as constants ``(rows, 4, L)``, and the mechanism of the reference.
+    """A table to be repaired, as constants, and the mechanism of the reference."""
 
-    ``wrong`` are the cells that are wrong whatever frames are chosen. ``joint_signs`` ``(rows +
-    1,)`` are the signs of the joint variables, 0 if irrelevant.
-    """
-
+    # The constants are ``(rows, 4, L)``. ``wrong`` are the cells that are wrong whatever frames are
+    # chosen. ``joint_signs`` ``(rows + 1,)`` are the signs of the joint variables, 0 if irrelevant.
     table: Table
     wrong: frozenset[CellIndex]
     joint_signs: Integers
@@ -117,7 +110,7 @@ class _Case:
     length_scale: float
 
     def body(self, samples: int) -> tuple[_Body, Matrices]:
-        """Return the table and the reference's last frame, both at the first ``samples``."""
+        # The table and the reference's last frame, both at the first ``samples``.
         factors = factors_of(self.table[..., :samples], self.convention)
         joints = joint_cells(self.roles)
         axes = np.array(list(accumulate(self.mechanism.joints[:, :samples], np.matmul)))
@@ -132,11 +125,10 @@ class _Case:
 
 @dataclass(frozen=True, slots=True)
 class _Repaired:
-    """T repairs that make the table valid, and the repaired ``links`` ``(T, rows + 1, 4, L)``.
+    """Repairs that make the table valid, and the repaired tables."""
 
-    ``poses`` ``(rows + 1, T, L, 4, 4)`` are the relative poses of the repaired tables.
-    """
-
+    # There are T repairs. ``links`` is ``(T, rows + 1, 4, L)``; ``poses`` ``(rows + 1, T, L, 4,
+    # 4)`` are the relative poses of the repaired tables.
     repairs: Sequence[_Repair]
     links: Numbers
     poses: Matrices
@@ -150,9 +142,9 @@ def one_cell_match(
     freedom: FrameFreedom,
     grading: Grading,
 ) -> ChainMatch | None:
-    """Return the valid table that differs from the written table in one cell, or None.
+    """Return the table that describes the robot after the repair of one cell, or None.
 
-    If there are several, return the one with the likeliest slip. No row may be missing.
+    Of several repairs, the likeliest is taken. No row may be missing.
     """
     wrong = np.array([row.wrong_regardless | ~(row.is_gradable | row.absent) for row in rows])
     wrong_cells = np.argwhere(as_table(wrong, convention)).tolist()
@@ -181,11 +173,8 @@ def one_cell_match(
 
 
 def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
-    """Return the likeliest repair.
-
-    A repair is likely if it leads to frames near the reference's frames, and if students often make
-    the mistake.
-    """
+    # A repair is likely if it leads to frames near the reference's frames, and if students often
+    # make the mistake.
     links = np.moveaxis(found.links, 0, 2)
     frames = frames_on_axes(found.poses, links, case.roles, case.convention, case.mechanism)
     departures = departure(frames.reshape(-1, *frames.shape[2:]), case.length_scale)
@@ -206,7 +195,6 @@ def _likeliest(found: _Repaired, case: _Case, grading: Grading) -> ChainMatch:
 
 
 def _repaired(case: _Case, repairs: Sequence[_Repair]) -> _Repaired:
-    """Return those repairs that make the table describe the robot."""
     if not repairs:
         return _Repaired((), np.empty(0), np.empty(0))
     samples = len(repairs[0].value)
@@ -225,7 +213,7 @@ def _repaired(case: _Case, repairs: Sequence[_Repair]) -> _Repaired:
 
 
 def _starts(repairs: Sequence[_Repair], tables: Numbers, convention: Convention) -> Matrices:
-    """Return the pose ``(T, L, 4, 4)`` of frame 0 of each table in the reference's frame 0."""
+    # The pose ``(T, L, 4, 4)`` of frame 0 of each table in the reference's frame 0.
     starts = np.array([repair.end for repair in repairs])
     from_last = np.array([repair.is_last for repair in repairs])
     if from_last.any():
@@ -236,11 +224,8 @@ def _starts(repairs: Sequence[_Repair], tables: Numbers, convention: Convention)
 def _repairs(
     case: _Case, samples: int, attempts: Set[tuple[int, CellIndex]] | None = None
 ) -> Iterator[_Repair]:
-    """Yield, for single cells, the value that the cell would need if no other cell were wrong.
-
-    The values are at the first ``samples``. If ``attempts`` are given, yield only the repairs of
-    these attempts and cells.
-    """
+    # The values are those that each cell would need if no other cell were wrong. If ``attempts``
+    # are given, yield only the repairs of these attempts and cells.
     body, tool = case.body(samples)
     for attempt, (seen, ends) in enumerate(_ends(body, tool, case.freedom)):
         if attempts is not None and all(attempt != wanted for wanted, _ in attempts):
@@ -254,7 +239,6 @@ def _repairs(
 def _values(
     body: _Body, ends: Matrices, tool: Matrices, case: _Case
 ) -> Iterator[tuple[CellIndex, Numbers]]:
-    """Yield cells, each with a constant that may repair the table if no other cell changes."""
     if case.freedom.base or case.freedom.tool:
         starts = ends @ body.factors.before[:-1]
         sign = -1.0 if body.is_reversed else 1.0
@@ -272,11 +256,8 @@ def _values(
 
 
 def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[_Body, Matrices]]:
-    """Yield the table as seen from each usable end, and the poses that this end may have.
-
-    The poses ``(K, L, 4, 4)`` are in the reference's frame 0. Pose k is correct if only factor k of
-    the table is wrong.
-    """
+    # The poses ``(K, L, 4, 4)`` are in the reference's frame 0. Pose k is correct if only factor k
+    # of the table is wrong.
     count = len(body.factors.axes)
     if not freedom.base:
         yield body, identity((count, len(tool)))
@@ -289,7 +270,7 @@ def _ends(body: _Body, tool: Matrices, freedom: FrameFreedom) -> Iterator[tuple[
 
 
 def _ends_by_axes(body: _Body) -> Iterator[Matrices]:
-    """Yield poses of a free end, found by putting the student's axes on the reference's axes."""
+    # The student's axes are put on the reference's axes.
     n, samples = body.axes.shape[:2]
     on_axes = body.factors.before[body.joints]
     # A variable may be the wrong cell, or have either sign. The first axis and the next one that is

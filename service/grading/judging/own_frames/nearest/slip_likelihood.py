@@ -1,9 +1,11 @@
-"""Find the likeliest of several slips that each explain a wrong table.
+"""Find the likeliest of several mistakes that each explain a wrong table.
 
-On parallel axes, and around prismatic joints, a slip can often be repaired in several cells. A
-repair is likely if the correct value is simple, and if students often make the slip: a wrong sign,
-a forgotten value, a quarter turn, an extra term, a missing or misplaced joint variable.
+A mistake is likely if the correct value is simple, or if students often make it.
 """
+
+# On parallel axes, and around prismatic joints, a mistake can often be repaired in several cells.
+# Students often make a wrong sign, a forgotten value, a quarter turn, an extra term, a missing or
+# misplaced joint variable.
 
 import numpy as np
 
@@ -23,11 +25,11 @@ UNRELATED = 4
 
 
 def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
-    """Return how unlikely it is to write one constant ``(SAMPLES,)`` for another; at least 0.
+    """Return how unlikely it is to write one constant for another; at least 0.
 
-    ``written`` is None if the cell could not be read, or does not change with the joints as it
-    should. Then the mistake is in the joint variable.
+    ``written`` is None if the cell is unreadable or depends wrongly on the joints.
     """
+    # Then the mistake is in the joint variable.
     right_terms = _terms(right, angle, grading)
     penalty = TERM * _count(right_terms)
     if written is None or _is_turn(written, right, angle):
@@ -41,7 +43,6 @@ def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: 
 
 
 def _is_turn(written: Numbers, right: Numbers, angle: bool) -> bool:
-    """True if an angle is wrong by a quarter turn, by half a turn, or by its sign."""
     if not angle:
         return False
     turns = [written - right + turn for turn in (np.pi / 2, np.pi, -np.pi / 2)]
@@ -54,7 +55,7 @@ _Terms = dict[str, float]
 
 
 def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
-    """Return a constant as a sum of letters and a number, or None; quarter turns are left out."""
+    # A sum of letters and a number; quarter turns are left out.
     found = multiples(constant[:HALF], angle, grading.exercise, grading.samples)
     if found is None:
         return None
@@ -66,7 +67,7 @@ def _terms(constant: Numbers, angle: bool, grading: Grading) -> _Terms | None:
 
 
 def _count(terms: _Terms | None) -> float:
-    """Return the number of terms of a sum; 2*l1 counts as two."""
+    # 2*l1 counts as two terms.
     if terms is None:
         return UNRELATED
     return sum(abs(share) if letter else 1.0 for letter, share in terms.items())

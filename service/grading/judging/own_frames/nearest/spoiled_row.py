@@ -1,7 +1,6 @@
-"""Replace the only wrong row of a table by wrong numbers, so that no cell of it fits by chance.
+"""Replace the only wrong row of a table by numbers that are wrong in every cell.
 
-The frames that a student chose are found by comparing rows. A wrong row can mislead this search, so
-that correct rows look wrong.
+A wrong row can mislead the search for the student's frames, so that correct rows look wrong.
 """
 
 from typing import Final
@@ -30,7 +29,7 @@ def with_spoiled_row(
 ) -> tuple[Role, ...] | None:
     """Replace the only row that differs from ``expected`` by wrong numbers.
 
-    Return None if several rows differ, if the row is missing, or if it was replaced before.
+    Return None if several rows differ, or none can be replaced.
     """
     handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
     right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)

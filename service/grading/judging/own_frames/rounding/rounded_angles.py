@@ -1,10 +1,11 @@
 """Replace angles that are rounded decimals, such as 1.57 for π/2, by the exact angles.
 
-A pose computed from rounded angles is not exactly valid, so that the student's frames or missing
-cells could not be found. If the constant angles of a robot are all multiples of 15°, so are the
-angles in all plausible frames. Then a decimal that agrees with such a multiple to its last digit
-means this multiple: 2.094 means 2π/3, but 2.0951 does not.
+In a robot whose constant angles are multiples of 15°, a decimal means such a multiple if all its
+digits agree. So 2.094 means 2π/3, but 2.0951 does not.
 """
+
+# A pose computed from rounded angles is not exactly valid, so that the student's frames or missing
+# cells could not be found.
 
 from dataclasses import replace
 
@@ -31,8 +32,7 @@ def with_exact_angles(
 ) -> tuple[Role, ...]:
     """Replace rounded angles in the rows of ``roles`` by the exact angles.
 
-    A changed row keeps the written numbers in ``as_written``. If no angle was rounded, return
-    ``roles`` itself.
+    A changed row keeps the student's numbers in ``as_written``.
     """
     slack = _slack_of_angles(roles, exercise, samples)
     if slack is None:
@@ -52,11 +52,9 @@ def with_exact_angles(
 def known_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> NDArray[np.bool_]:
-    """Return a mask ``(rows, 4)`` of the rounded angles whose exact values are known.
-
-    The mask contains all rounded angles if each of them agrees with a multiple of 15°, otherwise
-    none. If one angle of a table is not a multiple, another angle may look like one by chance.
-    """
+    """Return a mask ``(rows, 4)`` of the rounded angles whose exact values are known."""
+    # These are all rounded angles if each of them agrees with a multiple of 15°, otherwise none: if
+    # one angle of a table is not a multiple, another angle may look like one by chance.
     slack = _slack_of_angles(roles, exercise, samples)
     if slack is None:
         return np.zeros((len(roles), len(COLUMNS)), dtype=np.bool_)
@@ -68,10 +66,7 @@ def known_angles(
 def _slack_of_angles(
     roles: tuple[Role, ...], exercise: Exercise, samples: Samples
 ) -> Numbers | None:
-    """Return the largest rounding error of each angle.
-
-    Return None if no angle is rounded, or if the robot has angles that are not multiples of 15°.
-    """
+    # None if no angle is rounded, or if the robot has angles that are not multiples of 15°.
     if not any(role.row.has_decimal for role in roles if role.row):
         return None
     slack = slack_of_cells(roles, samples, IS_ANGLE)
@@ -81,7 +76,7 @@ def _slack_of_angles(
 def slack_of_cells(
     roles: tuple[Role, ...], samples: Samples, columns: NDArray[np.bool_] = EVERY_COLUMN
 ) -> Numbers:
-    """Return how far rounding may have moved each cell, ``(rows, 4)``; 0 outside ``columns``."""
+    """Return the largest possible rounding error of each cell; 0 outside ``columns``."""
     slack = np.zeros((len(roles), len(COLUMNS)))
     for i, role in enumerate(roles):
         for column in np.flatnonzero(columns).tolist() if role.row else ():
@@ -92,11 +87,8 @@ def slack_of_cells(
 
 
 def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Numbers:
-    """Return how far rounding moved each cell ``(rows, 4, SAMPLES)`` from a multiple of 15°.
-
-    The result is NaN for a cell if the distance is more than rounding can cause, or if the cell is
-    not a constant plus or minus its joint variable.
-    """
+    # NaN if the distance from a multiple of 15° is more than rounding can cause, or if the cell is
+    # not a constant plus or minus its joint variable.
     signs = np.sign((changes(values) * changes(variables)).sum(axis=-1))
     constants = values - signs[..., None] * variables
     exact = STEP * np.round(constants[..., 0] / STEP)
@@ -106,8 +98,6 @@ def _rounding_errors(values: Numbers, variables: Numbers, slack: Numbers) -> Num
 
 
 def _turns_in_steps(exercise: Exercise, samples: Samples) -> bool:
-    """True if the reference's constant angles are multiples of 15°."""
-
     def compute() -> bool:
         robot = exercise.robot
         values = at_home(robot.joints, samples.values, samples.count)

@@ -1,14 +1,12 @@
-"""Shift the rounded decimals of a whole table until the table describes the robot.
+"""Correct the rounding of all decimals of a table at once, so that it describes the robot.
 
-The true number of each decimal is at most a unit of its last place away. So all decimals are
-shifted at once, and each shift is limited by the unit of its own decimal. Hence a less precise
-decimal cannot hide a wrong number, and in a row of parallel axes it does not matter which offset
-was rounded. The errors of the chain depend almost linearly on the shifts
-(``kinematics.chain_match``).
-
-The pose of a free base may change slightly, and the right value of a wrong cell is unknown. Both
-are unknowns, too.
+Each decimal is shifted by at most a unit of its last place. So a less precise decimal cannot hide a
+wrong number.
 """
+
+# In a row of parallel axes it does not matter which offset was rounded. The errors of the chain
+# depend almost linearly on the shifts (``kinematics.chain_match``). The pose of a free base may
+# change slightly, and the right value of a wrong cell is unknown. Both are unknowns, too.
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -56,13 +54,11 @@ LEAST_SIZE = 1e-16
 
 @dataclass(frozen=True, slots=True)
 class _Chain:
-    """A table to be made valid, at L sets of links.
+    """A table to be made valid, at L sets of links."""
 
-    ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of the table; ``values`` ``(rows, 4,
-    SAMPLES)`` are its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or None if
-    frame 0 is given. The ``unknown`` cells may have any value.
-    """
-
+    # ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of the table; ``values`` ``(rows,
+    # 4, SAMPLES)`` are its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or
+    # None if frame 0 is given. The ``unknown`` cells may have any value.
     links: Table
     values: Table
     targets: Sequence[Target]
@@ -74,15 +70,11 @@ class _Chain:
 
     @property
     def free(self) -> int:
-        """The number of unknowns for each set of links."""
         return len(self.unknown) + (TWIST if self.base is not None else 0)
 
     def misfits(self, shifts: Numbers, free: Numbers) -> Numbers:
-        """Return the errors of the chain ``(K, n, L)``.
-
-        ``shifts`` ``(K, count)`` are the shifts of the decimals, ``free`` ``(K, free, L)`` the
-        other unknowns.
-        """
+        # ``shifts`` ``(K, count)`` are the shifts of the decimals, ``free`` ``(K, free, L)`` the
+        # other unknowns; the errors are ``(K, n, L)``.
         count = self.links.shape[-1]
         cells = self.values.reshape(-1, SAMPLES)
         moved = (self.decimals.shifted(shifts, cells) - cells)[..., :count]
@@ -97,7 +89,6 @@ class _Chain:
         return misfits(poses, self.targets, self.length_scale)
 
     def _twisted(self, twist: Numbers) -> Matrices:
-        """Return the base ``(K, L, 4, 4)`` after small motions ``twist`` ``(K, 6, L)``."""
         assert self.base is not None
         about_x, about_y, about_z = np.moveaxis(SMALL * twist[:, :3], 1, 0)
         turn = rot_x(about_x) @ rot_y(about_y) @ rot_z(about_z)
@@ -105,7 +96,7 @@ class _Chain:
         return np.asarray(turn @ self.base)
 
     def _sizes(self) -> Numbers:
-        """Return how far a shift by one unit moves the cell of each decimal, ``(count,)``."""
+        # How far a shift by one unit moves the cell of each decimal.
         cells = self.values.reshape(-1, SAMPLES)
         moved = self.decimals.shifted(np.eye(self.decimals.count), cells) - cells
         lengths = np.tile(np.where(IS_ANGLE, 1.0, self.length_scale), len(self.values))
@@ -113,7 +104,6 @@ class _Chain:
         return np.maximum(largest, LEAST_SIZE)
 
     def fit(self) -> tuple[Numbers, Numbers] | None:
-        """Return shifts ``(count,)`` and unknowns ``(free, L)`` that leave no error, or None."""
         count, sets = self.decimals.count, self.links.shape[-1]
         sizes = np.concatenate([self._sizes(), np.full(self.free, SMALL)])
         steps = difference_steps(sizes)
@@ -139,7 +129,6 @@ class _Chain:
 
 
 def _regrouped(tables: Numbers, convention: Convention) -> Numbers:
-    """Apply ``regrouped`` to many tables ``(K, rows, 4, L)``."""
     return np.moveaxis(regrouped(np.moveaxis(tables, 0, -1), convention), -1, 0)
 
 
@@ -148,9 +137,9 @@ def with_true_numbers(
 ) -> tuple[Role, ...]:
     """Shift the decimals in the rows of ``roles`` so that the table describes the robot.
 
-    A changed row keeps the written numbers in ``as_written``. Return ``roles`` itself if the table
-    already describes the robot, or if no shifts make it do so.
+    Return ``roles`` itself if that is unnecessary or impossible.
     """
+    # A changed row keeps the written numbers in ``as_written``.
     if not _has_decimals(roles):
         return roles
     written, known = _with_known_angles(roles, grading)
@@ -169,9 +158,9 @@ def with_rounded_cells(
 ) -> NearestTable:
     """Return the valid table nearest to a wrong table, computed from the exact numbers.
 
-    ``nearest`` was computed from the rounded decimals, so that even its correct cells differ
-    slightly from the written cells.
+    ``nearest`` was computed from the rounded decimals.
     """
+    # So even its correct cells differ slightly from the written cells.
     roles = nearest.roles
     if nearest.cost < WRONG_CELL or not _has_decimals(roles):
         return nearest
@@ -213,7 +202,7 @@ def with_rounded_cells(
 def _decimals(
     roles: tuple[Role, ...], grading: Grading, left_out: Sequence[CellIndex]
 ) -> SharedDecimals | None:
-    """Return the rounded decimals of a table; None if all are exact, or a cell has no value."""
+    # None if all decimals are exact, or a cell has no value.
     rows = [role.row for role in roles if role.row is not None]
     if len(rows) < len(roles):
         return None
@@ -228,12 +217,11 @@ def _decimals(
 
 
 def _has_decimals(roles: tuple[Role, ...]) -> bool:
-    """True if any cell of a table contains a decimal."""
     return any(role.row is not None and role.row.has_decimal for role in roles)
 
 
 def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> bool:
-    """True if the table leads to the tool frame at one sample, so that it is most likely valid."""
+    # One sample is enough: then the table is most likely valid.
     reached = pose(handed_in_values(roles)[..., 0], convention)
     error = np.abs(reached - tool_pose(grading.exercise, grading.samples)[0])
     return bool(error.max() < SAME_POSE * max(1.0, grading.exercise.length_scale))
@@ -242,11 +230,8 @@ def _has_pose(roles: tuple[Role, ...], convention: Convention, grading: Grading)
 def _with_known_angles(
     roles: tuple[Role, ...], grading: Grading
 ) -> tuple[tuple[Role, ...], list[CellIndex]]:
-    """Return the roles with the numbers as written, but with recognized angles made exact.
-
-    A rounded angle is recognized if its exact value is known: 1.57 is π/2. The second result has
-    the cells of the recognized angles.
-    """
+    # A rounded angle is recognized if its exact value is known: 1.57 is π/2. The second result has
+    # the cells of these angles.
     exercise, samples = grading.exercise, grading.samples
     written = _as_written(roles)
     known = [(i, column) for i, column in np.argwhere(known_angles(written, exercise, samples))]
@@ -271,7 +256,7 @@ def _chains(
     grading: Grading,
     unknown: Sequence[CellIndex] = (),
 ) -> list[_Chain]:
-    """Return a copy of the table for each possible base; the roles ``based_on`` give the bases."""
+    # The roles ``based_on`` give the possible bases.
     exercise, samples = grading.exercise, grading.samples
     mechanism = mechanism_at(exercise, samples)
     rows = row_constants(roles, exercise.robot.joints, convention, samples)
@@ -302,13 +287,11 @@ def _chains(
 
 
 def _shifted(decimals: SharedDecimals, shifts: Numbers, values: Table) -> Table:
-    """Return the cells ``(rows, 4, SAMPLES)`` with their decimals shifted."""
     moved: Table = decimals.shifted(shifts[None], values.reshape(-1, SAMPLES))[0]
     return moved.reshape(values.shape)
 
 
 def _moved(roles: tuple[Role, ...], decimals: SharedDecimals, shifts: Numbers) -> tuple[Role, ...]:
-    """Return the roles with their decimals shifted; ``as_written`` of a row keeps its numbers."""
     values = _shifted(decimals, shifts, handed_in_values(roles))
     return tuple(
         replace(role, row=replace(role.row, values=moved, as_written=role.row.handed_in))
