@@ -1,8 +1,9 @@
-"""The answer kinds. Each kind has a file with its name, which reads and judges its answers.
+"""The answer kinds.
 
-The functions ``read`` and ``judge`` in each file have the interface ``AnswerKind``. The package
-``shared`` has code that several kinds use.
+Each kind has a module with its name, which reads and judges its answers.
 """
+
+# The functions ``read`` and ``judge`` in each file have the interface ``AnswerKind``.
 
 from collections.abc import Mapping
 from importlib import import_module

@@ -74,7 +74,6 @@ def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
 def _cells(
     written: StudentRow, found: NDArray[np.int_], slips: Mapping[int, Finding], grading: Grading
 ) -> tuple[CellReport, ...]:
-    """Return the reports on the four cells; ``found`` is the Match of each."""
     return tuple(
         cell_report(written.entries[i], column, match, slips.get(i), grading)
         for i, (column, match) in enumerate(zip(COLUMNS, found.tolist(), strict=True))
@@ -84,7 +83,6 @@ def _cells(
 def _against_the_row(
     written: StudentRow, expected: Table, transform: Matrices, part: DhRowSpec, grading: Grading
 ) -> tuple[tuple[CellReport, ...], list[Finding]]:
-    """Compare the cells with the transform's row; return their reports and shared findings."""
     scale = _scale(grading)
     found = entry_matches(
         written.expressions, written.values, expected, scale, grading.samples, IS_ANGLE[:, None]
@@ -105,7 +103,6 @@ def _against_the_row(
 
 
 def _scale(grading: Grading) -> Numbers:
-    """Return the scale of each cell's tolerance, ``(4,)``."""
     return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
 
 
@@ -117,7 +114,6 @@ def _slip(
     spelling: Spelling,
     grading: Grading,
 ) -> Finding:
-    """Return the finding on a wrong cell."""
     angle = bool(IS_ANGLE[i])
     correction = None
     if grading.corrects:
@@ -144,10 +140,7 @@ def _slip(
 
 
 def _says_none(answer: object) -> bool:
-    """True if the answer is "none".
-
-    Raises UnreadableAnswerError if the answer contains a row, too.
-    """
+    # Raises UnreadableAnswerError if the answer contains a row, too.
     if isinstance(answer, Mapping):
         named = answer.get(NONE)
         if named in _NOT_SAID:
@@ -159,14 +152,13 @@ def _says_none(answer: object) -> bool:
 
 
 def _gives_a_row(answer: Mapping[str, object]) -> bool:
-    """True if the answer has rows, or a value in any cell."""
     table = canonical_table([answer])
     cells = table["rows"][0].values() if isinstance(table, Mapping) else ()
     return any(map(_is_written, (answer.get("rows"), *cells)))
 
 
 def _is_none_in_each_cell(answer: Mapping[str, object]) -> bool:
-    """True if every cell of a form is empty or "none", and at least one is "none"."""
+    # Every cell is empty or "none", and at least one is "none".
     written = [value for value in answer.values() if _is_written(value)]
     return bool(written) and all(isinstance(each, str) and says_none(each) for each in written)
 
@@ -176,7 +168,6 @@ def _is_written(value: object) -> bool:
 
 
 def _read_row(answer: object, grading: Grading) -> StudentRow:
-    """Read the single row of an answer. Raises UnreadableAnswerError."""
     if isinstance(answer, str):
         if (named := named_cells(answer)) is not None:
             if not named:
@@ -202,7 +193,6 @@ def _read_row(answer: object, grading: Grading) -> StudentRow:
 
 
 def _row_of(named: Mapping[str, NamedCell], grading: Grading) -> StudentRow:
-    """Return the row whose cells are named in a text."""
     cells = {column: cell.text for column, cell in named.items()}
     row = read_table({"rows": [{**dict.fromkeys(COLUMNS), **cells}]}, grading.reader).rows[0]
     entries = tuple(
@@ -213,7 +203,6 @@ def _row_of(named: Mapping[str, NamedCell], grading: Grading) -> StudentRow:
 
 
 def _moved(entry: Entry, start: int) -> Entry:
-    """Return the entry with its spans moved by ``start`` characters."""
     findings = tuple(
         replace(finding, span=finding.span and (start + finding.span[0], start + finding.span[1]))
         for finding in entry.findings
@@ -222,7 +211,6 @@ def _moved(entry: Entry, start: int) -> Entry:
 
 
 def _has_rows(answer: object) -> bool:
-    """True if the answer is a list of rows."""
     if isinstance(answer, Mapping):
         return "rows" in answer
     return isinstance(answer, list) and any(isinstance(row, list | dict) for row in answer)

@@ -70,8 +70,7 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """Judge the table row by row and cell by cell.
 
-    A wrong table is also judged in other readings, such as with its columns in another order; the
-    best reading counts.
+    A wrong table is also judged with its columns in another order, and in other such ways.
     """
     if np.isnan(answer.values).any():
         # Values for unread cells are looked for with what the judging itself leaves.
@@ -161,11 +160,9 @@ def _of_the_whole(
     convention: Convention,
     grading: Grading,
 ) -> tuple[Judgement, tuple[Finding, ...], tuple[Finding, ...]]:
-    """Explain a wrong table as a whole, or else find a motion that the student's arm cannot make.
-
-    Return the judgement, the findings that explain the table, and the findings on the motion. If
-    the table is explained, the judgement is revised to fit the explanation.
-    """
+    # The judgement, the findings that explain the table, and the findings on a motion that the
+    # student's arm cannot make. If the table is explained, the judgement is revised to fit the
+    # explanation.
     if not judgement.wrong:
         return judgement, (), ()
     roles = judgement.roles or roles_in(rows, convention, grading)
@@ -185,7 +182,6 @@ def _of_the_whole(
 def _chain(
     answer: StudentTable, judgement: Judgement, convention: Convention
 ) -> StudentChain | None:
-    """Return the table as a chain; None unless all cells have a value."""
     if np.isnan(answer.values).any():
         return None
 
@@ -200,12 +196,10 @@ def _chain(
 
 
 def _cost_of(found: tuple[Finding, ...]) -> float:
-    """Return the share of the points that mistakes in the whole table cost."""
     return sum(COSTS.get(finding.code, COST) for finding in found)
 
 
 def _row_reports(judgement: Judgement, grading: Grading, slips: Slips) -> tuple[RowReport, ...]:
-    """Return the report rows with their cells."""
     return tuple(
         right_row(judged.label, COLUMNS)
         if judged.row is not None and is_right_throughout(judged.row.entries, row, grading)

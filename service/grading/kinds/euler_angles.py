@@ -1,7 +1,7 @@
 """Answer kind ``euler_angles``: three angles that describe a rotation.
 
-Every triple of angles that gives the expected rotation is correct. A wrong triple is compared with
-the nearest correct triple, so that a single slip costs a single angle.
+Every triple of angles that gives the rotation is correct. A wrong triple is compared with the
+nearest correct triple.
 """
 
 from collections.abc import Sequence
@@ -83,10 +83,7 @@ def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Jud
 
 
 def _content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
-    """Return the content cells: the angles that are not 0.
-
-    The number of angles that count is at most that of the simplest triple of the rotation.
-    """
+    # The angles that are not 0. At most as many count as in the simplest triple of the rotation.
     fixed = part.axes == "fixed"
     simplest = nearest_triple(np.zeros_like(expected), rotation, part.turns, fixed=fixed)
     known, most = (known_cells(triple, 0.0, angle=True) for triple in (expected, simplest))
@@ -107,7 +104,7 @@ def _found(
     part: EulerAnglesSpec,
     grading: Grading,
 ) -> NDArray[np.int_]:
-    """Return the Match of each angle, ``(3,)``; angles that give the rotation all match."""
+    # Angles that give the rotation all match.
     angles = student.values
     found = entry_matches(student.expressions, angles, expected, 1.0, grading.samples, angle=True)
     if np.isfinite(angles).all():
@@ -122,10 +119,8 @@ def _found(
 def _are_rounded(
     student: StudentValues, rotation: Matrices, part: EulerAnglesSpec, grading: Grading
 ) -> bool:
-    """True if the angles describe the rotation after shifts of their rounded decimals.
-
-    In a singular orientation only a sum of angles matters, so that single angles may be arbitrary.
-    """
+    # In a singular orientation only a sum of angles matters, so that single angles may be
+    # arbitrary.
     decimals = SharedDecimals(student.expressions, grading.samples)
     if not decimals.count:
         return False
@@ -148,9 +143,10 @@ def nearest_triple(
 ) -> Numbers:
     """Return the triple ``(3, SAMPLES)`` of ``rotation`` that is nearest to ``angles``.
 
-    The nearest triple has the fewest angles that differ by more than their rounding error
-    ``slack``. A NaN does not count as different.
+    The nearest triple has the fewest different angles. ``slack`` is the rounding error of each
+    angle.
     """
+    # A NaN does not count as different.
     if fixed:
         return nearest_triple(angles[::-1], rotation, sequence[::-1], slack=slack[::-1])[::-1]
     one = to_angles(sequence, rotation)
@@ -164,12 +160,9 @@ def nearest_triple(
 
 
 def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
-    """Return which of the two triples of a rotation is intended at each sample, ``(SAMPLES,)``.
-
-    For each of the two triples, ``off`` is the distance of each angle from the triple's angle, and
-    ``hit`` is a mask of equal angles, both ``(2, SAMPLES, 3)``. The choice makes as many angles as
-    possible correct at all samples.
-    """
+    # For each of the two triples of a rotation, ``off`` is the distance of each angle from the
+    # triple's angle, and ``hit`` is a mask of equal angles, both ``(2, SAMPLES, 3)``. The choice
+    # makes as many angles as possible correct at all samples.
     total, samples = off.sum(axis=-1), np.arange(off.shape[1])
     for count in (3, 2, 1):
         fits = [hit[..., list(each)].all(axis=-1) for each in combinations(range(3), count)]
@@ -182,7 +175,7 @@ def _family(off: Numbers, hit: NDArray[np.bool_]) -> NDArray[np.int_]:
 
 
 def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence: str) -> Numbers:
-    """Return the triple of a singular rotation that has the first angle as the student wrote it."""
+    # The first angle is as the student wrote it.
     first = np.where(np.isfinite(angles[0]), angles[0], one[:, 0])
     last = last_angle(sequence, np.stack([first, one[:, 1]], axis=-1), rotation)
     if not np.isfinite(angles[0]).all():
@@ -198,7 +191,6 @@ def _arctangents(entries: Sequence[Entry]) -> list[bool]:
 def _explained(
     found: NDArray[np.int_], explained: Explained | None
 ) -> tuple[NDArray[np.int_], dict[tuple[int, int], Finding], tuple[Finding, ...]]:
-    """Return the Match of each angle, findings on single angles, and findings on the triple."""
     if explained is None:
         return found, {}, ()
     slipped = explained.entries
@@ -212,7 +204,6 @@ def _explained(
 def _slips(
     student: StudentValues, expected: Numbers, found: NDArray[np.int_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
-    """Return the findings on single wrong angles."""
     wrong = found < Match.ROUNDED
     corrections: list[Correction | None] = [None] * len(expected)
     if wrong.any() and grading.corrects:

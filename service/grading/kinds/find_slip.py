@@ -1,4 +1,4 @@
-"""Answer kind ``find_slip``: mark the slip in a given table, and correct the table."""
+"""Answer kind ``find_slip``: mark the mistake (slip) in a given table, and correct the table."""
 
 import re
 from collections.abc import Mapping
@@ -50,8 +50,7 @@ _MARK_LINE: Final = re.compile(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.I
 class FoundSlip:
     """An answer: the marked cells and the corrected table.
 
-    ``table`` is None if the table is missing or unreadable as a whole. ``unread`` is the reason why
-    it is unreadable.
+    ``table`` is None if it is missing or unreadable; ``unread`` has the reason.
     """
 
     marked: MarkedCells
@@ -80,7 +79,6 @@ def read(part: FindSlipSpec, answer: object, grading: Grading) -> FoundSlip | No
 
 
 def _split(answer: object) -> tuple[object, object]:
-    """Return the marked cells and the table of an answer. Raises UnreadableAnswerError."""
     if isinstance(answer, str):
         first, _, rest = answer.strip().partition("\n")
         if found := _MARK_LINE.fullmatch(first):
@@ -96,9 +94,9 @@ def _split(answer: object) -> tuple[object, object]:
 def judge(part: FindSlipSpec, answer: FoundSlip, grading: Grading) -> Judged:
     """Judge the marked cells and the corrected table.
 
-    If the marked cells are wrong, the report does not say which cells of the table are wrong.
-    Otherwise a student could find the slip by submitting the given table.
+    If the marked cells are wrong, the report does not show which cells of the table are wrong.
     """
+    # Otherwise a student could find the slip by submitting the given table.
     drawn = slip_of(part, grading.exercise)
     is_found = _is_found(answer.marked.cells, drawn)
     table = None if answer.table is None else dh_table.judge(part.table, answer.table, grading)
@@ -140,7 +138,6 @@ def _marked_row(
 def _hidden_table(
     answer: FoundSlip, table: Judged | None, grading: Grading, *, is_found: bool
 ) -> RowReport:
-    """Return a report row for a wrong table that does not show the table's cells."""
     verdict, findings = Verdict.MISSING, tuple[Finding, ...]()
     if answer.unread is not None:
         verdict, findings = Verdict.UNREADABLE, (answer.unread,)
@@ -160,10 +157,7 @@ def _on_reading(table: Judged | None) -> tuple[Feedback, ...]:
 
 
 def _is_found(marked: frozenset[CellIndex], drawn: DrawnSlip) -> bool:
-    """True if the marked cells are one of the places of the slip.
-
-    A whole row or column may be marked if at least two of its cells are wrong.
-    """
+    # A whole row or column may be marked if at least two of its cells are wrong.
     return any(_covers(marked, wrong) for wrong in drawn.places)
 
 
@@ -179,11 +173,9 @@ def _covers(marked: frozenset[CellIndex], wrong: frozenset[CellIndex]) -> bool:
 
 
 def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
-    """Return the worth of the cells: one half for the marked cells, one half for the table.
-
-    In a correct table, the cells of the slip share the half of the table. In any other table, all
-    cells that are not correct share this half, so that the table earns nothing.
-    """
+    # One half for the marked cells, one half for the table. In a correct table, the cells of the
+    # slip share the half of the table. In any other table, all cells that are not correct share
+    # this half, so that the table earns nothing.
     wrong = [[cell.verdict is not Verdict.CORRECT for cell in row.cells] for row in rows]
     if not any(map(any, wrong)):
         wrong = [
@@ -200,11 +192,9 @@ def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
 
 
 def slip_of(part: FindSlipSpec, exercise: Exercise) -> DrawnSlip:
-    """Return the given table and its slip.
-
-    If the slip that the part asks for does not fit the robot, the table has another slip;
-    ``exercises check`` reports this.
-    """
+    """Return the given table and its mistake (slip)."""
+    # If the slip that the part asks for does not fit the robot, the table has another slip;
+    # ``exercises check`` reports this.
     return _slip_of(_Asked(exercise.version, part.id, part, exercise))
 
 
@@ -219,8 +209,7 @@ def shown_shape(part: PartSpec, exercise: Exercise) -> AnswerShape:
 
 @dataclass(frozen=True, slots=True)
 class _Asked:
-    """A part as a cache key, compared by the exercise version and the part's id."""
-
+    # A cache key, compared by the exercise version and the part's id.
     version: str
     part_id: str
     part: FindSlipSpec = field(compare=False)
@@ -244,7 +233,7 @@ def _slip_of(asked: _Asked) -> DrawnSlip:
 def blame(
     part: FindSlipSpec, exercise: Exercise, texts: TableTexts, turn: int = 0
 ) -> TableBlame | None:
-    """Return what is wrong in a table. Return None if it is correct, or a cell cannot be read.
+    """Return what is wrong in a table; None if it is correct or unreadable.
 
     Another ``turn`` draws other random samples.
     """
@@ -279,7 +268,6 @@ def blame(
 
 @cache
 def _meaning(slip: str) -> str:
-    """Return the meaning of the code of a slip in a table cell or in a whole table."""
     return next(
         record.meaning(slip)
         for record in all_records()

@@ -97,8 +97,7 @@ def judge(part: FramesSpec, answer: tuple[StudentFrame, ...], grading: Grading) 
 
 @dataclass(frozen=True)
 class _Asked:
-    """The frames that a part asks for, as a cache key that does not depend on the samples."""
-
+    # A cache key that does not depend on the samples.
     version: str
     convention: Convention
     robot: FramesAtHome = field(compare=False)
@@ -107,14 +106,13 @@ class _Asked:
 
 @lru_cache(maxsize=256)
 def _content(asked: _Asked) -> Content:
-    """Return the content cells of the frames. An empty cell costs as much as a wrong one."""
+    # An empty cell costs as much as a wrong one.
     return of_rows(known_frames(asked.robot, asked.home))
 
 
 def _without_messages(
     judged: JudgedFrames, answer: Sequence[StudentFrame], content: Content
 ) -> Judged:
-    """Return a judgement that has only the verdicts on cells."""
     rows = []
     for matches, frame in zip(judged.found.tolist(), answer, strict=True):
         written = ((frame.axis.entry,), frame.z.entries, *((e,) for e in frame.origin))
@@ -124,7 +122,6 @@ def _without_messages(
 
 
 def _verdict(entries: Sequence[Entry], match: int) -> Verdict:
-    """Return the verdict on a cell with this Match."""
     if match == Match.UNDEFINED:
         return unread_verdict(entries) or Verdict.INCORRECT
     return Verdict.INCORRECT if match == Match.DIFFERENT else Verdict.CORRECT
@@ -140,7 +137,6 @@ def _cells(
     home: Samples,
     grading: Grading,
 ) -> tuple[CellReport, ...]:
-    """Return the reports on the six cells of a frame."""
     found, place = judged.found[i].tolist(), judged.places[i]
     slack = EXACT_VALUE * robot.length_scale + placed.origin_slack
     at = (robot.convention, place)
@@ -191,7 +187,6 @@ def _direction_cell(
 def _plain_cell(
     label: str, entries: Sequence[Entry], match: int, slip: Finding | None, grading: Grading
 ) -> CellReport:
-    """Return the report on a cell that is not a formula."""
     findings = tuple(finding for entry in entries for finding in entry.findings)
     if match == Match.DIFFERENT and slip:
         findings = (*findings, slip)
@@ -203,7 +198,6 @@ def _plain_cell(
 def _length_text(
     values: Numbers, spelling: Spelling, home: Samples, grading: Grading
 ) -> Correction | None:
-    """Return a coordinate ``(SAMPLES,)`` as a formula of the constants, or None."""
     exercise = grading.exercise
     none = (0,) * len(exercise.joints)
     found = sum_formula(values, none, False, exercise, home, spelling)
@@ -211,7 +205,7 @@ def _length_text(
 
 
 def _direction_text(direction: Numbers | None) -> str | None:
-    """Return a direction as text: a base direction such as +y, or a vector; None if it varies."""
+    # A base direction such as +y, or a vector; None if it varies.
     if direction is None or np.ptp(direction, axis=0).max() > EXACT_VALUE:
         return None
     # Either sense is right.
@@ -224,7 +218,6 @@ def _direction_text(direction: Numbers | None) -> str | None:
 
 
 def _without_slips(row: RowReport) -> RowReport:
-    """Return a row without the messages on its wrong cells."""
     cells = tuple(
         replace(cell, feedback=()) if cell.verdict is Verdict.INCORRECT else cell
         for cell in row.cells
@@ -239,7 +232,7 @@ def _is_other_convention(
     judged: JudgedFrames,
     grading: Grading,
 ) -> bool:
-    """True if the frames, at least two, are all correct in the other convention."""
+    # At least two frames, all correct in the other convention.
     other = part.convention.other
     exercise = grading.exercise
     if other not in exercise.robot.tables or (judged.found == Match.UNDEFINED).any():
@@ -260,7 +253,6 @@ def _is_other_convention(
 def _table_at(
     part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading, at: Samples
 ) -> Table:
-    """Return the DH table that follows from correct frames, at the samples ``at``."""
     exercise = grading.exercise
     home = home_samples(exercise, at)
     robot = home_robot(exercise, part.convention, at)
@@ -269,7 +261,6 @@ def _table_at(
 
 
 def _chain(part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading) -> StudentChain:
-    """Return correct frames as a chain."""
     table = _table_at(part, answer, grading, grading.samples)
 
     def frames_at(samples: Samples) -> Matrices:
@@ -281,10 +272,7 @@ def _chain(part: FramesSpec, answer: Sequence[StudentFrame], grading: Grading) -
 def _table_told(
     part: FramesSpec, robot: FramesAtHome, placed: Sequence[PlacedFrame], grading: Grading
 ) -> tuple[Finding, ...]:
-    """Return a message with the DH table of correct frames.
-
-    There is no message if a later part asks for this table.
-    """
+    # No message if a later part asks for this table.
     exercise = grading.exercise
     if not grading.corrects or any(each.follows == part.id for each in exercise.parts):
         return ()
@@ -313,11 +301,8 @@ def frames_table(
 
 
 def _cell_text(values: Numbers, constant: Numbers, angle: bool, grading: Grading) -> str | None:
-    """Return a cell of the table as text; None if it has no formula.
-
-    ``constant`` is the value of the cell with all joint variables 0. Numbers have enough figures
-    not to count as rounded.
-    """
+    # ``constant`` is the value of the cell with all joint variables 0. Numbers have enough figures
+    # not to count as rounded.
     exercise, samples = grading.exercise, grading.samples
     value = float(np.degrees(constant[0]) if angle else constant[0])
     if np.ptp(constant) > EXACT_VALUE or abs(float(f"{value:.6g}") - value) < EXACT_VALUE:

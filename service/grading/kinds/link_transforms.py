@@ -1,4 +1,4 @@
-"""Answer kind ``link_transforms``: the matrices A_1 … A_n of a table's rows."""
+"""Answer kind ``link_transforms``: one matrix A_i for each row of a DH table."""
 
 from dataclasses import dataclass
 from functools import partial
@@ -35,7 +35,7 @@ from service.translations import say
 
 @dataclass(frozen=True, slots=True)
 class StudentLinks:
-    """The matrices of an answer, and their values ``(k, SAMPLES, 4, 4)``, NaN if unread."""
+    """The matrices of an answer, and their values ``(k, SAMPLES, 4, 4)``, NaN if unreadable."""
 
     matrices: tuple[StudentMatrix, ...]
     values: Matrices
@@ -51,10 +51,8 @@ class StudentLinks:
 
 
 def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentLinks:
-    """Read the matrices of a list or of one pasted text, one for each row of the table.
-
-    The entries of an omitted matrix at the end are missing.
-    """
+    """Read the matrices of a list or of one pasted text, one for each row of the table."""
+    # The entries of an omitted matrix at the end are missing.
     labels = grading.exercise.robot.tables[part.convention].labels
     if isinstance(answer, str):
         matrices = tuple(read_matrices(answer, labels, HOMOGENEOUS, grading.reader))
@@ -118,25 +116,20 @@ def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> J
 
 
 def _as_told(finding: Finding, case: MatrixCase) -> list[Explanation]:
-    """Return a finding on all link transforms as the explanation of one wrong matrix."""
     return [Explanation(finding, case.mask(...))]
 
 
 def _by_other_links(
     links: Matrices, part: LinkTransformsSpec, grading: Grading, case: MatrixCase
 ) -> list[Explanation]:
-    """Return the slips that explain why the student's last link transform is wrong.
-
-    Such a slip is an angle or a factor of the earlier ``links``. ``links`` are the correct
-    transforms up to the wrong one.
-    """
+    # Such a slip is an angle or a factor of the earlier ``links``, which are the correct transforms
+    # up to the wrong one.
     joints, count = grading.exercise.robot.joints, case.actual.shape[-1] // 2
     link = LinkAmongOthers.of(links, joints, grading.samples, part.convention, count)
     return explain_link(link, case)
 
 
 def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Content:
-    """Return the content cells: the entries that differ from the joint's motion alone."""
     exercise, samples = grading.exercise, grading.samples
     table = exercise.robot.tables[part.convention]
     reference = links(table.values(samples.values, SAMPLES), part.convention)
@@ -144,12 +137,10 @@ def _content(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Con
 
 
 def _links_of(values: list[Numbers]) -> Matrices:
-    """Convert matrices ``(4, 4, SAMPLES)`` to one array ``(k, SAMPLES, 4, 4)``."""
     return np.moveaxis(np.array(values), -1, 1)
 
 
 def _expected(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Matrices:
-    """Return the correct matrices, ``(k, SAMPLES, 4, 4)``."""
     reference = grading.exercise.robot.tables[part.convention]
     chain, wanted = grading.student_chain, len(reference.rows)
     if chain is not None and grading.following and len(chain.frames) == wanted + 1:
@@ -163,10 +154,7 @@ def _expected(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) 
 
 
 def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Matrices:
-    """Return the link transforms of the valid table nearest to the matrices.
-
-    Each matrix that is a link transform gives a row of the table; the other rows are missing.
-    """
+    # Each matrix that is a link transform gives a row of the table; the other rows are missing.
     joints = grading.exercise.robot.joints
     roles = tuple(
         Role(_row(matrix, part), joints[i] if i < len(joints) else None)
@@ -177,7 +165,7 @@ def _nearest_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grad
 
 
 def _completed(values: Matrices, part: LinkTransformsSpec, grading: Grading) -> Matrices:
-    """Return the matrices. A single unreadable matrix is computed from the others."""
+    # A single unreadable matrix is computed from the others.
     unread = np.flatnonzero(np.isnan(values).any(axis=(1, 2, 3)))
     if len(unread) != 1:
         return values

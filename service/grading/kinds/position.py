@@ -37,7 +37,7 @@ def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
 
 
 def _tails(coordinates: str) -> tuple[Tail, ...]:
-    """Return the values that may follow the coordinates, such as the 0 in [x, y, 0]."""
+    # Such as the 0 in [x, y, 0].
     if coordinates == "xy":
         return PLANAR, HOMOGENEOUS, (*PLANAR, *HOMOGENEOUS)
     # If x and z are expected, z in [x, y, 0] may be the second or the third value.
@@ -61,7 +61,6 @@ def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged
 
 
 def _expected(part: PositionSpec, grading: Grading) -> Numbers:
-    """Return the expected coordinates, ``(n, SAMPLES)``."""
     given = formula_values(part, grading)
     if given is not None:
         return np.asarray(given[0])
@@ -79,7 +78,6 @@ def _explained(
     answers: SlippedAnswers | None,
     grading: Grading,
 ) -> tuple[tuple[Finding], tuple[Place, ...]] | None:
-    """Return the finding that explains all wrong coordinates, with their places."""
     exercise = grading.exercise
     linked = is_whole_chain(part, exercise) and isinstance(exercise.reference, Robot)
     case = WrongPosition(

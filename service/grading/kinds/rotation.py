@@ -57,7 +57,6 @@ def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged
 
 
 def _expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Numbers:
-    """Return the correct rotation, ``(3, 3, SAMPLES)``."""
     if steps:
         return as_entries(composed([(step.rotation, step.fixed) for step in steps]))
     given = formula_values(part, grading)
@@ -65,7 +64,7 @@ def _expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Number
 
 
 def _steps(part: RotationSpec, grading: Grading) -> list[Step]:
-    """Return the turns that the part gives for the rotation, in numbers; [] if it gives none."""
+    # [] if the part gives no turns.
     if part.steps is None:
         return []
     [angles] = given_values(part, grading)

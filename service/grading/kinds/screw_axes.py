@@ -50,10 +50,7 @@ COSTS = {"body_for_space": 0.5, "space_for_body": 0.5}
 
 @dataclass(frozen=True, slots=True)
 class ExpectedScrews:
-    """The expected axes, and the same axes in the other frame: ``(joints, 6, SAMPLES)`` each.
-
-    ``labels`` are the joints' numbers.
-    """
+    """The expected axes, and the same axes in the other frame: ``(joints, 6, SAMPLES)`` each."""
 
     axes: Numbers
     elsewhere: Numbers | None
@@ -77,11 +74,8 @@ def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix
 
 
 def _columns_are_axes(part: ScrewAxesSpec, rows: StudentMatrix, grading: Grading) -> bool:
-    """True if a square matrix has the axes in its columns, as in Lynch & Park, "Modern Robotics".
-
-    One column may be correct by chance. So the number of correct columns must exceed that of
-    correct rows by two.
-    """
+    # As in Lynch & Park, "Modern Robotics". One column may be correct by chance, so the number of
+    # correct columns must exceed that of correct rows by two.
     axes = _expected(part, grading).axes
     senses = (1, -1) if part.directions == "free" else (1,)
 
@@ -143,10 +137,8 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
 def _explained(
     answer: StudentMatrix, case: WrongScrews, grading: Grading
 ) -> tuple[dict[int, Finding], float | None]:
-    """Return the findings on wrong axes, by the index of the axis, and a cost.
-
-    If one slip explains all wrong axes, the cost is its share of the points; otherwise it is None.
-    """
+    # If one slip explains all wrong axes, the cost is its share of the points; otherwise it is
+    # None.
     wrong = np.flatnonzero(case.wrong.any(axis=1)).tolist()
     if (throughout := explain_screws(case)) is not None:
         return dict.fromkeys(wrong, throughout), COSTS.get(throughout.code, COST)
@@ -162,7 +154,6 @@ def _explained(
 
 
 def _is_right_at_home(answer: StudentMatrix, case: WrongScrews, grading: Grading) -> bool:
-    """True if the axes are correct when all joint variables are 0."""
     exercise, samples = grading.exercise, grading.samples
     home = at_home(exercise.joints, samples.values, SAMPLES)
     values = answer.values_at(Samples(home))
@@ -175,7 +166,6 @@ def _shared_messages(
     labels: Sequence[str],
     grading: Grading,
 ) -> tuple[tuple[Feedback, ...], dict[int, Finding]]:
-    """Return the messages that several axes share, and the findings on single axes by index."""
     shared: list[Feedback] = []
     alone: dict[int, Finding] = {}
     for finding in dict.fromkeys(explained.values()):
@@ -189,10 +179,7 @@ def _shared_messages(
 
 
 def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
-    """Return a mask ``(joints, 6)`` of the cells that earn points.
-
-    Such a cell differs from 0 and from the cell of the frame's own z axis.
-    """
+    # A cell that earns points differs from 0 and from the cell of the frame's own z axis.
     turns = np.abs(axes[:, :3]).max(axis=(1, 2)) > 0
     lazy = np.where(turns[:, None], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1])
     scale = _scale(grading)
@@ -228,21 +215,18 @@ def _expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
 
 
 def _matches(student: StudentMatrix, expected: Numbers, grading: Grading) -> NDArray[np.int_]:
-    """Return the Match of each number, ``(joints, 6)``."""
     return entry_matches(
         student.expressions, student.values, expected, _scale(grading), grading.samples
     )
 
 
 def _scale(grading: Grading) -> Numbers:
-    """Return the scale of the tolerance of each number of an axis, ``(6,)``."""
     return np.repeat([1.0, grading.exercise.length_scale], 3)
 
 
 def _slips(
     student: StudentMatrix, i: int, axis: Numbers, wrong: NDArray[np.bool_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
-    """Return the findings on single numbers of axis ``i``."""
     values = StudentValues(student.entries[i], SCREW, student.values[i])
     compared = ComparedValues(values, axis, number_corrections(axis, grading))
     return slips_of(compared, wrong, grading)

@@ -63,7 +63,6 @@ def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judge
 
 
 def _chain(answer: StudentMatrix) -> StudentChain | None:
-    """Return the pose as a chain of one link; None unless all entries have a value."""
     if np.isnan(answer.values).any():
         return None
 

@@ -55,10 +55,7 @@ def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
 def _slip(
     answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> Finding | None:
-    """Return the mistake in the DH table that explains all wrong values.
-
-    Return None if fewer than two values are wrong.
-    """
+    # None if fewer than two values are wrong.
     search = search_of(answers, compared, wrong, grading)
     found = search.explanation(np.ones_like(wrong)) if search else None
     return None if found is None else found.findings[0]

@@ -1,1 +1,1 @@
-"""Random samples of joint values and link parameters, and the comparison of numbers at them."""
+"""Draw random values of joints and link parameters, and compare numbers at them."""

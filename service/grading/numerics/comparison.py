@@ -1,12 +1,13 @@
-"""Compare values at all samples with the expected ones.
+"""Compare values with the expected ones.
 
-Arrays are ``(..., samples)``; values are equal only if they are equal at all samples. No tolerance
-depends on the drawn samples, so that every draw gives the same result.
-
-A decimal number with three or more figures is right if it is the true number, rounded or cut off
-(``expressions.evaluation.decimals``). So an entry is right if shifts of its decimals, each no
-larger than rounding allows and the same at all samples, make it equal to the expected one.
+Values are equal only if they are equal at all samples (random joint values). A rounded decimal with
+three or more figures is right.
 """
+
+# Arrays are ``(..., samples)``. No tolerance depends on the drawn samples, so that every draw gives
+# the same result. A rounded decimal is right if it is the true number, rounded or cut off
+# (``expressions.evaluation.decimals``). So an entry is right if shifts of its decimals, each no
+# larger than rounding allows and the same at all samples, make it equal to the expected one.
 
 import math
 from collections.abc import Callable, Mapping, Sequence
@@ -70,7 +71,6 @@ def difference(actual: Numbers, expected: Numbers, angle: ArrayLike = False) -> 
 
 
 def _turned(plain: Numbers, angle: ArrayLike | bool) -> Numbers:
-    """Return differences, modulo 2π in [−π, π] where the mask ``angle`` is true."""
     if isinstance(angle, bool) and not angle:
         return plain
     turns = np.where(angle, np.round(plain / (2 * np.pi)), 0.0)
@@ -80,12 +80,12 @@ def _turned(plain: Numbers, angle: ArrayLike | bool) -> Numbers:
 def matches(
     actual: Numbers, expected: Numbers, scale: ArrayLike, angle: ArrayLike = False
 ) -> NDArray[np.int_]:
-    """Return the Match of each entry ``(...)`` as written, from values ``(..., samples)``.
+    """Return the comparison result of each entry ``(...)``, from values ``(..., samples)``.
 
-    ``scale`` is the unit of the tolerance: 1 for angles and direction cosines, a typical length for
-    lengths. ``scale`` gives the tolerance an absolute minimum, so that sin² + cos² − 1 always
-    equals 0. The minimum is far too small to hide a wrong constant in a large entry.
+    ``scale`` is the unit of the tolerance: 1 for angles, a typical length for lengths.
     """
+    # ``scale`` gives the tolerance an absolute minimum, so that sin² + cos² − 1 always equals 0.
+    # The minimum is far too small to hide a wrong constant in a large entry.
     with np.errstate(invalid="ignore", over="ignore"):
         plain = actual - expected
         # Most answers equal the expected one to the last bit; NaN does not equal 0.
@@ -104,10 +104,9 @@ def entry_matches(
     samples: Samples,
     angle: ArrayLike = False,
 ) -> NDArray[np.int_]:
-    """Return the Match (result of the comparison) of each entry ``(...)``.
+    """Return the comparison result of each entry; correctly rounded decimals count as equal.
 
-    Entries that differ may still be correct decimals that were rounded. ``expressions`` are the
-    expressions of the entries in order, None for an unreadable entry.
+    ``expressions`` are the expressions of the entries, None for an unreadable entry.
     """
     found = matches(actual, expected, scale, angle)
     different = np.flatnonzero(found == Match.DIFFERENT).tolist()
@@ -163,11 +162,8 @@ def _is_rounded(
 
 
 def _is_rounded_number(error: Numbers, unit: float, sign: int, tolerance: float) -> bool:
-    """True if a shift of one decimal removes the ``error`` ``(samples,)``: a fit in closed form.
-
-    Most decimals of a table are the only one in their cell, such as 1.571 for π/2, and the general
-    fit takes ten times as long.
-    """
+    # A fit in closed form. Most decimals of a table are the only one in their cell, such as 1.571
+    # for π/2, and the general fit takes ten times as long.
     mean = float(error.mean())
     shift, outside = -sign * mean / unit, FLOATING_SHIFT * tolerance / unit
     if not -ROUNDED_UP - outside <= shift <= CUT_OFF + outside:
@@ -182,13 +178,12 @@ def nearly_equal(
     angle: ArrayLike = False,
     slack: float = 0.0,
 ) -> NDArray[np.bool_]:
-    """Return a mask ``(...)`` of the values ``(..., samples)`` that are equal except for rounding.
+    """Return a mask ``(...)`` of the values that are equal except for rounding.
 
-    Use this for guesses, such as which slip explains an answer, but never for a verdict. ``slack``
-    is a known rounding error. The tolerance is at least a thousandth of the size of the values. For
-    values that are larger than any number of the robot, it is at least a thousandth of the robot's
-    largest numbers.
+    Use this only for guesses, never for a verdict. ``slack`` is a known rounding error.
     """
+    # The tolerance is at least a thousandth of the size of the values. For values that are larger
+    # than any number of the robot, it is at least a thousandth of the robot's largest numbers.
     error = np.abs(difference(one, other, angle)).max(axis=-1)
     size = np.sqrt(np.mean(other * other, axis=-1))
     largest = np.where(np.any(angle, axis=-1), LARGEST_ANGLE, LARGEST_LENGTH) * scale
@@ -201,10 +196,8 @@ def nearly_equal(
 def same(
     one: Numbers, other: Numbers, scale: float = 1.0, angle: bool = False, slack: float = 0.0
 ) -> bool:
-    """True if two single values ``(samples,)`` are nearly equal.
-
-    This is ``nearly_equal`` for one value, at a fifth of its cost.
-    """
+    """True if two single values ``(samples,)`` are nearly equal."""
+    # ``nearly_equal`` for one value, at a fifth of its cost.
     error = one - other
     if angle:
         error -= 2 * np.pi * np.round(error / (2 * np.pi))
@@ -217,7 +210,7 @@ def same(
 
 
 def rounding_slack(expression: Expression, samples: Samples) -> float:
-    """Return how far rounding may have moved an entry, to first order."""
+    """Return an estimate of an entry's largest rounding error."""
     if not expression.has_decimal:
         return 0.0
     # Cache the result: a table is judged in several ways, which all need the same cells.
@@ -242,9 +235,10 @@ def fitted_shifts(
 ) -> Numbers | None:
     """Return shifts ``(m,)`` of decimals that leave no error, or None.
 
-    ``errors`` returns the errors ``(K, n)`` for shifts ``(K, m)``; ``units`` ``(m,)`` are the units
-    of the decimals. Each shift is at most as large as rounding or cutting off allows.
+    ``errors`` returns the errors ``(K, n)`` for shifts ``(K, m)``.
     """
+    # ``units`` ``(m,)`` are the units of the decimals. Each shift is at most as large as rounding
+    # or cutting off allows.
     count = len(units)
     steps = difference_steps(units)
     ways = np.concatenate([np.diag(steps), -np.diag(steps), np.zeros((1, count))])
@@ -257,10 +251,11 @@ def fitted_shifts(
 
 
 def difference_steps(sizes: Numbers) -> Numbers:
-    """Return steps ``(N,)`` of central differences for unknowns with effects ``sizes`` per unit.
+    """Return step sizes ``(N,)`` for computing derivatives by central differences.
 
-    The steps are about as large as the unknowns, and large compared with floating-point errors.
+    ``sizes`` is the effect of each unknown.
     """
+    # The steps are about as large as the unknowns, and large compared with floating-point errors.
     return np.maximum(0.5, LEAST_STEP / sizes)
 
 
@@ -270,12 +265,12 @@ def fitted_unknowns(
     count: int,
     tolerance: float,
 ) -> Numbers | None:
-    """Return unknowns ``(N,)`` that leave no error, or None; the first ``count`` are shifts.
+    """Return unknowns ``(N,)`` that leave no error, or None.
 
-    ``linearised`` returns the errors ``(n,)`` for unknowns, and their derivative ``(n, N)``;
-    ``sizes`` ``(N,)`` is the direct effect of each unknown on an error. All unknowns are small, so
-    that the Gauss-Newton method needs few steps.
+    ``linearised`` returns the errors ``(n,)`` for unknowns, and their derivative ``(n, N)``.
     """
+    # The first ``count`` unknowns are shifts. ``sizes`` ``(N,)`` is the direct effect of each
+    # unknown on an error. All unknowns are small, so that the Gauss-Newton method needs few steps.
     unknowns, first, beyond = np.zeros(len(sizes)), np.inf, 0.0
     for step, least_effect in enumerate(LEAST_EFFECTS):
         error, rates = linearised(unknowns)
@@ -307,12 +302,11 @@ def fitted_unknowns(
 class SharedDecimals:
     """The rounded decimals of several entries that can only be tested together.
 
-    ``units`` ``(count,)`` are the units of the decimals. ``count`` is 0 if there are no decimals or
-    too many.
+    ``units`` ``(count,)`` is the last place of each decimal.
     """
 
+    # ``count`` is 0 if there are no decimals or too many.
     def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
-        """Collect the decimals of ``expressions``, which are None for unreadable entries."""
         self._parts: list[tuple[int, Decimals, slice, Mapping[str, Numbers]]] = []
         self.count = 0
         self.units = np.zeros(0)
@@ -340,16 +334,12 @@ class SharedDecimals:
 
 
 def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> Numbers:
-    """Return other unknowns that have the effect of ``unknowns``, with shifts within bounds.
-
-    If that is impossible, some shifts of the result are out of bounds.
-
-    ``bounds`` ``(2, count)`` are the lower and upper bounds of the shifts. ``determined`` ``(N,
-    N)`` projects unknowns on those with an effect. If only the sum of two decimals has an effect,
-    both decimals may have to share the shift. The unknowns are projected in turn on the set with
-    the same effect and on the set within bounds. These projections converge to the intersection of
-    the sets (von Neumann, Bregman), or end if a plane separates the sets.
-    """
+    # Other unknowns that have the same effect, with shifts within ``bounds`` ``(2, count)`` if that
+    # is possible. ``determined`` ``(N, N)`` projects unknowns on those with an effect. If only the
+    # sum of two decimals has an effect, both decimals may have to share the shift. The unknowns are
+    # projected in turn on the set with the same effect and on the set within bounds. These
+    # projections converge to the intersection of the sets (von Neumann, Bregman), or end if a plane
+    # separates the sets.
     (lower, upper), count = bounds, bounds.shape[1]
     effect = determined @ unknowns
     for step in range(PROJECTIONS):
@@ -365,12 +355,12 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
 
 
 def _is_out_of_reach(error: Numbers, rates: Numbers) -> bool:
-    """True if the largest possible shifts still leave an error far from 0."""
+    # The largest possible shifts still leave an error far from 0.
     return bool((np.abs(error) > OUT_OF_REACH * CUT_OFF * np.abs(rates).sum(axis=1)).any())
 
 
 def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:
-    """True if the plane with this ``normal`` separates the bounds from the needed effect."""
+    # The plane with this ``normal`` separates the bounds from the needed effect.
     count, size = bounds.shape[1], math.sqrt(normal @ normal)
     if np.abs(normal[count:]).max(initial=0.0) > FLAT * size:
         return False
@@ -379,7 +369,6 @@ def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:
 
 
 def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
-    """Return the largest difference at which values count as equal: ``(...)``."""
     # ``np.mean`` takes as long as the rest of this function, so compute the mean directly.
     size = np.sqrt((expected * expected).sum(axis=-1) / expected.shape[-1])
     return np.asarray(EXACT_VALUE * np.asarray(scale) + FLOATING_POINT * size)

@@ -1,4 +1,4 @@
-"""Changes of values when only the joints move."""
+"""Find how values change when only the joints move."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -23,10 +23,9 @@ def changes(values: Numbers) -> Numbers:
 
 
 def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
-    """Return a mask of values ``(..., samples)`` that change with the joints as ±``motion`` does.
-
-    ``motion`` is ``(..., samples / 2)``. The mask is false for NaN.
-    """
+    """Return a mask of the values that change with the joints as ``motion`` or −``motion``."""
+    # Values are ``(..., samples)``, ``motion`` is ``(..., samples / 2)``. The mask is false for
+    # NaN.
     either_sign = np.array([motion, -motion])
     shape = (2, *[1] * (values.ndim - motion.ndim), *motion.shape)
     error = np.abs(difference(changes(values), either_sign.reshape(shape), angle)).max(axis=-1)
@@ -38,10 +37,10 @@ def joint_counts(
 ) -> tuple[NDArray[np.int_], NDArray[np.bool_]]:
     """Return the factor of each joint variable in each cell, ``(cells, joints)``, and a mask.
 
-    The mask ``(cells,)`` marks the cells that are a constant plus whole multiples of the joint
-    variables (angles up to whole turns). ``values`` is ``(cells, SAMPLES)``, ``angle``
-    ``(cells,)``.
+    The mask marks the cells that are a constant plus whole multiples of the joint variables.
     """
+    # Angles are compared up to whole turns. ``values`` is ``(cells, SAMPLES)``, ``angle`` and the
+    # mask are ``(cells,)``.
     if not joints:
         return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))
 

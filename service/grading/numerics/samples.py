@@ -1,8 +1,10 @@
 """The random values at which answers are compared, drawn for each submission.
 
-The seed is a hash of exercise version and answers. So students cannot predict the values, and a
-regrade uses the same values to the last bit, on every machine and with every version of numpy.
+The seed is a hash of the exercise and the answers, so that a regrade uses the same values.
 """
+
+# So students cannot predict the values, and a regrade uses them to the last bit, on every machine
+# and with every version of numpy.
 
 import hashlib
 import json
@@ -29,14 +31,14 @@ _T = TypeVar("_T")
 
 @dataclass(frozen=True)
 class Samples:
-    """Values of every symbol, each of shape ``(SAMPLES,)``.
+    """Random values of every symbol, each of shape ``(SAMPLES,)``.
 
-    Samples 0..15 are drawn freely. Samples 16..31 have the same link parameters as samples 0..15
-    but other joint values, so that changes between the halves are due to the joints alone.
-    ``in_degrees`` are the angles that are shown to the student in degrees. ``bare_count`` is the
-    number of samples if there are no symbols.
+    Both halves of the samples have the same link parameters, but different joint values.
     """
 
+    # Changes between the halves are due to the joints alone. ``in_degrees`` are the angles that are
+    # shown to the student in degrees. ``bare_count`` is the number of samples if there are no
+    # symbols.
     values: Mapping[str, Numbers]
     in_degrees: Set[str] = frozenset()
     bare_count: int = SAMPLES
@@ -76,10 +78,8 @@ class Samples:
         )
 
     def with_names(self, names: Iterable[str]) -> "Samples":
-        """Return these samples with random values of more symbols.
-
-        The seed is the samples themselves, so that equal samples get equal values.
-        """
+        """Return these samples with random values of more symbols."""
+        # The seed is the samples themselves, so that equal samples get equal values.
         drawn = next((values.tobytes().hex() for values in self.values.values()), "")
         more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
         return Samples({**self.values, **more}, self.in_degrees)
@@ -90,7 +90,7 @@ class Samples:
         return set[str]().union(*names).difference(self.values)
 
     def values_for(self, expression: Expression) -> Mapping[str, Numbers]:
-        """Return the values of all symbols, including absent variables of the expression."""
+        """Return the values of all symbols, including those that only the expression has."""
         absent = self.absent_names([expression])
         return self.with_names(absent).values if absent else self.values
 
@@ -131,19 +131,15 @@ def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Sampl
 
 @dataclass(frozen=True, slots=True)
 class _Symbols:
-    """The symbols of an exercise. Two instances are equal if the exercise versions are equal."""
-
+    # Two instances are equal if the exercise versions are equal.
     version: str
     variables: tuple[Variable, ...] = field(compare=False)
 
 
 @dataclass(frozen=True, slots=True)
 class _Ranges:
-    """The ranges of an exercise's symbols, ``(n, 1)``; the joint variables come first.
-
-    ``moving`` is the number of joint variables, ``angles`` are the names of all angles.
-    """
-
+    # ``(n, 1)``; the joint variables come first. ``moving`` is the number of joint variables,
+    # ``angles`` are the names of all angles.
     names: tuple[str, ...]
     moving: int
     low: Numbers
@@ -166,7 +162,7 @@ def _ranges_of(symbols: _Symbols) -> _Ranges:
 
 
 def _canonical(answers: object) -> str:
-    """Return the answers as text that does not depend on the order of keys."""
+    # Text that does not depend on the order of keys.
     try:
         return _ENCODER.encode(answers)
     except (TypeError, ValueError, RecursionError):
@@ -174,10 +170,8 @@ def _canonical(answers: object) -> str:
 
 
 def _pieces(answers: object) -> Iterator[str]:
-    """Yield the text of answers that JSON cannot write, such as huge numbers and TOML's dates.
-
-    Depth and cycles do no harm: each list or table is entered only once.
-    """
+    # For answers that JSON cannot write, such as huge numbers and TOML's dates. Depth and cycles do
+    # no harm: each list or table is entered only once.
     waiting, met = [answers], set[int]()
     while waiting:
         value = waiting.pop()
@@ -199,6 +193,6 @@ def _pieces(answers: object) -> Iterator[str]:
 
 
 def _uniform(seed: str, count: int) -> Numbers:
-    """Return ``count`` numbers in [0, 1) from an extendable hash of the seed."""
+    # Numbers in [0, 1) from an extendable hash of the seed.
     stream = hashlib.shake_128(seed.encode("utf-8", "surrogatepass")).digest(4 * count)
     return np.frombuffer(stream, dtype="<u4") * 2.0**-32

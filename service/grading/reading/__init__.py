@@ -1,1 +1,1 @@
-"""Read answers: JSON or pasted text -> entries."""
+"""Read answers, as JSON or pasted text, as entries (single cells)."""

@@ -1,8 +1,10 @@
-"""Names of joint variables that a robot does not have, such as theta0, or theta3 if joint 3 slides.
+"""Names of joint variables that a robot does not have, such as theta0.
 
-Students write them if they count the joints from 0, or revolute and prismatic joints separately.
 A cell with such a name is wrong, but not unreadable.
 """
+
+# Students write them if they count the joints from 0, or revolute and prismatic joints separately.
+# theta3 is absent if joint 3 slides.
 
 from collections.abc import Iterator
 from functools import lru_cache
@@ -17,10 +19,8 @@ _FIRST_ABSENT_JOINT: Final = 1000
 
 @lru_cache(maxsize=256)
 def with_absent_variables(vocabulary: Vocabulary) -> Vocabulary:
-    """Return the vocabulary with the usual joint variables that it lacks, counted from 0.
-
-    Names such as ``d2`` are added only if some joint slides; otherwise they are unknown lengths.
-    """
+    """Return the vocabulary with the usual joint variables that it lacks, counted from 0."""
+    # Names such as ``d2`` are added only if some joint slides; otherwise they are unknown lengths.
     if not vocabulary.joints:
         return vocabulary
     indices = range(vocabulary.joints[-1] + 1)
@@ -39,5 +39,5 @@ def _absent(index: int, vocabulary: Vocabulary) -> Iterator[Symbol]:
 
 
 def joint_counted(name: str) -> int:
-    """Return the joint number in the canonical name of an absent variable: 3 for theta3."""
+    """Return the joint number in the name of an absent joint variable: 3 for theta3."""
     return int(name.lstrip(_LETTERS))

@@ -1,4 +1,4 @@
-"""The number of a length in another unit: 135 mm is 0.135 where lengths are in metres."""
+"""Convert a length with a unit to a number: 135 mm is 0.135 in metres."""
 
 import re
 import unicodedata

@@ -66,12 +66,13 @@ class Entry:
 
 @dataclass(frozen=True, slots=True)
 class Reader:
-    """Reads the cells of one submission. Copies with another angle unit share the work budget.
+    """Reads the cells of one submission.
 
-    ``length_unit`` is the unit of all lengths of the exercise, None if they have several units.
-    If no length has a letter, it is the unit that the statement names: "in metres".
+    ``length_unit`` is the unit of all lengths of the exercise, or None if there are several.
     """
 
+    # Copies with another angle unit share the work budget. If no length has a letter,
+    # ``length_unit`` is the unit that the statement names: "in metres".
     vocabulary: Vocabulary
     samples: Samples
     angle_unit: AngleUnit
@@ -96,9 +97,10 @@ class Reader:
     def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
         """Return the entry for a JSON value. Never raises: any bad value is an unreadable entry.
 
-        ``in_table`` is for cells of a DH table. There, a star may mark the joint variable, and an
-        absent joint variable is wrong instead of unreadable.
+        ``in_table`` is for cells of a DH table.
         """
+        # In a table, a star may mark the joint variable, and an absent joint variable is wrong
+        # instead of unreadable.
         budget = self.budget
         symbols = 1
         if isinstance(raw, str):
@@ -136,7 +138,6 @@ class Reader:
         return Entry(expression, findings=tuple(map(from_note, shown)))
 
     def _finding(self, error: ExpressionError, raw: str | int | float) -> Finding:
-        """Return the error as a finding; a repaired length is in the unit of the exercise."""
         finding = _from_error(error)
         if error.code == "length_unit" and self.length_unit:
             in_metres = converted("1 m", self.length_unit) == "1"
@@ -145,7 +146,6 @@ class Reader:
         return finding
 
     def _in_absent_variables(self, raw: str | int | float, quantity: Kind) -> Expression | None:
-        """Read a text that may contain absent joint variables; return None if it is unreadable."""
         vocabulary = with_absent_variables(self.vocabulary)
         try:
             return read(
@@ -155,7 +155,6 @@ class Reader:
             return None
 
     def _hidden_notes(self, expression: Expression) -> frozenset[str]:
-        """Return the codes of the notes that are not shown if the expression is in a table cell."""
         known = with_absent_variables(self.vocabulary).by_name
         joints = [known[name].joint for name in expression.symbols]
         return EXPECTED_IN_TABLES if len(joints) - joints.count(None) < 2 else frozenset()
@@ -164,7 +163,7 @@ class Reader:
 def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: Samples) -> Numbers:
     """Return the values of entries at the samples, ``(entries, SAMPLES)``.
 
-    A value is NaN if the entry could not be read, or is undefined or out of bounds at the sample.
+    A value is NaN if it is unreadable, undefined or out of bounds.
     """
     expressions = [entry.expression for entry in entries]
     found = evaluate_all(expressions, samples.values, samples.memo)
@@ -177,13 +176,11 @@ def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: 
 
 @lru_cache(maxsize=256)
 def _stated_units(statement: str) -> Set[str]:
-    """Return the units of length that a statement names."""
     return METRES.keys() & _STATED.findall(statement.lower())
 
 
 @lru_cache(maxsize=256)
 def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
-    """Return the largest absolute value that each quantity may have, ``(quantities, 1)``."""
     return np.array([[BOUNDS[quantity]] for quantity in quantities])
 
 
@@ -227,5 +224,5 @@ def _from_error(error: ExpressionError) -> Finding:
 
 
 def from_note(note: Note) -> Finding:
-    """Return a note on how a text was read, as a finding."""
+    """Convert a note on how a text was read to a finding (a message in the report)."""
     return reading_note(note.code, note.message, note.span)

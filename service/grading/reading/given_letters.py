@@ -1,7 +1,7 @@
-"""Put in the numbers that a script gives to letters: ``d1 = 0.1625`` above a table.
+"""Replace letters by the numbers that a script gives them, as in ``d1 = 0.1625``."""
 
-They count only if the exercise has no lengths as letters; otherwise letters are its symbols.
-"""
+# The numbers count only if the exercise has no lengths as letters; otherwise letters are its
+# symbols.
 
 import re
 from dataclasses import replace
@@ -25,7 +25,7 @@ _MOST: Final = 40
 
 
 def with_given_letters(grid: Grid, text: str, reader: Reader) -> Grid:
-    """Return the grid with the numbers of letters put in, and a note on them."""
+    """Return the grid with letters replaced by the text's numbers, and a note on that."""
     given = _given(text, reader)
     used: dict[str, None] = {}
     rows = tuple(tuple(_cell(cell, given, used) for cell in row) for row in grid.rows)
@@ -39,7 +39,7 @@ def with_given_letters(grid: Grid, text: str, reader: Reader) -> Grid:
 
 
 def _given(text: str, reader: Reader) -> dict[str, str]:
-    """Return the number of each letter that the text sets once and the exercise does not know."""
+    # Letters that the text sets once and the exercise does not know.
     slides = reader.vocabulary.sliding.values()
     if any(each.kind == "length" and each not in slides for each in reader.vocabulary.symbols):
         return {}

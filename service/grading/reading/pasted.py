@@ -1,4 +1,4 @@
-"""Read the grids in pasted texts; convert grid errors and spans for reports."""
+"""Read the grids (tables and matrices) in pasted texts, and report errors in them."""
 
 import re
 from collections.abc import Sequence
@@ -34,10 +34,8 @@ _JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
 
 
 def pasted_grid(text: str, reader: Reader) -> Grid:
-    """Return the table or matrix in a pasted text.
-
-    Raises GridError if there is none, or if the pasted texts of a submission are too long.
-    """
+    """Return the table or matrix in a pasted text. Raises GridError if there is none."""
+    # Also raised if the pasted texts of a submission are too long.
     _charge(text, reader)
     return with_given_letters(read_grid(_prepared(text, reader)), text, reader)
 
@@ -45,8 +43,9 @@ def pasted_grid(text: str, reader: Reader) -> Grid:
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
     """Return the DH table of the robot that a pasted script describes; None for any other text.
 
-    Raises GridError if the script's table is ambiguous, or if the pasted texts are too long.
+    Raises GridError if the script's table is ambiguous.
     """
+    # Also raised if the pasted texts of a submission are too long.
     robot = read_robot(_without_own_units(text, reader))
     if robot is None:
         return None
@@ -55,24 +54,21 @@ def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
 
 
 def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
-    """Return the matrices in a pasted text, with their names. Raises GridError, see pasted_grid."""
+    """Return the matrices in a pasted text, with their names. May raise GridError."""
     _charge(text, reader)
     return read_grids(_prepared(text, reader))
 
 
 def _prepared(text: str, reader: Reader) -> str:
-    """Return the text with decimal points for decimal commas, and with unambiguous indices."""
+    # Decimal points for decimal commas, and unambiguous indices.
     if reader.vocabulary.decimal_comma:
         text = with_points(text)
     return _with_indices_from_one(_without_own_units(text, reader), reader)
 
 
 def _without_own_units(text: str, reader: Reader) -> str:
-    """Return the text with blanks for "in radians" in "all angles in radians" if that is the unit.
-
-    Every character keeps its place. Another unit stays, and such a sentence is refused.
-    """
-
+    # "in radians" in "all angles in radians" becomes blanks if that is the unit. Every character
+    # keeps its place. Another unit stays, and such a sentence is refused.
     def without_unit(found: re.Match[str]) -> str:
         unit, length = found[1].lower(), METRES.get(reader.length_unit or "", 0)
         is_own = ANGLE_UNITS.get(unit) == reader.angle_unit or METRES.get(unit) == length
@@ -82,12 +78,9 @@ def _without_own_units(text: str, reader: Reader) -> str:
 
 
 def _with_indices_from_one(text: str, reader: Reader) -> str:
-    """Return the text with theta(1) for theta[1] if its indices count from 1, as in Maple.
-
-    The indices count from 0 if a joint variable has the index 0, and from 1 if a joint variable has
-    the number of the last joint as its index. Raises GridError for other indices, because they are
-    ambiguous. Every character keeps its place.
-    """
+    # theta[1] becomes theta(1) if its indices count from 1, as in Maple. They count from 0 if a
+    # joint variable has the index 0, and from 1 if one has the number of the last joint as its
+    # index. Other indices are ambiguous. Every character keeps its place.
     found = [each for each in _INDEX.finditer(text) if each[1].rstrip("_") in _JOINT_VARIABLES]
     numbers = {int(each[2]) for each in found}
     joints = reader.vocabulary.joints
@@ -137,7 +130,7 @@ def placed(entry: Entry, cell: GridCell) -> Entry:
 
 
 def place_of(cells: Sequence[GridCell]) -> tuple[int, int]:
-    """Return the span of neighbouring cells in the whole text."""
+    """Return the span (start and end) of neighbouring cells in the whole text."""
     return cells[0].whole[0], max(cells[0].whole[1], cells[-1].whole[1])
 
 

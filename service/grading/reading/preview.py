@@ -41,13 +41,14 @@ class Problem:
 class CellPreview:
     """How one cell is read, as plain text, LaTeX and MathML; or the problem with it.
 
-    ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta" or
-    the column's number. ``span`` is the cell's [from, to) in the pasted text, and ``typed`` the
-    text there. ``entry`` is the text that means the same if a person types it into a single field;
-    it differs from ``typed`` if the column's header has a unit. An empty cell has neither a reading
-    nor a problem. A cell beyond the work budget has no LaTeX and no MathML.
+    ``span`` is the cell's [from, to) in the pasted text, and ``typed`` the text there. ``entry`` is
+    the text that means the same in a single field.
     """
 
+    # ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta"
+    # or the column's number. ``entry`` differs from ``typed`` if the column's header has a unit. An
+    # empty cell has neither a reading nor a problem. A cell beyond the work budget has no LaTeX and
+    # no MathML.
     row: str
     column: str
     span: Span
@@ -65,10 +66,10 @@ class CellPreview:
 class PastedPreview:
     """How a pasted text is read: its rows, or the problem with the whole text.
 
-    Rows are in the order in which they are graded; columns of a table are a, alpha, d, theta.
     All spans are [from, to) in the pasted text.
     """
 
+    # Rows are in the order in which they are graded; columns of a table are a, alpha, d, theta.
     rows: tuple[tuple[CellPreview, ...], ...] = ()
     notes: tuple[Note, ...] = ()
     problem: Problem | None = None
@@ -84,9 +85,10 @@ def preview_pasted(
 ) -> PastedPreview:
     """Read ``text`` as the answer to a part, exactly as grading reads it.
 
-    The part decides whether the text is a table, a matrix or several matrices. The size of a
-    matrix is checked only by grading. Raises LookupError for a part that does not exist.
+    Raises LookupError for a part that does not exist.
     """
+    # The part decides whether the text is a table, a matrix or several matrices. The size of a
+    # matrix is checked only by grading.
     spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, text), angle_unit)
     try:
@@ -110,9 +112,9 @@ def preview_entries(
 ) -> tuple[CellPreview, ...]:
     """Read single entries of a part; each is a text and the quantity expected there.
 
-    The entries share one work budget, as in a submission. The previews have empty labels. Raises
-    LookupError for a part that does not exist.
+    Raises LookupError for a part that does not exist.
     """
+    # The entries share one work budget, as in a submission. The previews have empty labels.
     spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, part), angle_unit)
     in_table = spec.pasted_as == "table"
@@ -172,7 +174,7 @@ def _table(text: str, reader: Reader) -> PastedPreview:
 
 
 def _alone(cell: CellPreview, header: Header, reader: Reader) -> str:
-    """Return the text that means, without the header, what the cell means below the header."""
+    # The text means, without the header, what the cell means below the header.
     if cell.problem and _DECIMAL_COMMA.fullmatch(cell.typed):
         # The repair of 135,0 would lose the unit.
         if header.angle_unit and header.angle_unit != reader.angle_unit:
@@ -185,7 +187,7 @@ def _alone(cell: CellPreview, header: Header, reader: Reader) -> str:
 
 
 def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
-    """Return the rows of all matrices, with labels such as A2.3."""
+    # Labels are such as A2.3.
     grids, findings = grids_in_order(text, labels, reader)
     rows: list[tuple[CellPreview, ...]] = []
     notes = list(_notes(findings))
@@ -201,7 +203,7 @@ def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview
 
 
 def _frames(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
-    """Return the rows of placed frames. Joints and directions are shown as they were typed."""
+    # Joints and directions are shown as they were typed.
     found = pasted_frames(text, labels, reader)
 
     def preview(place: tuple[str, str], cell: GridCell) -> CellPreview:
@@ -219,7 +221,6 @@ def _frames(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview:
 def _rows(
     grid: Grid, quantity: Kind, reader: Reader, name: str = ""
 ) -> tuple[tuple[CellPreview, ...], ...]:
-    """Return the previewed rows of a matrix of any size."""
     return tuple(
         tuple(
             _cell(
@@ -243,7 +244,6 @@ def _cell(entry: Entry, cell: GridCell, place: tuple[str, str], budget: WorkBudg
 
 
 def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
-    """Return the preview ``empty``, filled with how its cell was read."""
     if not empty.typed:
         return empty
     if entry.expression is None:

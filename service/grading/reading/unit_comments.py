@@ -1,4 +1,4 @@
-"""Comments and captions in a pasted text, and the units that they name."""
+"""Find comments and captions in a pasted text, and the units that they name."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -28,8 +28,9 @@ _NO_UNITS: Final = frozenset({"m", "in", "foot"})
 def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> None:
     """Raise GridError if a comment or a caption says that lengths have another unit.
 
-    ``kinds`` are the quantities of the entries; without lengths, all comments are accepted.
+    ``kinds`` are the quantities of the entries.
     """
+    # Without lengths, all comments are accepted.
     if "length" not in kinds or CONVERTS_LENGTHS.search(text):
         return
     for comment in comments_and_captions(text):

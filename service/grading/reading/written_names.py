@@ -1,9 +1,8 @@
-"""Order values that have names, such as y = l1 s1, by these names, or report a wrong name.
+"""Order values by their names, as in y = l1 s1, or report a wrong name."""
 
-A name may belong to several places, because textbooks differ, or to no place. The values are
-reordered only if each value that is not empty names exactly one place, and no two values name the
-same place.
-"""
+# A name may belong to several places, because textbooks differ, or to no place. The values are
+# reordered only if each value that is not empty names exactly one place, and no two values name the
+# same place.
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
@@ -24,10 +23,11 @@ PlacesOf: TypeAlias = Callable[[Sequence[LeftSide | None], Vocabulary], list[Pla
 class Arrangement(NamedTuple):
     """The order of named values, or the findings on wrong names.
 
-    ``order`` has, for each place, the index of its value. ``misnamed`` maps the index of each value
-    with a wrong name to its finding; the map is empty if reordering makes all names correct.
+    ``order`` has, for each place, the index of its value. ``misnamed`` maps the index of a value
+    with a wrong name to its finding.
     """
 
+    # ``misnamed`` is empty if reordering makes all names correct.
     order: tuple[int, ...]
     misnamed: Mapping[int, Finding]
 
@@ -49,7 +49,7 @@ def arranged(
 ) -> Arrangement | None:
     """Return the arrangement of values by their names; None if no name is in a wrong place.
 
-    ``labels`` are the expected names, one for each value.
+    ``labels`` are the expected names.
     """
     names = [name_of(value, vocabulary) for value in values]
     if not any(names):
@@ -67,10 +67,8 @@ def arranged(
 
 
 def _order(places: Sequence[Places], written: Sequence[bool]) -> tuple[int, ...] | None:
-    """Return the index of the value for each place; empty values get the places that are left.
-
-    Return None if a value that is not empty does not name exactly one free place.
-    """
+    # Empty values get the places that are left. None if a value that is not empty does not name
+    # exactly one free place.
     found: dict[int, int] = {}
     for i, is_written in enumerate(written):
         allowed = places[i]
@@ -95,10 +93,8 @@ def misnamed_value(name: LeftSide, asked: str) -> Finding:
 
 
 def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]:
-    """Return reordered entries with the note ``message`` in place of the notes on equations.
-
-    The note has no span, so that the report shows it once for all entries.
-    """
+    """Return reordered entries with the note ``message`` in place of the notes on equations."""
+    # The note has no span, so that the report shows it once for all entries.
     note = reading_note("ordered_by_names", message)
     return tuple(
         replace(

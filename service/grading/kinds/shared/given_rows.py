@@ -36,7 +36,7 @@ _CHANGED = register(
 def with_given_rows(part: DhTableSpec, table: StudentTable, grading: Grading) -> StudentTable:
     """Return the table with the given rows as the exercise gives them.
 
-    In the answer, the given rows may be missing or empty. A table with too many rows is unchanged.
+    A table with too many rows is unchanged.
     """
     if not part.given or not table.rows:
         return table
@@ -68,11 +68,8 @@ def _in_places(
     count: int,
     grading: Grading,
 ) -> list[StudentRow | None] | None:
-    """Return a list with the submitted row, or None, for each row of the full table.
-
-    The list has None where the student submitted no row. Return None instead of a list if there are
-    too many rows.
-    """
+    # None in the list where the student submitted no row; None instead of a list if there are too
+    # many rows.
     if len(rows) == count:
         return list(rows)
     own = [
@@ -104,7 +101,6 @@ def _is_taken_over(row: StudentRow, right: StudentRow, grading: Grading) -> bool
 
 
 def _is_changed(row: StudentRow, right: StudentRow, grading: Grading) -> bool:
-    """True if a cell of the row is not empty, and differs from the given cell in text and value."""
     scales = column_scales(grading)
     equal = nearly_equal(row.values, right.values, scales, IS_ANGLE[:, None])
     cells = zip(row.entries, right.entries, equal.tolist(), strict=True)

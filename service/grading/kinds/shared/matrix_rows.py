@@ -71,13 +71,13 @@ def matrix_rows(
 ) -> MatrixRows:
     """Return the report rows of a matrix, with explanations of its wrong entries.
 
-    The four functions are called only if an entry is wrong. ``explanations`` returns the
-    explanations that only this kind of answer has; the general explanations are tried only if there
-    are none of these. ``chains`` returns the links whose product is the matrix, ``motion`` the
-    motion in given formulas, both at given samples. ``slipped`` returns the matrices that follow
-    from slips in the table. ``work_budget`` limits the search in products. If the answer
-    has several matrices, ``name`` is the name of this matrix, as in the row "A2.1".
+    The functions among the arguments are called only if an entry is wrong.
     """
+    # ``explanations`` returns the explanations that only this kind of answer has; the general ones
+    # are tried only if there are none of these. ``chains`` returns the links whose product is the
+    # matrix, ``motion`` the motion in given formulas, both at given samples. ``slipped`` returns
+    # the matrices that follow from slips in the table. ``work_budget`` limits the search in
+    # products. ``name`` is the name of this matrix if the answer has several, as in the row "A2.1".
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
     if (found >= Match.ROUNDED).all():
@@ -150,5 +150,4 @@ def matrix_rows(
 
 
 def _cells(entries: Mask, labels: Sequence[str]) -> tuple[Place, ...]:
-    """Return the places of the marked entries ``(rows, columns)``."""
     return tuple(Place(labels[i], str(j + 1)) for i, j in np.argwhere(entries).tolist())

@@ -1,14 +1,13 @@
-"""Read a wrong table in several ways, of which the best counts.
+"""Interpret a wrong table in several ways, called readings, and take the best one.
 
-The first reading is the table as written. The others are the table with other joint numbers, with
-its columns in another order, with its lengths in another unit, or with a and d of one row
-exchanged. All readings are judged in the same way. A reading counts if it explains enough wrong
-cells.
-
-Three more readings only limit the points: the table without its extra rows; the table with each
-unread cell replaced by its joint variable or 0; and the table with one row given up
-(``fair_points``).
+The first reading is the table as written. Others have, for example, the columns in another order.
 """
+
+# Others are the table with other joint numbers, with its columns in another order, with its lengths
+# in another unit, or with a and d of one row exchanged. All readings are judged in the same way. A
+# reading counts if it explains enough wrong cells. Three more readings only limit the points: the
+# table without its extra rows; the table with each unread cell replaced by its joint variable or 0;
+# and the table with one row given up (``fair_points``).
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
@@ -42,7 +41,7 @@ GIVEN_WORK, FREE_WORK, FREE_ROW_WORK, ALL_FREE_WORK = 18.0, 20.0, 4.0, 60.0
 
 
 class JudgedTable(NamedTuple):
-    """The judgement of one reading, and the convention in which it was judged."""
+    """The judgement of a table, and the convention in which it was judged."""
 
     judged: Judged
     convention: Convention
@@ -53,13 +52,9 @@ Judge: TypeAlias = Callable[[DhTableSpec, StudentTable, Grading], JudgedTable]
 
 
 class _Reading(NamedTuple):
-    """Another reading of a table.
-
-    The reading counts if at most ``most_wrong`` of its cells are wrong; if ``most_wrong`` is None,
-    it always counts. With ``has_links``, a later part follows from this reading instead of from the
-    table as written.
-    """
-
+    # The reading counts if at most ``most_wrong`` of its cells are wrong; if ``most_wrong`` is
+    # None, it always counts. With ``has_links``, a later part follows from this reading instead of
+    # from the table as written.
     intended: IntendedTable
     most_wrong: int | None
     has_links: bool = False
@@ -68,7 +63,7 @@ class _Reading(NamedTuple):
 def best_reading(
     part: DhTableSpec, table: StudentTable, first: JudgedTable, judge: Judge, grading: Grading
 ) -> Judged:
-    """Return the judgement of the best reading of a wrong table, with the limits of its points.
+    """Return the judgement of a wrong table in its best interpretation, with limited points.
 
     ``first`` is the judgement of the table as written.
     """
@@ -81,7 +76,6 @@ def best_reading(
     best = readings.best(table, written)
 
     def judged_again(other: StudentTable) -> Judged:
-        """Judge a table with replaced rows or cells; only its points count."""
         silent = readings.in_silence()
         return silent.best(other, silent.as_written(other))
 
@@ -90,7 +84,7 @@ def best_reading(
 
 
 def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> float:
-    """Return the work of judging a wrong table once."""
+    """Return the amount of computation for judging a wrong table once."""
     rows = len(table.rows)
     once = FREE_WORK + FREE_ROW_WORK * rows
     if part.frames == "given":
@@ -106,19 +100,16 @@ def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> flo
 
 @dataclass(frozen=True, slots=True)
 class _Readings:
-    """Judges the possible readings of a table; ``work`` is the work of judging one table."""
-
+    # ``work`` is the work of judging one table.
     part: DhTableSpec
     judge: Judge
     work: float
     grading: Grading
 
     def in_silence(self) -> "_Readings":
-        """Return a copy that judges without explanations."""
         return replace(self, grading=replace(self.grading, explains=False))
 
     def as_written(self, table: StudentTable) -> Judged:
-        """Judge a table as written."""
         return self.limited(table, self.judge(self.part, table, self.grading))
 
     def best(self, table: StudentTable, judged: Judged) -> Judged:
@@ -149,7 +140,7 @@ class _Readings:
         return replace(found, chain=without.chain) if reading.has_links else found
 
     def _others(self, table: StudentTable, judged: Judged) -> Iterator[_Reading]:
-        """Yield the other readings of a wrong table, those that explain most first."""
+        # The readings that explain most come first.
         if (renumbered := by_other_numbering(table, self.grading)) is not None:
             yield _Reading(renumbered, None)
             return
@@ -170,12 +161,9 @@ class _Readings:
                 yield _Reading(exchanged, wrong - 1)
 
     def limited(self, table: StudentTable, first: JudgedTable) -> Judged:
-        """Return the judgement of a table as written, with an upper limit of its points.
-
-        A wrong table earns no more than it would without its extra rows, because the points belong
-        to the rows of the mechanism. A table with unread cells, whose right values are unknown,
-        earns no more than if each of these cells contained its joint variable or 0.
-        """
+        # A wrong table earns no more than it would without its extra rows, because the points
+        # belong to the rows of the mechanism. A table with unread cells, whose right values are
+        # unknown, earns no more than if each of these cells contained its joint variable or 0.
         judged, convention = first
         if judged.is_right:
             return judged
@@ -196,12 +184,9 @@ class _Readings:
 def _with_slip(
     intended: IntendedTable, without: Judged, judged: Judged, grading: Grading
 ) -> Judged:
-    """Return the judgement of a table with a systematic mistake.
-
-    ``without`` is the judgement of the table without the mistake, ``judged`` that of the table as
-    written. The cells with the mistake are wrong; together they cost as much as a mistake in the
-    whole table.
-    """
+    # ``without`` is the judgement of the table without the mistake, ``judged`` that of the table as
+    # written. The cells with the mistake are wrong; together they cost as much as a mistake in the
+    # whole table.
     rows = tuple(
         row_report(
             row.label,
@@ -234,11 +219,8 @@ def _with_slip(
 def _with_extra_rows(
     table: StudentTable, kept: list[int], judged: Judged, without: Judged, grading: Grading
 ) -> Judged:
-    """Return the judgement of a wrong table with extra rows.
-
-    ``kept`` are the indices of the mechanism's rows; ``without`` is the judgement of only these
-    rows.
-    """
+    # ``kept`` are the indices of the mechanism's rows; ``without`` is the judgement of only these
+    # rows.
     extra = [i for i, row in enumerate(table.rows) if i not in kept and not row.is_zero]
     is_at_end = kept == list(range(len(kept)))
     if extra and is_at_end and without.is_right and not np.isnan(table.values[extra]).any():
@@ -269,10 +251,8 @@ def _with_extra_rows(
 def _explained_without(
     rows: tuple[RowReport, ...], without: tuple[RowReport, ...]
 ) -> tuple[RowReport, ...]:
-    """Return the rows without messages on cells that are wrong only because of an extra row.
-
-    ``without`` are the rows of the report on the table without its extra rows.
-    """
+    # ``without`` are the rows of the report on the table without its extra rows. Messages on cells
+    # that are wrong only because of an extra row are left out.
     right = {
         (row.label, cell.label): cell
         for row in without

@@ -33,17 +33,17 @@ class ListNames:
     """The names that the values of a list may have.
 
     ``labels`` are the expected names and ``quantities`` the expected quantities, in order.
-    ``places`` maps the plain form of each name (``_key``) to places; ``coordinates`` maps x, y and
-    z to places.
     """
 
+    # ``places`` maps the plain form of each name (``_key``) to places; ``coordinates`` maps x, y
+    # and z to places.
     labels: tuple[str, ...]
     quantities: tuple[Kind, ...]
     places: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
     coordinates: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
     def places_of(self, names: Sequence[LeftSide | None], vocabulary: Vocabulary) -> list[Places]:
-        """Return the places that each name may have; None for a name that implies no place."""
+        """Return the places in the list that each name may mean; None if it means no place."""
         words = [_words(name.name) if name else [] for name in names]
         letters = [letter for each in words if (letter := _coordinate(each))]
         # x_1 and y_1 are coordinates in frame 1, but x_1 and x_2 are numbered values.
@@ -87,7 +87,7 @@ def names_of_coordinates(letters: str) -> ListNames:
 def names_of_components(
     components: tuple[tuple[str, Kind], ...], vocabulary: Vocabulary
 ) -> ListNames:
-    """Return the names of the components of a vector, given as (name, quantity) by the exercise."""
+    """Return the names of a vector's components, each given as (name, quantity)."""
     names = tuple(name for name, _ in components)
     keys: dict[str, list[int]] = {}
     for i, name in enumerate(names):
@@ -108,11 +108,9 @@ def names_of_components(
 
 @lru_cache(maxsize=256)
 def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
-    """Return the names of three angles about the axes ``turns``, which are fixed or moving.
-
-    Textbooks differ in the order of α and γ (about fixed axes), of φ and ψ (about three different
-    axes), and of roll and yaw. So each of these names has two possible places.
-    """
+    """Return the names of three angles about the axes ``turns``, which are fixed or moving."""
+    # Textbooks differ in the order of α and γ (about fixed axes), of φ and ψ (about three different
+    # axes), and of roll and yaw. So each of these names has two possible places.
     is_euler = turns[0] == turns[2]
     inner, outer = (1,), (0, 2)
     places: dict[str, tuple[int, ...]] = {"beta": inner, "theta": inner}
@@ -134,18 +132,17 @@ def names_of_angles(turns: str, *, fixed: bool) -> ListNames:
 
 
 def _by_letter(letters: Iterable[str | None]) -> dict[str, tuple[int, ...]]:
-    """Return the places of x, y and z in ``letters``, an empty tuple for an absent letter."""
     listed = list(letters)
     return {axis: tuple(i for i, each in enumerate(listed) if each == axis) for axis in "xyz"}
 
 
 def _is_another(symbol: Symbol, quantity: Kind) -> bool:
-    """True if a declared symbol is an angle, but a length is expected, or vice versa."""
+    # An angle where a length is expected, or vice versa.
     return quantity != "number" and symbol.kind != "number" and symbol.kind != quantity
 
 
 def _words(name: str) -> list[str]:
-    """Return the words and numbers of a name in small letters, Greek letters spelled out."""
+    # In small letters, Greek letters spelled out.
     plain = _GREEK.sub(lambda found: f" {greek.NAMES[found[0]]} ", _plain(name)).lower()
     words = _WORD.findall(plain.replace("\\var", "\\"))
     # A leading superscript is a frame: {}^0 p_x.
@@ -157,17 +154,15 @@ def _key(words: Sequence[str]) -> str:
 
 
 def _plain(name: str) -> str:
-    """Return a name without styles and arguments."""
     return unicodedata.normalize("NFKC", _ARGUMENTS.sub(" ", _STYLE.sub(" ", name)))
 
 
 def _symbol(name: str, vocabulary: Vocabulary) -> Symbol | None:
-    """Return the declared symbol with this name, if there is one."""
     plain = _plain(name)
     return vocabulary.by_name.get(normal_form(plain.translate(_NO_MARKS)))
 
 
 def _coordinate(words: Sequence[str]) -> str | None:
-    """Return the coordinate in a name, such as x for p_x and x_e; None unless there is just one."""
+    # x for p_x and x_e; None unless there is just one coordinate.
     found = [match[1] or match[2] for word in words if (match := _COORDINATE.fullmatch(word))]
     return found[0] if len(found) == 1 else None

@@ -1,9 +1,9 @@
-"""Read a list of frames on joint axes: JSON rows, or a pasted table.
+"""Read a list of frames on joint axes, from JSON or a pasted table.
 
-A frame is its joint axis, the direction of z, the coordinates of its origin, and the direction of
-x.
-A direction is a name such as ``+x`` or ``-z0``, or a vector of any length.
+A frame is its joint axis, the direction of z, its origin, and the direction of x.
 """
+
+# A direction is a name such as ``+x`` or ``-z0``, or a vector of any length.
 
 import re
 from collections.abc import Mapping, Sequence
@@ -67,7 +67,7 @@ _READ: Final = Entry(None)
 class JointNumber:
     """The number of a joint axis as read.
 
-    If the cell does not contain a whole number, ``number`` is None, and ``entry`` has the reason.
+    ``number`` is None if the cell has no whole number; ``entry`` has the reason.
     """
 
     number: int | None
@@ -76,7 +76,7 @@ class JointNumber:
 
 @dataclass(frozen=True, slots=True)
 class StudentFrame:
-    """A frame as read."""
+    """A frame as read from a student's answer."""
 
     axis: JointNumber
     z: Direction
@@ -113,10 +113,7 @@ def read_frames(answer: object, labels: Sequence[str], reader: Reader) -> tuple[
 
 
 def _numbered(named: Sequence[str | None], labels: Sequence[str]) -> list[tuple[str, int]]:
-    """Return the label and the place of each row. Raises UnreadableAnswerError.
-
-    Rows without names are in order.
-    """
+    # Rows without names are in order.
     if len(named) > len(labels):
         raise UnreadableAnswerError(_TOO_MANY)
     if any(name is None for name in named):
@@ -127,7 +124,6 @@ def _numbered(named: Sequence[str | None], labels: Sequence[str]) -> list[tuple[
 
 
 def _cells_of(row: object) -> tuple[object, ...]:
-    """Return the six cells of a JSON row. Raises UnreadableAnswerError."""
     if row is None:
         return (None,) * len(FRAME_CELLS)
     if isinstance(row, Mapping):
@@ -148,7 +144,6 @@ _KEYS: Final = frozenset({LABEL, "origin", *FRAME_CELLS})
 
 
 def _three(point: object) -> Sequence[object]:
-    """Return the three coordinates of a point in JSON."""
     if isinstance(point, str) and point.strip():
         point = _components(point) or [point]
     if point is None or point == "":
@@ -159,7 +154,6 @@ def _three(point: object) -> Sequence[object]:
 
 
 def _pasted(text: str, labels: Sequence[str], reader: Reader) -> tuple[StudentFrame, ...]:
-    """Read a pasted table with the frames in its rows."""
     try:
         found = pasted_frames(text, labels, reader)
     except GridError as error:
@@ -213,13 +207,11 @@ def _pasted_frame(cells: Sequence[GridCell], reader: Reader) -> StudentFrame:
 
 
 def _whole(entry: Entry, cell: GridCell) -> Entry:
-    """Return the entry; each of its findings refers to the whole cell."""
     findings = tuple(replace(each, span=cell.whole) for each in entry.findings)
     return replace(entry, findings=findings)
 
 
 def _joint(raw: object, reader: Reader) -> JointNumber:
-    """Read the number of a joint."""
     if isinstance(raw, str) and len(raw) <= _LONGEST_NAME:
         if named := _JOINT.fullmatch(raw.strip()):
             return JointNumber(int(named[1]))
@@ -232,7 +224,6 @@ def _joint(raw: object, reader: Reader) -> JointNumber:
 
 
 def _direction(raw: object, reader: Reader) -> Direction:
-    """Read a direction: a name or a vector."""
     if isinstance(raw, str):
         plain = raw.translate(_MINUS).strip()
         if not plain:
@@ -251,16 +242,12 @@ def _direction(raw: object, reader: Reader) -> Direction:
 
 
 def _without_span(entry: Entry) -> Entry:
-    """Return an entry of a vector without the spans and suggestions of its findings.
-
-    The spans count from the start of the component, not of the cell.
-    """
+    # The spans count from the start of the component, not of the cell.
     findings = tuple(replace(each, span=None, suggestion=None) for each in entry.findings)
     return replace(entry, findings=findings)
 
 
 def _components(text: str) -> list[object] | None:
-    """Return the texts of the components of a vector, None if there are not three."""
     if len(text) > _LONGEST_VECTOR:
         return None
     inner = text.strip()

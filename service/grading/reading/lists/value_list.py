@@ -44,12 +44,13 @@ def read_list(
 ) -> StudentValues:
     """Read a list of values, one for each of the expected ``names``.
 
-    A list may also be a column (a list of lists with one value each), a row within a list, or
-    pasted text. Omitted values at the end are missing. Values with names, such as y = l1 s1, are
-    ordered by their names; a value with the name of another place is unreadable. One of the
-    ``tails`` may follow the values, as in [x, y, 0]; it is ignored, with a note. Raises
-    UnreadableAnswerError if there is no list of the expected length.
+    Values with names, such as y = l1 s1, are ordered by their names. One of the ``tails`` may
+    follow the values, as in [x, y, 0]. Raises UnreadableAnswerError if there is no list of the
+    expected length.
     """
+    # A list may also be a column (a list of lists with one value each), a row within a list, or
+    # pasted text. Omitted values at the end are missing. A value with the name of another place is
+    # unreadable. A tail is ignored, with a note.
     if isinstance(answer, dict):
         answer = _by_keys(answer, names, reader)
     if isinstance(answer, str):
@@ -64,11 +65,7 @@ def read_list(
 
 
 def _by_keys(answer: Mapping[str, object], names: ListNames, reader: Reader) -> list[object]:
-    """Return the values of an object such as {"x": …, "y": …} in the expected order.
-
-    Raises UnreadableAnswerError unless each key means exactly one place, and no two keys mean the
-    same place.
-    """
+    # Each key must mean exactly one place, and no two keys the same place.
     count = len(names.quantities)
     if not 0 < len(answer) <= count:
         raise UnreadableAnswerError(_wrong_shape(count, 0))
@@ -90,7 +87,6 @@ _Written = tuple[object, Callable[[Entry], Entry]]
 
 
 def _read(written: Sequence[_Written], names: ListNames, reader: Reader) -> list[Entry]:
-    """Return the entries of values, in the order of their names if they have any."""
     quantities = names.quantities
     written = [*written, *[_LEFT_OFF] * (len(quantities) - len(written))]
     raws = [raw for raw, _ in written]
@@ -131,7 +127,6 @@ def _listed(answer: object, names: ListNames, reader: Reader, tails: Sequence[Ta
 def _left_aside(
     values: Sequence[object], count: int, reader: Reader, tails: Sequence[Tail]
 ) -> Tail:
-    """Return which of ``tails`` follows the first ``count`` values, or an empty tail."""
     following = values[count:]
     for tail in tails:
         if len(tail) == len(following) and all(map(partial(_is_figure, reader), following, tail)):
@@ -140,7 +135,7 @@ def _left_aside(
 
 
 def _is_figure(reader: Reader, raw: object, figure: str) -> bool:
-    """True if a value is the figure "0" or "1"; a 0 may have a name, as in z = 0."""
+    # A 0 may have a name, as in z = 0.
     if isinstance(raw, str):
         plain = _LATEX_BLANK.sub("", raw)
         name = name_of(plain, reader.vocabulary) if figure == "0" else None
@@ -151,14 +146,12 @@ def _is_figure(reader: Reader, raw: object, figure: str) -> bool:
 def _with_notes(
     entries: Sequence[Entry], left_aside: Sequence[tuple[str, tuple[int, int] | None]]
 ) -> list[Entry]:
-    """Return the entries; the last entry gets notes on the ignored values that follow it."""
     *before, last = entries
     notes = [replace(_LEFT_ASIDE[figure], span=span) for figure, span in left_aside]
     return [*before, replace(last, findings=(*last.findings, *notes))]
 
 
 def _flat(answer: object) -> list[object]:
-    """Return the values of a list, of a column or of a single row; [] for anything else."""
     if not isinstance(answer, list):
         return []
     if len(answer) == 1 and isinstance(answer[0], list):
@@ -169,7 +162,7 @@ def _flat(answer: object) -> list[object]:
 
 
 def _in_round_brackets(text: str) -> str:
-    """Replace angle brackets, as in <l1 c1, l1 s1>, by round ones without moving a character."""
+    # <l1 c1, l1 s1> becomes (l1 c1, l1 s1); no character moves.
     found = _IN_ANGLE_BRACKETS.fullmatch(text)
     if not found:
         return text
@@ -178,10 +171,7 @@ def _in_round_brackets(text: str) -> str:
 
 
 def _as_written_out(text: str) -> str:
-    """Return the text of a list without its code fence, its name, and a T that transposes it.
-
-    A transposed list is the same list. Removed text becomes blanks, so that spans stay valid.
-    """
+    # A transposed list is the same list. Removed text becomes blanks, so that spans stay valid.
     for pattern in (_FENCE, _FENCE_AFTER):
         text = pattern.sub(lambda found: _LETTER.sub(" ", found[0]), text, count=1)
     raised = _TRANSPOSED.search(text, max(0, len(text) - _LONGEST_END))
@@ -230,10 +220,7 @@ def _pasted(text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]) 
 def _split_values(
     text: str, names: ListNames, reader: Reader, tails: Sequence[Tail]
 ) -> list[Entry] | None:
-    """Read the values of a text, one on each line or separated by semicolons or commas.
-
-    Return None if the number of values is not the expected number, or if no value can be read.
-    """
+    # None if the number of values is not the expected number, or if no value can be read.
     count = len(names.quantities)
     for pieces in (_lines(text), _split(text, ";"), _split(text, ",")):
         parts = [_stripped(at, piece) for at, piece in pieces if piece.strip()]
@@ -249,12 +236,10 @@ def _split_values(
 
 
 def _stripped(at: int, piece: str) -> tuple[int, str]:
-    """Return the start and text of a piece without the blanks around it."""
     return at + len(piece) - len(piece.lstrip()), piece.strip()
 
 
 def _lines(text: str) -> Iterator[tuple[int, str]]:
-    """Yield the start and text of each line."""
     at = 0
     for line in text.splitlines(keepends=True):
         yield at, line.rstrip("\r\n")
@@ -262,10 +247,7 @@ def _lines(text: str) -> Iterator[tuple[int, str]]:
 
 
 def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
-    """Yield the start and text of each piece between separators, without the outer brackets.
-
-    Yield nothing for a text such as [c1 -s1, 0], which has three values in MATLAB.
-    """
+    # Yield nothing for a text such as [c1 -s1, 0], which has three values in MATLAB.
     start, end = _inside(text)
     if text[:start].strip() == "[" and _NEW_VALUE.search(text):
         return
@@ -279,10 +261,7 @@ def _split(text: str, separator: str) -> Iterator[tuple[int, str]]:
 
 
 def _inside(text: str) -> tuple[int, int]:
-    """Return the [start, end) of the text inside the brackets around the whole text.
-
-    Without brackets, return the [start, end) of the trimmed text.
-    """
+    # The [start, end) of the text without the brackets around all of it.
     start, end = len(text) - len(text.lstrip()), len(text.rstrip())
     depth = 0
     for at in range(start, end):
@@ -293,7 +272,6 @@ def _inside(text: str) -> tuple[int, int]:
 
 
 def _shifted(entry: Entry, by: int) -> Entry:
-    """Return the entry with all spans moved by ``by`` characters."""
     findings = tuple(
         replace(finding, span=(finding.span[0] + by, finding.span[1] + by))
         if finding.span
@@ -351,10 +329,7 @@ _LEFT_ASIDE = {
 
 
 def _wrong_shape(count: int, found: int) -> Finding:
-    """Return the finding that an answer is not a list of ``count`` values.
-
-    ``found`` is the number of values if there are too many, else 0.
-    """
+    # ``found`` is the number of values if there are too many, else 0.
     message = say("Write a list of {number} values.", number=count)
     if count == 1:
         message = say("Write one number or one formula here.")
@@ -366,7 +341,6 @@ def _wrong_shape(count: int, found: int) -> Finding:
 
 
 def _from_grid_error(error: GridError, count: int) -> Finding:
-    """Return the finding that a pasted text is not a list, without mention of rows and columns."""
     finding = from_grid_error(error)
     if error.code not in _OF_TABLES:
         return finding

@@ -57,11 +57,12 @@ class StudentMatrix:
 
 
 def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> StudentMatrix:
-    """Read the matrix in a nested list or a pasted text, with one entry for each quantity.
+    """Read the matrix in a nested list or a pasted text.
 
-    Omitted rows at the end are missing. A row of the wrong length is unreadable, because its
-    entries are ambiguous. Raises UnreadableAnswerError if there are no rows at all, or too many.
+    Omitted rows at the end are missing. Raises UnreadableAnswerError if there are no rows, or too
+    many.
     """
+    # A row of the wrong length is unreadable, because its entries are ambiguous.
     return matrix_of_entries(_entries(answer, quantities, reader), quantities, reader)
 
 
@@ -109,7 +110,7 @@ def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[En
 
 
 def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: Reader) -> Entry:
-    """Return the entry in a place; an entry with the name of another place is unreadable."""
+    # An entry with the name of another place is unreadable.
     i, j = place
     entry = reader.read(raw, quantities[i][j])
     if entry.findings:
@@ -122,7 +123,7 @@ def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: 
 def _of_wrong_size(
     found: str, quantities: Quantities, span: tuple[int, int] | None = None
 ) -> Finding:
-    """Return the finding on a matrix of the size ``found``, which is "" if there is no matrix."""
+    # ``found`` is "" if there is no matrix.
     rows, columns = len(quantities), len(quantities[0])
     message = say("Write {rows} rows with {columns} entries each.", rows=rows, columns=columns)
     if found:
@@ -138,10 +139,7 @@ def _of_wrong_size(
 def _of_wrong_length(
     found: int | None, wanted: int, span: tuple[int, int] | None = None
 ) -> list[Entry]:
-    """Return an unreadable row that has ``found`` entries instead of ``wanted``.
-
-    ``found`` is None if the row is not a list.
-    """
+    # ``found`` is None if the row is not a list.
     message = say("Write {wanted} entries in this row.", wanted=wanted)
     if found is not None:
         message = say(
@@ -151,7 +149,7 @@ def _of_wrong_length(
 
 
 def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[Entry]:
-    """Return a row of unreadable entries; only the first has the finding, so it is shown once."""
+    # Only the first entry has the finding, so that it is shown once.
     first = unreadable(finding) if finding else UNREADABLE
     return [first, *[UNREADABLE] * (len(cells) - 1)]
 

@@ -1,4 +1,4 @@
-"""Names of matrix entries, as in T(1,4) = l1 c1 and r_12 = -s1, and the entries they mean."""
+"""Find the matrix entry that a name means, as in T(1,4) = l1 c1 and r_12 = -s1."""
 
 import re
 import unicodedata
@@ -23,11 +23,11 @@ _IN_BRACKETS: Final = re.compile(
 def misnamed_entry(
     raw: object, place: tuple[int, int], size: tuple[int, int], vocabulary: Vocabulary
 ) -> Finding | None:
-    """Return the finding that a value has the name of an entry in another place than ``place``.
+    """Return a finding if a value has the name of a matrix entry other than ``place``.
 
-    ``place`` counts from 0; ``size`` is the matrix's rows and columns. Indices in square brackets
-    may count from 0.
+    ``place`` counts from 0; ``size`` is the matrix's rows and columns.
     """
+    # Indices in square brackets may count from 0.
     name = name_of(raw, vocabulary)
     if name is None or normal_form(name.name) in vocabulary.by_name:
         return None
@@ -39,7 +39,6 @@ def misnamed_entry(
 
 
 def _places_of(name: LeftSide) -> list[tuple[int, int]]:
-    """Return the entries that a name may mean, counted from 0."""
     plain = unicodedata.normalize("NFKC", name.name).lower()
     found = _GLUED.fullmatch(plain) or _IN_BRACKETS.fullmatch(plain)
     if found is None:

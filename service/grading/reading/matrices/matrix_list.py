@@ -31,11 +31,11 @@ def read_matrices(
 ) -> list[StudentMatrix]:
     """Read the matrices of a pasted text, one for each label.
 
-    The entries of an absent matrix are missing.
-
-    Matrices are identified by their names, if they have any. An unreadable matrix affects only
-    itself. Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
+    The entries of an absent matrix are missing. Raises UnreadableAnswerError if the matrices cannot
+    be found or identified.
     """
+    # Matrices are identified by their names, if they have any. An unreadable matrix affects only
+    # itself.
     if not text.strip():
         return [matrix_of_entries([], quantities, reader) for _ in labels]
     grids, notes = grids_in_order(text, labels, reader)
@@ -48,7 +48,7 @@ def grids_in_order(
 ) -> tuple[list[Grid | GridError | None], list[Finding]]:
     """Return the grid for each label (an error if unreadable, None if absent), and notes.
 
-    Raises UnreadableAnswerError if the text has no matrices, or they cannot be identified.
+    Raises UnreadableAnswerError if the matrices cannot be found or identified.
     """
     try:
         refuse_other_lengths(text, ["length"], reader)
@@ -68,9 +68,8 @@ def grids_in_order(
 def places_in_list(
     answer: Sequence[object], labels: Sequence[str]
 ) -> tuple[list[int], list[Finding]]:
-    """Return the place of each matrix of a list, and notes on the places.
+    """Return the place of each matrix in a list, by the matrix's name, and notes on the places.
 
-    Matrices that are texts may have names, which tell their places.
     Raises UnreadableAnswerError if the names contradict each other.
     """
     places = [*range(len(answer))]
@@ -89,7 +88,6 @@ def places_in_list(
 
 
 def _named(answer: object) -> NamedGrid | None:
-    """Return a matrix of a list with its name; None if the matrix is empty."""
     nameless = NamedGrid(SourceText.of(""), GridError("no_grid", "", (0, 0)))
     if not isinstance(answer, str):
         return None if answer is None else nameless
@@ -102,7 +100,6 @@ def _named(answer: object) -> NamedGrid | None:
 
 
 def _noted_once(grids: list[Grid | GridError | None]) -> list[Grid | GridError | None]:
-    """Return the grids with each note only on the first grid that has it."""
     noted: set[str] = set()
     found: list[Grid | GridError | None] = []
     for each in grids:
@@ -135,10 +132,7 @@ def with_notes(matrix: StudentMatrix, notes: Sequence[Finding]) -> StudentMatrix
 def _places(
     grids: Sequence[NamedGrid], labels: Sequence[str]
 ) -> tuple[list[int | None], list[Finding]]:
-    """Return the place of each matrix, and notes on the places.
-
-    Places count from 0; the place of an ignored matrix is None.
-    """
+    # Places count from 0; the place of an ignored matrix is None.
     texts, count = [each.name.text for each in grids], len(labels)
     changed = [is_changed(text) for text in texts]
     products = [is_product(text) and not is_changed(text) for text in texts]
@@ -176,7 +170,6 @@ def _places(
 def _without_values(
     grids: Sequence[NamedGrid], labels: Sequence[str], reader: Reader
 ) -> tuple[list[NamedGrid], list[Finding]]:
-    """Remove assignments that are not matrices, such as theta1 = pi/2, and return notes on them."""
     matrices = [each for each in grids if not _is_value(each, reader)]
     notes = [_left_aside(each, _asked_for(labels)) for each in grids if _is_value(each, reader)]
     return matrices, notes
@@ -190,7 +183,7 @@ def _is_value(each: NamedGrid, reader: Reader) -> bool:
 
 
 def _asked_for(labels: Sequence[str]) -> str:
-    """Return the names of the expected matrices: "A1 and A2", "A1 to A6"."""
+    # "A1 and A2", "A1 to A6".
     first, last = f"A{labels[0]}", f"A{labels[-1]}"
     if len(labels) == 2:
         return listed((first, last))

@@ -48,11 +48,11 @@ def is_product(name: str) -> bool:
 def places_of(names: Sequence[Indices], count: int) -> tuple[tuple[_Place, ...], str]:
     """Return which link transform each name means, 1 to ``count`` or None, and a note.
 
-    The note is on unusual counting, and empty for usual counting. A name has the number of the
-    link, or the two frames that the link connects. There are several ways to count: A0 may be the
-    first link, and 12 may be the twelfth link or the link between frames 1 and 2. The way that
-    gives the most link transforms is chosen.
+    The note is on unusual counting.
     """
+    # There are several ways to count: A0 may be the first link, and 12 may be the twelfth link or
+    # the link between frames 1 and 2. The way that gives the most link transforms is chosen. The
+    # note is empty for usual counting.
     readings = [
         (tuple(_valid(way(name, count), count) for name in names), unusual)
         for way, unusual in _WAYS
@@ -69,7 +69,7 @@ def _number(index: str, count: int) -> int:
 
 
 def _by_number(name: Indices, count: int) -> _Place:
-    """Return the place of a name with the link's number (A_2) or the link's two frames (T^1_2)."""
+    # A_2 has the link's number, T^1_2 the link's two frames.
     numbers = [_number(index, count) for index in name]
     if len(numbers) == 1 and (len(name[0]) == 1 or name[0][0] != "0"):
         return numbers[0]
@@ -79,26 +79,26 @@ def _by_number(name: Indices, count: int) -> _Place:
 
 
 def _by_frames(name: Indices, count: int) -> _Place:
-    """Return the place of a name with the link's two frames in one number: T_{12}."""
+    # T_{12} has the link's two frames in one number.
     if len(name) == 1 and len(name[0]) == 2 and name[0].isdigit():
         return _by_number(tuple(name[0]), count)
     return _by_number(name, count)
 
 
 def _from_zero(name: Indices, count: int) -> _Place:
-    """Return the place of a name if the first link is A_0."""
+    # The first link is A_0.
     return int(name[0]) + 1 if len(name) == 1 and name[0].isdigit() else _by_number(name, count)
 
 
 def _from_frame_one(name: Indices, count: int) -> _Place:
-    """Return the place of a name if the first link is T_{12}."""
+    # The first link is T_{12}.
     pair = tuple(name[0]) if len(name) == 1 and name[0].isdigit() else name
     numbers = [_number(index, count + 1) for index in pair]
     return min(numbers) if len(numbers) == 2 and abs(numbers[0] - numbers[1]) == 1 else None
 
 
 def _by_last_frame(name: Indices, count: int) -> _Place:
-    """Return the place of a name if all names start from frame 0: T_{02} is the second matrix."""
+    # All names start from frame 0: T_{02} is the second matrix.
     pair = tuple(name[0]) if len(name) == 1 else name
     return _number(pair[1], count) if len(pair) == 2 and pair[0] == "0" else None
 

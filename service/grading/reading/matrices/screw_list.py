@@ -1,8 +1,7 @@
-r"""Read submitted screw axes, pasted or JSON, as a row of six numbers (ω; v) for each joint.
+"""Read submitted screw axes as a row of six numbers (ω; v) for each joint."""
 
-Students write them as the rows or the columns of one matrix, as named vectors (``S1 = […]``), as
-named halves (``w1 = […], v1 = […]``), or as a table with a column for ω and one for v.
-"""
+# Students write them as the rows or the columns of one matrix, as named vectors (``S1 = […]``), as
+# named halves (``w1 = […], v1 = […]``), or as a table with a column for ω and one for v.
 
 import re
 from collections.abc import Mapping, Sequence
@@ -41,11 +40,11 @@ _IN_HEADER: Final = (
 
 
 def screw_grid(text: str, count: int, reader: Reader) -> Grid:
-    """Return the ``count`` axes in a pasted text, each a row of six cells.
+    """Return the ``count`` screw axes in a pasted text, each a row of six cells.
 
-    Vectors are ordered by the numbers in their names, if they have any. A matrix of another form is
-    returned unchanged. Raises GridError if there is no matrix.
+    A matrix of another form is returned unchanged. Raises GridError if there is no matrix.
     """
+    # Vectors are ordered by the numbers in their names, if they have any.
     plain = _plain(text)
     try:
         grid = pasted_grid(plain, reader)
@@ -63,11 +62,9 @@ def screw_grid(text: str, count: int, reader: Reader) -> Grid:
 
 
 def screw_rows(answer: object, count: int) -> object:
-    """Return the rows of a JSON answer; an answer of another form is returned unchanged.
-
-    An axis may have its halves as [ω, v] or {"omega": ω, "v": v}. A single axis needs no list
-    around it.
-    """
+    """Return the rows of a JSON answer; an answer of another form is returned unchanged."""
+    # An axis may have its halves as [ω, v] or {"omega": ω, "v": v}. A single axis needs no list
+    # around it.
     if isinstance(answer, dict):
         places = _places(list(answer), count)
         if places is None:
@@ -90,7 +87,6 @@ def _is_table(rows: Sequence[object], width: int) -> bool:
 
 
 def _one_axis(axis: object) -> object:
-    """Return an axis as a flat list; its halves may be separate lists."""
     if isinstance(axis, Mapping):
         halves = {_half(str(name)): half for name, half in axis.items()}
         axis = [halves[0], halves[1]] if len(axis) == 2 and halves.keys() == {0, 1} else axis
@@ -122,11 +118,8 @@ def columns_as_axes(grid: Grid) -> Note:
 
 
 def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
-    """Return the axes of a table with the vector ω in one column and v in another.
-
-    Rows are ordered by their numbers, if they have any. Return None if a header names another
-    vector, such as q.
-    """
+    # Rows are ordered by their numbers, if they have any. None if a header names another vector,
+    # such as q.
     rows = [[(cell, _vector_in(cell)) for cell in row] for row in grid.rows]
     header = None if any(vector for _, vector in rows[0]) else rows.pop(0)
     if not rows or any(sum(bool(vector) for _, vector in row) != 2 for row in rows):
@@ -150,7 +143,7 @@ def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
 
 
 def _half_of_column(name: str) -> int | None:
-    """Return the half that a header names: 0 for ω, 1 for v, None for anything else."""
+    # 0 for ω, 1 for v.
     half = _half(name)
     if half is None:
         plain = name.lower()
@@ -160,7 +153,7 @@ def _half_of_column(name: str) -> int | None:
 
 
 def _vector_in(cell: GridCell) -> list[GridCell]:
-    """Return the three cells of a vector in one cell, such as (0, 0, 1); [] for any other cell."""
+    # Such as (0, 0, 1); [] for any other cell.
     if cell.text[:1] not in ("(", "[") or cell.text[-1:] not in (")", "]"):
         return []
     numbers = cell.cut(1, len(cell.text) - 1).split(_COMMA)
@@ -168,7 +161,6 @@ def _vector_in(cell: GridCell) -> list[GridCell]:
 
 
 def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
-    """Return the axes in a text with one vector, or the two vectors ω and v, for each axis."""
     try:
         found = pasted_grids(text, reader)
     except GridError:
@@ -198,7 +190,7 @@ def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
 
 
 def _cells(grid: Grid) -> list[GridCell]:
-    """Return the cells of a vector, or of a matrix with the rows ω and v; [] for other matrices."""
+    # [] for a matrix that does not have the rows ω and v.
     heights, widths = len(grid.rows), {len(row) for row in grid.rows}
     if heights == 1 or widths == {1} or (heights == 2 and widths == {_HALF}):
         return [cell for row in grid.rows for cell in row]
@@ -208,10 +200,7 @@ def _cells(grid: Grid) -> list[GridCell]:
 def _placed(
     names: Sequence[str], vectors: Sequence[Sequence[GridCell]], count: int
 ) -> list[Sequence[GridCell]] | None:
-    """Return the vector of each axis, with empty cells for an absent axis.
-
-    Return None if the names contradict each other.
-    """
+    # None if the names contradict each other.
     places = _places(names, count)
     if places is None:
         return None
@@ -221,11 +210,8 @@ def _placed(
 
 
 def _places(names: Sequence[str], count: int) -> list[int] | None:
-    """Return the place of each name, counted from 0, by the number in the name.
-
-    If all names are empty, the places are in the given order. Return None if a place is unknown or
-    taken.
-    """
+    # If all names are empty, the places are in the given order. None if a place is unknown or
+    # taken.
     if not names or len(names) > count:
         return None
     if not any(names):
@@ -236,7 +222,7 @@ def _places(names: Sequence[str], count: int) -> list[int] | None:
 
 
 def _half(name: str) -> int | None:
-    r"""Return 0 for a name of ω (\hat{\omega}_1, w2), 1 for a name of v (v_3), else None."""
+    # 0 for a name of ω (hat omega_1, w2), 1 for a name of v (v_3).
     plain = _STYLE.sub("", name).lstrip("{ $").lower()
     if _OMEGA.match(plain):
         return 0

@@ -1,4 +1,4 @@
-"""Names in cells of DH rows, such as d = 0 and theta_1 = q1, and the columns and rows they mean."""
+"""Find the column and row that a cell's name means, as in theta_1 = q1."""
 
 from collections.abc import Callable, Sequence
 from typing import Final
@@ -25,7 +25,10 @@ _SHIFTED: Final = frozenset({"a", "alpha"})
 
 
 def arranged_row(cells: Sequence[object], vocabulary: Vocabulary) -> Arrangement | None:
-    """Arrange the four cells of a row by their names; None if no name contradicts its column."""
+    """Arrange the four cells of a row by their names.
+
+    Return None if no name contradicts its column.
+    """
     return arranged(cells, _LABELS, _columns_of, vocabulary)
 
 
@@ -55,10 +58,9 @@ def row_entries(
     placed: Callable[[int, Entry], Entry],
     vocabulary: Vocabulary,
 ) -> tuple[Entry, ...]:
-    """Return the entries of row ``number``, whose ``cells`` were arranged as in ``found``.
+    """Return the entries of a row, whose ``cells`` were arranged as in ``found``.
 
-    ``read`` returns the entry of a column. ``placed`` moves the spans of an entry from its cell to
-    the whole text.
+    ``read`` returns the entry of a column. ``placed`` counts its spans in the whole text.
     """
     entries: list[Entry] = []
     for column, cell in enumerate(cells):
@@ -75,10 +77,8 @@ def row_entries(
 def _names_another_row(
     cell: object, column: str, entry: Entry, number: int, vocabulary: Vocabulary
 ) -> Finding | None:
-    """Return the finding that a cell has the name of another row, such as θ2 = … in row 1.
-
-    Return None for a cell such as θ2 = θ2, which contains the variable that it is named after.
-    """
+    # Such as θ2 = … in row 1. None for a cell such as θ2 = θ2, which contains the variable that it
+    # is named after.
     name = name_of(cell, vocabulary)
     named = named_parameter(name.name) if name else None
     if name is None or named is None or named.row is None or entry.expression is None:

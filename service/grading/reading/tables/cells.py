@@ -39,16 +39,16 @@ _Read = tuple[object, object]
 def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
     """Convert a table to ``{"rows": [{"a", "alpha", "d", "theta"} …], …}``. Never raises.
 
-    The answer may be a mapping with ``rows`` (other fields are kept), the list of rows alone, or a
-    mapping from headers to lists. A row is a mapping whose keys are headers in any spelling ("α",
-    "alpha_i", "twist"), or a list in ``order``, with or without the row's number in front. A list
-    of four headers may precede such rows; or each list has the values of one parameter, after its
-    header. If all rows have a number or "e", they are put in the order of these labels.
-
-    A row of any other form is unchanged. A row whose keys have a unit, or name one column twice, is
-    unchanged, too. The reader then refuses the row, or reads the cells that it knows. An answer
-    without any row is returned unchanged.
+    A row may be a mapping whose keys are headers, or a list in ``order``. Rows with numbers are
+    ordered by these numbers.
     """
+    # The answer may be a mapping with ``rows`` (other fields are kept), the list of rows alone, or
+    # a mapping from headers to lists. Headers have any spelling ("α", "alpha_i", "twist"). A list
+    # of four headers may precede rows that are lists; or each list has the values of one parameter,
+    # after its header. Rows are ordered if all have a number or "e". A row of any other form is
+    # unchanged. A row whose keys have a unit, or name one column twice, is unchanged, too: the
+    # reader then refuses the row, or reads the cells that it knows. An answer without any row is
+    # returned unchanged.
     if isinstance(answer, Mapping):
         rows = answer.get("rows")
         if rows is None and (rows := _from_columns(answer)) is not None:
@@ -66,7 +66,6 @@ def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
 
 
 def _from_columns(answer: Mapping[str, object]) -> list[object] | None:
-    """Return the rows of a table that has one list for each parameter; None for other answers."""
     columns = {key: cells for key, cells in answer.items() if isinstance(cells, list)}
     lengths = {len(cells) for cells in columns.values()}
     if not len(_IN_ORDER) <= len(columns) <= _MOST_NAMES or len(lengths) > 1:
@@ -76,10 +75,7 @@ def _from_columns(answer: Mapping[str, object]) -> list[object] | None:
 
 
 def _with_parameters_in_columns(rows: list[object]) -> list[object]:
-    """Return the rows, transposed if the lists begin with a, α, d and θ.
-
-    A list of joint numbers may precede these lists.
-    """
+    # A list of joint numbers may precede the lists that begin with a, α, d and θ.
     lists = [row for row in rows[: len(_IN_ORDER) + 1] if isinstance(row, list)]
     if len(lists) < len(rows) or len({len(row) for row in lists}) > 1 or not lists or not lists[0]:
         return rows
@@ -115,7 +111,6 @@ def _canonical_rows(rows: list[object], order: Sequence[str]) -> list[object]:
 
 
 def _columns(rows: list[object], names: dict[str, Header | None]) -> tuple[str, ...] | None:
-    """Return the columns of rows that are lists, if the first list has the headers."""
     first = rows[0] if len(rows) > 1 else None
     if not isinstance(first, list) or len(first) not in (4, 5):
         return None
@@ -126,7 +121,7 @@ def _columns(rows: list[object], names: dict[str, Header | None]) -> tuple[str, 
 
 
 def _are_numbered(rows: list[object]) -> bool:
-    """True if every row is a list of five values that begins with its own number, or "e"."""
+    # Five values, the first of which is the row's number, or "e".
     if not all(isinstance(row, list) and len(row) == len(_IN_ORDER) + 1 for row in rows):
         return False
     numbers = [_number(row[0]) for row in rows if isinstance(row, list)]
@@ -134,13 +129,12 @@ def _are_numbered(rows: list[object]) -> bool:
 
 
 def _number(cell: object) -> int | None:
-    """Return the row number that a cell contains; None for 0, and for a length such as l1."""
+    # None for 0, and for a length such as l1.
     place = _place(cell)
     return place if place == LAST or (place and str(cell).strip().isdecimal()) else None
 
 
 def _place(label: object) -> int | None:
-    """Return the place of the row with this label."""
     # Python raises an error if a number of thousands of digits is converted to text.
     is_number = isinstance(label, int | float) and abs(label) < _MOST_ROWS
     return label_place(str(label)) if is_number or isinstance(label, str) else None
@@ -157,7 +151,6 @@ def _read_row(row: object, columns: tuple[str, ...], names: dict[str, Header | N
 
 
 def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Read:
-    """Return the label and the cells of a row whose keys are headers."""
     label: object = None
     cells: dict[str, object] = {}
     for key, value in row.items():
@@ -174,7 +167,7 @@ def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Rea
 
 
 def _header(name: object, names: dict[str, Header | None]) -> Header | None:
-    """Return the header with this name; ``names`` memoizes the headers of earlier rows."""
+    # ``names`` memoizes the headers of earlier rows.
     if not isinstance(name, str):
         return None
     if name not in names:
@@ -183,10 +176,7 @@ def _header(name: object, names: dict[str, Header | None]) -> Header | None:
 
 
 def _in_order(rows: Sequence[_Read]) -> list[object]:
-    """Return the rows in the order of their labels.
-
-    If a label is missing or occurs twice, return the rows in their own order.
-    """
+    # If a label is missing or occurs twice, the rows keep their own order.
     places = [_place(label) for label, _ in rows]
     known = [place for place in places if place is not None]
     if len(known) < len(rows) or len(set(known)) < len(known):
@@ -225,9 +215,10 @@ class NamedCell(NamedTuple):
 def named_cells(text: str) -> Mapping[str, NamedCell] | None:
     """Return the cells of a text such as ``a=3, d=2, theta=90deg, alpha=0`` by column.
 
-    The order is free. Separators are commas, semicolons, blanks or line ends; a colon may replace
-    ``=``. Return None for any other text, and an empty mapping if a parameter is named twice.
+    Return None for any other text.
     """
+    # The order is free. Separators are commas, semicolons, blanks or line ends; a colon may replace
+    # ``=``. The mapping is empty if a parameter is named twice.
     if len(text) > _LONGEST_TEXT:
         return None
     names = list(_NAMED.finditer(text))
@@ -246,7 +237,6 @@ def named_cells(text: str) -> Mapping[str, NamedCell] | None:
 
 
 def _trimmed(text: str, start: int, end: int) -> NamedCell:
-    """Return the text between two places, without the separators around it."""
     while leading := _BETWEEN.match(text, start, end):
         start = leading.end()
     value = text[start:end]
@@ -275,7 +265,7 @@ def in_one_line(text: str) -> str:
 
 
 def _is_enclosed(text: str) -> bool:
-    """True if the last character closes the first bracket."""
+    # The last character closes the first bracket.
     if not (text.startswith("(") and text.endswith(")")):
         return False
     depths = accumulate({"(": 1, ")": -1}.get(sign, 0) for sign in text[:-1])
@@ -317,11 +307,9 @@ def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tup
 
 
 def memoized_row(cells: Sequence[object], reader: Reader) -> tuple[Entry, ...] | None:
-    """Return the memoized entries of a row of short, readable texts; None for any other row.
-
-    Most students of a class write the same rows, and a lookup takes a tenth of reading one. Rows
-    with names, such as ``theta_1 = q1``, are not memoized: they depend on the row's number.
-    """
+    """Return the memoized entries of a row of short, readable texts; None for any other row."""
+    # Most students of a class write the same rows, and a lookup takes a tenth of reading one. Rows
+    # with names, such as ``theta_1 = q1``, are not memoized: they depend on the row's number.
     a, alpha, d, theta = cells
     if not (type(a) is type(alpha) is type(d) is type(theta) is str):
         return None
@@ -336,8 +324,7 @@ def memoized_row(cells: Sequence[object], reader: Reader) -> tuple[Entry, ...] |
 
 
 class _MemoizedRow(NamedTuple):
-    """The entries of a row, and the number of symbols (names, numbers and signs) in its text."""
-
+    # ``symbols`` is the number of names, numbers and signs in the text of the row.
     entries: tuple[Entry, ...]
     symbols: int
 

@@ -1,8 +1,10 @@
-"""Comments and captions of a table: the columns and units that they name.
+"""Find the columns and units that comments and captions of a table name.
 
-``% theta [deg], d, a, alpha`` gives the columns of a table without headers. A unit without columns,
-such as ``% lengths in mm``, may apply to the table, so the text is refused.
+The comment ``% theta [deg], d, a, alpha`` gives the columns of a table without headers.
 """
+
+# A unit without columns, such as ``% lengths in mm``, may apply to the table, so the text is
+# refused.
 
 import re
 from collections.abc import Sequence
@@ -36,7 +38,7 @@ _OTHER_ANGLES: Final = re.compile(
 def columns_in_comments(text: str) -> tuple[Header, ...] | None:
     """Return the headers in a comment such as ``% theta d a alpha``, or None.
 
-    Raises GridError if two comments name two orders.
+    Raises GridError if two comments contradict each other.
     """
     found: dict[tuple[Header, ...], Span] = {}
     for comment in comments(text):
@@ -50,11 +52,9 @@ def columns_in_comments(text: str) -> tuple[Header, ...] | None:
 
 
 def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption names a unit, but not the columns with that unit.
-
-    Units of angles are ignored if a header has one, and so are units of lengths. The reader's own
-    units and comments with numbers are ignored, too.
-    """
+    """Raise GridError if a comment or a caption names a unit without its columns."""
+    # Units of angles are ignored if a header has one, and so are units of lengths. The reader's own
+    # units and comments with numbers are ignored, too.
     has_angles = any(header.angle_unit for header in headers) or _CONVERTS_ANGLES.search(text)
     has_lengths = any(header.metres for header in headers) or CONVERTS_LENGTHS.search(text)
     for comment in comments_and_captions(text):
@@ -72,7 +72,6 @@ def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> 
 
 
 def _columns(comment: str) -> tuple[Header, ...] | None:
-    """Return the headers of a, α, d and θ in the order of a comment, or None."""
     words = _BETWEEN_NAMES.split(_BEFORE_UNIT.sub("", comment.strip(" \t[]()")))
     headers = [read_header(word) for word in words]
     for i in range(len(headers) - len(COLUMNS) + 1):

@@ -66,23 +66,23 @@ _TRAILING_UNIT: Final = re.compile(
 class Header:
     """The meaning of a header.
 
-    ``column`` is a, alpha, d, theta, "label", or "aside" for a column that is ignored. ``unit`` is
-    in small letters. ``shifted`` is true if the index in the header is one less than the row
-    number, as in a_{i-1}.
+    ``column`` is a, alpha, d, theta, "label", or "aside" for a column that is ignored. ``shifted``
+    is true for an index such as in a_{i-1}.
     """
 
+    # ``unit`` is in small letters.
     column: str
     unit: str = ""
     shifted: bool = False
 
     @property
     def angle_unit(self) -> AngleUnit | None:
-        """The unit of angles in the header, if there is one."""
+        """The unit of angles in the header, or None."""
         return ANGLE_UNITS.get(self.unit)
 
     @property
     def metres(self) -> float | None:
-        """The size of the length unit in the header, in metres, if there is one."""
+        """The unit of length in the header, in metres, or None: 0.001 for mm."""
         return METRES.get(self.unit)
 
 
@@ -104,7 +104,7 @@ def named_parameter(name: str) -> NamedParameter | None:
 
 
 def read_header(text: str) -> Header | None:
-    r"""Return the header in a cell, in any spelling; None if the cell is not a header.
+    r"""Return the header in a cell; None if the cell is not a header.
 
     Examples: ``a``, ``a_{i-1}``, ``α_i (deg)``, ``link length [mm]``, ``$\theta_i$``, ``#``.
     """
@@ -155,7 +155,7 @@ def is_wordy(text: str) -> bool:
 
 
 def _plain(text: str) -> tuple[str, str]:
-    """Return a header in small plain letters, and its unit; ``~`` replaces -1."""
+    # ``~`` replaces -1.
     plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS)
     plain = _OF.sub(" ", _NUMERO.sub("no", _ACCENT.sub("", in_plain_words(plain))))
     plain = _SIUNITX.sub(lambda unit: unit[1].replace("\\", "").replace(" ", ""), plain)

@@ -18,10 +18,11 @@ from service.translations import say
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
     """Convert an entry from the unit in the header to the unit of the exercise.
 
-    Numbers are converted. Letters mean lengths in any unit, so formulas of letters alone stay
-    unchanged. A formula that also contains a length in numbers is unreadable, because the number is
-    ambiguous. A number is unreadable if the exercise's unit is unknown.
+    Numbers are converted; formulas of letters alone stay unchanged.
     """
+    # Letters mean lengths in any unit. A formula that also contains a length in numbers is
+    # unreadable, because the number is ambiguous. A number is unreadable if the exercise's unit is
+    # unknown.
     expression = entry.expression
     if expression is None:
         return entry
@@ -52,7 +53,7 @@ def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
 
 
 def _times(tree: Node, factor: float) -> Node:
-    """Return the tree times ``factor``; for 0.001 divide by 1000, which is exact."""
+    # For 0.001 divide by 1000, which is exact.
     divisor = round(1 / factor)
     if divisor > 1 and abs(divisor * factor - 1) < SAME_FACTOR:
         by = Number(float(divisor), str(divisor), tree.end, tree.end)
@@ -62,10 +63,7 @@ def _times(tree: Node, factor: float) -> Node:
 
 
 def _checked_formula(entry: Entry, expression: Expression, header: Header, reader: Reader) -> Entry:
-    """Return the entry if its value doubles when all its lengths double, else an unreadable entry.
-
-    An entry that does not double contains a length in numbers.
-    """
+    # An entry whose value does not double when all its lengths double contains a length in numbers.
     known = with_absent_variables(reader.vocabulary).by_name
     lengths = {name for name in expression.symbols if known[name].kind == "length"}
     values = reader.samples.values_for(expression)

@@ -1,4 +1,4 @@
-"""Read the cells of a table that a student marks: ``2.alpha``, or row ``2``, or several."""
+"""Read which cells of a table a student marks: ``2.alpha``, or row ``2``, or several."""
 
 import re
 from collections.abc import Sequence
@@ -39,10 +39,8 @@ class MarkedCells:
 
 
 def read_marks(answer: object, labels: Sequence[str]) -> MarkedCells:
-    """Read marks in a table whose rows have these labels.
-
-    One unreadable mark makes all of them unreadable, because the student may have meant any cell.
-    """
+    """Read marks in a table whose rows have these labels."""
+    # One unreadable mark makes all of them unreadable, because the student may have meant any cell.
     marks = _split(answer)
     if marks is None:
         return MarkedCells(findings=(_NOT_MARKS,))
@@ -56,7 +54,6 @@ def read_marks(answer: object, labels: Sequence[str]) -> MarkedCells:
 
 
 def _split(answer: object) -> list[str] | None:
-    """Return the single marks, or None if the answer has another shape."""
     if answer is None:
         return []
     if isinstance(answer, int) and not isinstance(answer, bool):

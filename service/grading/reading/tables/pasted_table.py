@@ -40,11 +40,11 @@ ColumnOrder = tuple[int | None, Header]
 class PastedRow:
     """The cells of one row in the order a, α, d, θ.
 
-    A row of the wrong length has a ``problem``, and one cell is repeated in all four places.
-    ``named`` is the arrangement of the cells by their names, None if no name contradicts its
-    column.
+    A row of the wrong length has a ``problem``.
     """
 
+    # Then one cell is repeated in all four places. ``named`` is the arrangement of the cells by
+    # their names, None if no name contradicts its column.
     cells: tuple[GridCell, ...]
     problem: Finding | None = None
     named: Arrangement | None = None
@@ -57,12 +57,12 @@ class PastedRow:
 
 @dataclass(frozen=True, slots=True)
 class PastedTable:
-    """A table's rows in the order of its joints, and the header of each of a, α, d, θ.
+    """A table's rows in the order of its joints, and the header of each column.
 
-    ``is_named`` is true if the columns have headers, or names in a script or a comment.
-    ``convention`` is the convention in a script, or None.
+    ``convention`` is the convention that a script names, or None.
     """
 
+    # ``is_named`` is true if the columns have headers, or names in a script or a comment.
     rows: tuple[PastedRow, ...]
     headers: tuple[Header, ...]
     findings: tuple[Finding, ...] = ()
@@ -71,7 +71,7 @@ class PastedTable:
 
 
 def read_pasted_table(text: str, reader: Reader) -> PastedTable:
-    """Read the rows of a pasted DH table; see ``table_of``. Raises GridError if there is none."""
+    """Read the rows of a pasted DH table. Raises GridError if there is none."""
     robot = pasted_robot(text, reader)
     if robot:
         table = table_of_robot(robot, reader)
@@ -86,11 +86,12 @@ def table_of(
 ) -> PastedTable:
     """Read the rows of a pasted DH table.
 
-    Columns are identified by their headers. Without headers there must be four columns, or five if
-    the first column has row numbers. Their order is the order that a comment in the text
-    ``comments`` names, or else ``order``. Rows are ordered by their labels, if they have any.
-    Raises GridError if the columns cannot be identified.
+    Columns are identified by their headers, or else by ``order``. Raises GridError if that is
+    impossible.
     """
+    # Without headers there must be four columns, or five if the first column has row numbers. Their
+    # order is the order that a comment in the text ``comments`` names, or else ``order``. Rows are
+    # ordered by their labels, if they have any.
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)
@@ -122,10 +123,8 @@ def table_of(
 
 
 def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
-    """Return the DH rows of the robot in a script; the angles of its links are in radians.
-
-    Raises GridError if the table has headers that cannot be identified.
-    """
+    """Return the DH rows of the robot in a script; the angles of its links are in radians."""
+    # Raises GridError if the table has headers that cannot be identified.
     if robot.has_headers:
         return table_of(robot.grid, reader)
     unit = "" if reader.angle_unit == "radians" else "rad"
@@ -140,7 +139,7 @@ def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
 
 
 def _has_parameters_in_rows(grid: Grid) -> bool:
-    """True if the rows are named a, α, d and θ; a row of joint numbers may precede them."""
+    # The rows are named a, α, d and θ; a row of joint numbers may precede them.
     rows = grid.rows[len(grid.rows) - len(COLUMNS) :]
     if len(grid.rows) > len(COLUMNS) + 1 or len({len(row) for row in grid.rows}) > 1:
         return False
@@ -149,7 +148,6 @@ def _has_parameters_in_rows(grid: Grid) -> bool:
 
 
 def _turned(grid: Grid) -> tuple[Grid, tuple[Finding, ...]]:
-    """Return the transposed table, and the note on the transposition."""
     message = say("The parameters stand in rows, so each column was read as the row of a joint.")
     note = _note("parameters_in_rows", message, grid.rows[-len(COLUMNS)][0])
     first, *others = zip(*grid.rows, strict=True)
@@ -185,7 +183,6 @@ def _row_entries(
 
 
 def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry:
-    """Return the entry of one cell, which is in the unit of its header."""
     if header.angle_unit:
         reader = replace(reader, angle_unit=header.angle_unit)
     # A repaired length is in the unit of the header.
@@ -197,10 +194,8 @@ def _entry(cell: GridCell, column: str, header: Header, reader: Reader) -> Entry
 
 
 def _found_headers(row: Sequence[GridCell], reader: Reader) -> list[Header | None] | None:
-    """Return the header in each cell of the first row; None if the row holds values.
-
-    A name such as ``a`` may be a header or a declared length; the other cells of the row decide.
-    """
+    # None if the row holds values. A name such as ``a`` may be a header or a declared length; the
+    # other cells of the row decide.
     found = [read_header(cell.text) for cell in row]
     cells = [cell for cell in row if cell.text]
     known = sum(header is not None and header.column in QUANTITIES for header in found)
@@ -261,7 +256,7 @@ def _either(first: str, second: str) -> str:
 
 
 def _check_names(row: Sequence[GridCell], places: Mapping[str, int]) -> None:
-    """Raise GridError for the columns α, d, θ, r of Khalil, in which d and r mean a and d."""
+    # In the columns α, d, θ, r of Khalil, d and r mean a and d.
     order = [places.get(column, -1) for column in ("alpha", "d", "theta", "a")]
     name = row[order[-1]]
     if -1 in order or order != sorted(order) or not name.text.strip("$\\ ").startswith("r"):
@@ -331,7 +326,6 @@ def _convention_hint(
 def _columns_in_order(
     grid: Grid, order: Sequence[Header]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
-    """Return the columns of a table without headers, the column of labels if any, and findings."""
     width = max(map(len, grid.rows))
     has_labels = width == len(COLUMNS) + 1 and all(is_label(row[0].text) for row in grid.rows)
     if width != len(COLUMNS) and not has_labels:

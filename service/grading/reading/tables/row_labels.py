@@ -53,10 +53,11 @@ def is_label(text: str) -> bool:
 
 
 def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
-    """Return the indices of the rows in the order of their labels, and the findings on the order.
+    """Return the indices of the rows in the order of their labels, and findings on the order.
 
-    Rows keep their order if a row has no label. Raises GridError if two rows share a label.
+    Raises GridError if two rows share a label.
     """
+    # Rows keep their order if a row has no label.
     typed = list(range(len(labels)))
     places = [label_place(label.text) for label in labels]
     known = [place for place in places if place is not None]

@@ -51,10 +51,10 @@ CONVENTION_NAMES: Mapping[str, Convention] = {
 class StudentRow:
     """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, SAMPLES)``.
 
-    A number is NaN if its cell could not be read. If rounded angles were made exact in ``values``,
-    ``as_written`` has the numbers as written.
+    A number is NaN if its cell could not be read.
     """
 
+    # If rounded angles were made exact in ``values``, ``as_written`` has the numbers as written.
     entries: tuple[Entry, ...]
     values: Table
     as_written: Table | None = None
@@ -76,7 +76,7 @@ class StudentRow:
 
     @property
     def is_given_up(self) -> bool:
-        """True if some cell was replaced by a number that is wrong whatever frames are chosen."""
+        """True if some cell was replaced by a number that is certainly wrong."""
         return any(entry is GIVEN_UP for entry in self.entries)
 
     @property
@@ -106,11 +106,12 @@ class StudentRow:
 class StudentTable:
     """A table as read: its rows and their numbers ``(rows, 4, SAMPLES)``.
 
-    ``convention`` is the convention that the answer names, or None. ``reread`` reads the table with
-    its columns in another order. ``reread`` is None if the columns of a pasted table have headers.
-    ``named`` is true if the cells were typed one by one into the columns of a grid.
+    ``convention`` is the convention that the answer names, or None.
     """
 
+    # ``reread`` reads the table with its columns in another order. It is None if the columns of a
+    # pasted table have headers. ``named`` is true if the cells were typed one by one into the
+    # columns of a grid.
     rows: tuple[StudentRow, ...]
     values: Table
     convention: Convention | None
@@ -124,12 +125,13 @@ Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
 
 
 def without_empty_end(table: StudentTable, joints: int, asked: int) -> StudentTable:
-    """Return the table without empty rows after the rows of all joints, as if they were absent.
+    """Return the table without empty rows after the rows of all joints.
 
-    A table that is correct in the other convention may have one row fewer than the form. Such a
-    table is recognized only without the empty row at its end. A table with more rows than ``asked``
-    is unchanged: an extra empty row costs as much as an extra wrong row.
+    A table with more rows than ``asked`` is unchanged.
     """
+    # A table that is correct in the other convention may have one row fewer than the form. Such a
+    # table is recognized only without the empty row at its end. An extra empty row costs as much as
+    # an extra wrong row.
     if len(table.rows) > asked:
         return table
     written = [i for i, row in enumerate(table.rows) if not row.is_missing]
@@ -144,16 +146,15 @@ def read_table(
     *,
     empty_is_zero: bool = False,
 ) -> StudentTable:
-    """Read a table ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}``.
+    """Read a table in JSON or pasted text; columns without names are in ``order``.
 
-    The answer may have one of the other shapes that ``canonical_table`` accepts. The answer or its
-    ``rows`` may also be pasted text. Columns without names are in ``order``. A cell that is empty
-    or a dash is missing. With ``empty_is_zero`` the cell is 0 if another cell of its row is not
-    empty.
-
-    Raises UnreadableAnswerError if the answer has no rows at all. An unreadable row or cell affects
-    only itself.
+    With ``empty_is_zero``, an empty cell means 0. Raises UnreadableAnswerError if there are no
+    rows.
     """
+    # The answer is ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}`` or has one of the
+    # other shapes that ``canonical_table`` accepts. A cell that is empty or a dash is missing; with
+    # ``empty_is_zero`` it is 0 if another cell of its row is not empty. An unreadable row or cell
+    # affects only itself.
     if isinstance(answer, str):
         answer = {"rows": answer}
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
@@ -184,23 +185,19 @@ def read_table(
 
 
 def _under_other_names(row: object, other: Sequence[str]) -> object:
-    """Return the row with the names in ``other`` for its values in the order a, α, d, θ."""
+    # ``other`` names the row's values in the order a, α, d, θ.
     if not isinstance(row, Mapping):
         return row
     return {name: row.get(column) for name, column in zip(other, COLUMNS, strict=True)}
 
 
 def _with_own_budget(reader: Reader) -> Reader:
-    """Return the reader with a separate budget, for reading a table in another column order.
-
-    Reading again must not reduce the budget of the later parts. A table that exceeds the separate
-    budget has no rows in another order.
-    """
+    # Reading again must not reduce the budget of the later parts. A table that exceeds the separate
+    # budget has no rows in another order.
     return replace(reader, budget=WorkBudget(MAX_SYMBOLS_AGAIN))
 
 
 def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
-    """Read a pasted table; a blank text has no rows. Raises UnreadableAnswerError."""
     if not text.strip():
         return StudentTable((), _NO_ROWS, None)
     try:
@@ -230,7 +227,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
 
 
 def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:
-    """Return the row with the same entry in all empty cells and cells with a dash."""
+    # All empty cells and cells with a dash get the same entry.
     if all(entry.readable for entry in row):
         return row
     empty = [entry.verdict is Verdict.MISSING or _is_dash(entry) for entry in row]
@@ -323,7 +320,6 @@ def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]
 
 
 def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
-    """Return the entries of each row."""
     cells = [_cells(row) for row in rows]
     return [
         memoized_row(row, reader) or read_row(row, _number_of_row(i, cells, reader), reader)
@@ -337,7 +333,6 @@ def _number_of_row(i: int, cells: Sequence[Sequence[object]], reader: Reader) ->
 
 
 def _cells(row: object) -> list[object]:
-    """Return the values of a, α, d, θ in a row; a finding for a value that is ambiguous."""
     if row is None:
         return [None] * len(COLUMNS)
     if not isinstance(row, Mapping):

@@ -1,4 +1,4 @@
-"""Put a row of units below the headers of a pasted table into the headers."""
+"""Move the units in the second row of a pasted table into its headers."""
 
 from dataclasses import replace
 
@@ -14,9 +14,8 @@ def with_units_in_headers(grid: Grid) -> Grid:
     """Return the table with one header ``a [m]`` for the two cells ``a`` and ``(m)``.
 
     Other tables are unchanged.
-
-    All cells of the second row must be units of a parameter, or empty.
     """
+    # All cells of the second row must be units of a parameter, or empty.
     if len(grid.rows) < 3 or len(grid.rows[0]) != len(grid.rows[1]):
         return grid
     first, second, *body = grid.rows

@@ -1,9 +1,10 @@
 """Words in headers and row labels, in English, German, Spanish, French, Italian and Chinese.
 
-Words are in small letters without accents: "articulación" is "articulacion", "ß" is "ss". A word
-that means different parameters in different books, such as "Abstand", is a filler: the letter next
-to it decides, and without a letter the header is unknown.
+Words are in small letters without accents: "articulación" is "articulacion".
 """
+
+# "ß" is "ss". A word that means different parameters in different books, such as "Abstand", is a
+# filler: the letter next to it decides, and without a letter the header is unknown.
 
 import re
 import unicodedata
