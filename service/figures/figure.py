@@ -44,10 +44,11 @@ _LEAST: Final = 0.55
 class Subject:
     """The subject of a figure: a robot, its symbols, and a title for the text alternative.
 
-    ``name`` is part of ids inside the SVG. With ``directed``, arrows show the joints' positive
-    directions. Lengths that ``statement`` gives as numbers have labels.
+    With ``directed``, arrows show the joints' positive directions.
     """
 
+    # ``name`` is part of ids inside the SVG. Lengths that ``statement`` gives as numbers have
+    # labels.
     name: str
     title: str
     reference: Reference
@@ -92,12 +93,11 @@ def subject_of(exercise: Exercise) -> Subject:
 
 
 def reference_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
-    """Return the drawing with the frames of the reference table.
-
-    It is only for tutors, because the frames are an answer.
+    """Return the drawing with the frames of the reference table, for tutors only.
 
     Raises LookupError if the exercise has no robot with a table.
     """
+    # The frames are an answer.
     frames = table_frames_of(exercise.robot)
     axes = ["xyz"] * len(frames.labels)
     drawn = _at_home_of(exercise, frames, axes)
@@ -161,7 +161,6 @@ def _at_home(mechanism: MovableMechanism, numbers: Mapping[str, float]) -> Confi
 def _measured(
     subject: Subject, lengths: Sequence[NamedLength], numbers: Mapping[str, float]
 ) -> Iterator[tuple[Numbers, Label]]:
-    """Yield the ends ``(2, 3)`` and the label of each named length."""
     corners = path_of(subject.reference, as_samples(numbers, 1), 1).corners[:, 0]
     for length in lengths:
         yield corners[[length.start, length.end]], sum_label(length.names)
@@ -170,7 +169,6 @@ def _measured(
 def _dimensions(
     sheet: Sheet, shown: Configuration, measured: Iterable[tuple[Numbers, Label]]
 ) -> None:
-    """Draw the dimension lines."""
     steps = np.concatenate([np.diff(link, axis=0) for link in shown.links])
     sides = np.concatenate([np.eye(3), shown.axes, steps])
     for ends, label in measured:
@@ -181,7 +179,7 @@ def _dimensions(
 
 
 def _aside(step: Numbers, directions: Numbers) -> Numbers:
-    """Return unit vectors perpendicular to ``step``, in the plane of ``step`` and a direction."""
+    # Unit vectors perpendicular to ``step``, in the plane of ``step`` and a direction.
     along = step / np.linalg.norm(step)
     found: list[Numbers] = []
     for direction in directions:
@@ -195,10 +193,8 @@ def _aside(step: Numbers, directions: Numbers) -> Numbers:
 
 
 def _motions(sheet: Sheet, shown: Configuration, subject: Subject, labelled: set[str]) -> None:
-    """Draw an arrow for each joint, and its variable unless the variable labels a length.
-
-    An arrow has one head if the positive directions are known, else two.
-    """
+    # An arrow has one head if the positive directions are known, else two. A variable that labels a
+    # length has no second label.
     both = not subject.directed
     half, radius = JOINT_LENGTH / 2 * sheet.size, JOINT_RADIUS * sheet.size
     arrows = []
@@ -222,7 +218,7 @@ def _motions(sheet: Sheet, shown: Configuration, subject: Subject, labelled: set
 
 
 def _description(subject: Subject, lengths: Sequence[NamedLength]) -> str:
-    """Return the text alternative, which describes the picture without an answer."""
+    # The text describes the picture without an answer.
     kinds = [
         f"{name_label(joint.variable).text} {'slides' if joint.prismatic else 'turns'}"
         for joint in subject.joints

@@ -1,8 +1,10 @@
 """The figure of a student's table: its frames, drawn over the mechanism or alone.
 
-It shows one configuration, and replaces the 3D view in browsers that cannot draw it. It contains no
-text from the student: its only texts are the names of axes, x0 to z12.
+It replaces the 3D view in browsers that cannot draw it.
 """
+
+# It shows one configuration. It contains no text from the student: its only texts are the names of
+# axes, x0 to z12.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -117,7 +119,6 @@ def table_figure(
 
 
 def _solids(sheet: Sheet, written: WrittenChain, links: list[Numbers]) -> list[str]:
-    """Return the SVG of a robot with the joints and links of the table."""
     joints = [
         joint_solid(
             sheet, frame[:3, 3], frame[:3, 2], f"{_CAPTION.name}-{i}", slides=joint.prismatic

@@ -1,6 +1,6 @@
 """Model solutions: the right answer to each part, in the form of a textbook.
 
-They need SymPy, whose import is slow, so it is imported when the first exercise is solved.
+SymPy is imported only when the first exercise is solved, because its import is slow.
 """
 
 from service.catalogue import Exercise
@@ -10,7 +10,8 @@ __all__ = ["LinkSolution", "ModelSolution", "PartAnswer", "Shown", "solve"]
 
 
 def solve(exercise: Exercise) -> ModelSolution:
-    """Return the model solution, always the same for an exercise. Solving takes about 50 ms."""
+    """Return the model solution of an exercise, which is always the same."""
+    # Solving takes about 50 ms.
     from service.solutions.solution import solved
 
     return solved(exercise)

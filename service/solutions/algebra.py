@@ -1,4 +1,6 @@
-"""Convert an exercise's formulas from syntax trees to SymPy. SymPy never parses a text."""
+"""Convert an exercise's formulas from syntax trees to SymPy."""
+
+# SymPy never parses a text.
 
 from collections.abc import Callable, Mapping
 from decimal import Decimal
@@ -45,7 +47,7 @@ _OPERATORS: Mapping[Operator, Callable[[sympy.Expr, sympy.Expr], sympy.Expr]] = 
 
 
 class Algebra:
-    """Converts one exercise's formulas to SymPy. Symbols with a positive range are positive.
+    """Converts one exercise's formulas to SymPy; symbols with a positive range are positive.
 
     With ``home``, all joint variables are 0.
     """

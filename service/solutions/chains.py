@@ -25,9 +25,9 @@ def between(
 ) -> list[Motion]:
     """Return the motions from one frame of the robot to another.
 
-    Frames are "base", "tool" and the frame numbers of the robot's own table. With ``home``, all
-    joint variables are 0. Raises LookupError if the exercise has no robot.
+    With ``home``, all joint variables are 0. Raises LookupError if the exercise has no robot.
     """
+    # Frames are "base", "tool" and the frame numbers of the robot's own table.
     motions = _steps(exercise, Algebra(exercise, home=True) if home else algebra)
     first, last = (_place(exercise, frame, len(motions)) for frame in (start, end))
     steps = list(chain.from_iterable(motions[min(first, last) : max(first, last)]))
@@ -35,7 +35,6 @@ def between(
 
 
 def _steps(exercise: Exercise, algebra: Algebra) -> list[list[Motion]]:
-    """Return the motions from each frame to the next."""
     match exercise.reference:
         case Robot(tables=tables, convention=convention):
             return [link(row, convention, algebra) for row in tables[convention].rows]
@@ -52,10 +51,8 @@ def _place(exercise: Exercise, frame: FrameName, steps: int) -> int:
 
 
 def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
-    """Return the product e^{[S_1]θ_1} … e^{[S_n]θ_n} M as single turns and shifts.
-
-    A turn about a screw axis is written about the point of the axis nearest to the origin.
-    """
+    # Single turns and shifts whose product is e^{[S_1]θ_1} … e^{[S_n]θ_n} M. A turn about a screw
+    # axis is written about the point of the axis nearest to the origin.
     motions: list[Motion] = []
     for joint, axis in zip(robot.joints, algebra.matrix(robot.axes).tolist(), strict=True):
         amount = algebra.symbols[joint.variable]
@@ -71,9 +68,9 @@ def _exponentials(robot: ScrewRobot, algebra: Algebra) -> list[Motion]:
 
 
 def joint_axes(exercise: Exercise) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
-    """Return the direction of each joint axis at home and a point on it, 3×1 in the base frame.
+    """Return a direction and a point of each joint axis, with all joint variables 0.
 
-    Raises LookupError if the robot has no table.
+    Both are 3×1 in the base frame. Raises LookupError if the robot has no table.
     """
     robot, algebra = exercise.robot, Algebra(exercise, home=True)
     # The joint axis is z before the motions of a standard row, but after a and α of a modified one.

@@ -1,8 +1,10 @@
-"""Replace products and sums of constants without a closed form, such as cos 0.3, by one number.
+"""Evaluate constants without a closed form, such as cos 0.3, to one number.
 
-A robot given in numbers has such a constant in each twist. Products of six of them would fill a
-page. They are computed with more digits than are printed, so that terms cancel to exactly 0.
+The numbers have more digits than are printed, so that terms cancel to exactly 0.
 """
+
+# A robot given in numbers has such a constant in each twist. Products of six of them would fill a
+# page.
 
 from decimal import ROUND_HALF_EVEN, Context, Decimal
 
@@ -34,7 +36,7 @@ def is_unwieldy(expression: sympy.Expr) -> bool:
 
 
 def rounded(expression: sympy.Expr) -> sympy.Expr:
-    """Return the expression with each constant rounded to 15 digits, except in angles."""
+    """Return the expression with its constants rounded to 15 digits, except in angles."""
     values = _evaluated(expression)
     return values.xreplace({each: _rational(each) for each in values.atoms(sympy.Float)})
 

@@ -116,7 +116,7 @@ def too_long() -> PrintedAnswer:
 
 
 def product(labels: Sequence[str]) -> Shown:
-    """Return a pose as a product of link transforms, because its matrix would be too long."""
+    """Return a pose as a product of named link transforms."""
     latex = " ".join(f"A_{{{label}}}" for label in labels)
     return Shown(" ".join(f"A{label}" for label in labels), latex)
 
@@ -127,7 +127,6 @@ def _markdown(labels: Sequence[str], cells: Sequence[Sequence[str]]) -> str:
 
 
 def _lines(lines: list[list[str]]) -> str:
-    """Return a Markdown table whose first line is its header."""
     widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
     lines.insert(1, ["-" * width for width in widths])
     return "\n".join(f"| {' | '.join(map(str.ljust, line, widths))} |" for line in lines)

@@ -1,8 +1,7 @@
-"""Answers that need no knowledge. The points that they earn show whether the marking is fair.
+"""Answers that need no knowledge; their points show whether the marking is fair."""
 
-In these answers, every joint turns about the z axis or slides along it by its variable; all other
-entries are 0.
-"""
+# In these answers, every joint turns about the z axis or slides along it by its variable; all other
+# entries are 0.
 
 from collections.abc import Sequence
 

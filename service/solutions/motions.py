@@ -1,17 +1,17 @@
 """Multiply rigid motions (turns and shifts) in the form that textbooks print.
 
-A general simplifier takes seconds for six joints, and its result does not look like a textbook's.
-Here the form results from the order of the steps:
-
-- Quarter turns about a coordinate axis are constant, and C Rot(u, φ) = Rot(C u, φ) C for a constant
-  rotation C. So these turns are moved to the right end; a 90° twist only changes later axes.
-- Consecutive turns about the same axis, with only shifts between them, are combined: their angles
-  are added, which gives c12 and c123 without expanding and collecting sines and cosines.
-- Factors are applied from the right, and products of brackets are not expanded, which gives
-  c1 (c2 (c4 c5 c6 − s4 s6) − s2 s5 c6) − …, as books print the matrix of an arm with a wrist.
-
-Vectors are 3×1, rotations 3×3 matrices of SymPy; angles in radians.
+Vectors are 3×1, rotations 3×3 matrices of SymPy; angles are in radians.
 """
+
+# A general simplifier takes seconds for six joints, and its result does not look like a textbook's.
+# Here the form results from the order of the steps:
+# - Quarter turns about a coordinate axis are constant, and C Rot(u, φ) = Rot(C u, φ) C for a
+#   constant rotation C. So these turns are moved to the right end; a 90° twist only changes later
+#   axes.
+# - Consecutive turns about the same axis, with only shifts between them, are combined: their angles
+#   are added, which gives c12 and c123 without expanding and collecting sines and cosines.
+# - Factors are applied from the right, and products of brackets are not expanded, which gives
+#   c1 (c2 (c4 c5 c6 − s4 s6) − s2 s5 c6) − …, as books print the matrix of an arm with a wrist.
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
@@ -66,12 +66,10 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class Normal:
-    """A product of motions whose constant rotation is at the right end.
+    """A product of motions whose constant rotation is at the right end."""
 
-    The factors are the shift ``start``, the turns, each followed by a shift, and the rotation
-    ``end``.
-    """
-
+    # The factors are the shift ``start``, the turns, each followed by a shift, and the rotation
+    # ``end``.
     start: sympy.Matrix
     turns: tuple[tuple[Turn, sympy.Matrix], ...]
     end: sympy.Matrix
@@ -125,7 +123,7 @@ def normalised(motions: Iterable[Motion]) -> Normal:
 
 
 def _split(axis: sympy.Matrix, angle: sympy.Expr) -> tuple[sympy.Expr, sympy.Matrix]:
-    """Return the angle without its quarter turns, and the rotation by these quarter turns."""
+    # The angle without its quarter turns, and the rotation by these quarter turns.
     constant, rest = angle.as_independent(*angle.free_symbols, as_Add=True)
     if axis not in (X, Y, Z) or not (2 * constant / sympy.pi).is_Integer:
         return angle, sympy.eye(3)
@@ -133,13 +131,13 @@ def _split(axis: sympy.Matrix, angle: sympy.Expr) -> tuple[sympy.Expr, sympy.Mat
 
 
 def _upright(turn: Turn) -> Turn:
-    """Return an equal turn whose axis has no minus sign in its first nonzero number."""
+    # An equal turn whose axis has no minus sign in its first nonzero number.
     first = next(number for number in turn.axis if number != 0)
     return Turn(-turn.axis, -turn.angle) if first.could_extract_minus_sign() else turn
 
 
 def _runs(turns: Sequence[tuple[Turn, sympy.Matrix]]) -> list[list[tuple[Turn, sympy.Matrix]]]:
-    """Group consecutive turns about the same axis; in a group, replace angles by running totals."""
+    # Group consecutive turns about the same axis; in a group, replace angles by running totals.
     runs: list[list[tuple[Turn, sympy.Matrix]]] = []
     for turn, shift in turns:
         if runs and runs[-1][-1][0].axis == turn.axis:

@@ -1,7 +1,7 @@
 """Euler angles as formulas.
 
-If a rotation already is a product of turns in the requested sequence, their angles are returned:
-the ZYZ angles of a spherical wrist are its joint angles. Otherwise the angles are atan2 of entries.
+The angles of a product of turns are returned if the turns have the requested sequence: the ZYZ
+angles of a spherical wrist are its joint angles. Otherwise the angles are atan2 of entries.
 """
 
 from collections.abc import Iterable
@@ -29,9 +29,9 @@ _QUARTERS = (0, sympy.pi / 2, sympy.pi, -sympy.pi / 2)
 def euler_angles(motions: Iterable[Motion], sequence: str, axes: str) -> Angles:
     """Return the Euler angles, in a sequence such as "ZYZ", of the product of ``motions``.
 
-    ``axes`` is "moving" or "fixed". Turns about fixed axes equal turns about moving axes in reverse
-    order.
+    ``axes`` is "moving" or "fixed".
     """
+    # Turns about fixed axes equal turns about moving axes in reverse order.
     steps = list(motions)
     if axes == "fixed":
         first, second, third = euler_angles(steps, sequence[::-1], "moving")
@@ -41,7 +41,7 @@ def euler_angles(motions: Iterable[Motion], sequence: str, axes: str) -> Angles:
 
 
 def _own_angles(normal: Normal, sequence: str) -> Angles | None:
-    """Return the total angle about each axis of ``sequence``; None if the turns do not fit."""
+    # None if the turns do not fit the sequence.
     angles = [sympy.S.Zero] * 3
     at = 0
     for turn, _ in normal.turns:
@@ -61,12 +61,9 @@ def _own_angles(normal: Normal, sequence: str) -> Angles | None:
 
 
 def _by_entries(rotation: sympy.Matrix, sequence: str) -> Angles:
-    """Return the angles as atan2 of entries; the second one is in [0, π] or in [−π/2, π/2].
-
-    Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §2.5.1 for ZYZ and §2.5.2
-    for ZYX. The other sequences follow by renaming the axes, with a sign if the renamed frame is
-    left-handed.
-    """
+    # The second angle is in [0, π] or in [−π/2, π/2]. Source: Spong, Hutchinson, Vidyasagar, *Robot
+    # Modeling and Control*, §2.5.1 for ZYZ and §2.5.2 for ZYX. The other sequences follow by
+    # renaming the axes, with a sign if the renamed frame is left-handed.
     i, j = map("XYZ".index, sequence[:2])
     k = 3 - i - j
     sign = 1 if (j - i) % 3 == 1 else -1

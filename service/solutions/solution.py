@@ -20,7 +20,8 @@ from service.solutions.work import Work
 
 
 def solved(exercise: Exercise) -> ModelSolution:
-    """Return the model solution. It depends only on the exercise."""
+    """Return the model solution of an exercise."""
+    # It depends only on the exercise.
     work = Work(exercise, Algebra(exercise), Writer(exercise))
     robot = exercise.reference
     links = work.link_matrices(robot.convention) if isinstance(robot, Robot) else {}
@@ -47,7 +48,7 @@ def _part_answer(part: PartSpec, work: Work) -> PartAnswer:
 
 
 def _pose(work: Work, labels: Sequence[str]) -> Shown:
-    """Return the tool's pose in the base frame; if it is too long, a product of link transforms."""
+    # A pose that is too long becomes a product of link transforms.
     pose = multiplied(between(work.exercise, "base", "tool", work.algebra))
     try:
         shown: Shown = work.matrix(pose.matrix())

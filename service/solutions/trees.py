@@ -1,8 +1,10 @@
 """Convert SymPy expressions to syntax trees, in a textbook's order and shorthand.
 
-``service.expressions`` prints these trees. A shorthand such as c12 is a symbol in the tree; it is
-used only if the reader would read c12 with the same meaning.
+A shorthand such as c12 is used only if a reader gives it the same meaning.
 """
+
+# ``service.expressions`` prints these trees. A shorthand is a symbol in the tree; it is used only
+# if the reader of entries would read c12 with the same meaning.
 
 from collections.abc import Callable, Sequence
 from decimal import Decimal
@@ -69,11 +71,9 @@ class Writer:
         return self._call(expression)
 
     def angle(self, expression: sympy.Expr) -> Node:
-        """Return the tree of an angle.
-
-        A plain number gets the unit rad, so that it means the same to a student who works in
-        degrees.
-        """
+        """Return the tree of an angle."""
+        # A plain number gets the unit rad, so that it means the same to a student who works in
+        # degrees.
 
         def term(value: sympy.Expr) -> Node:
             node = self._node(value)
@@ -101,7 +101,7 @@ class Writer:
         return Binary("/", upper, self._chain(lower)) if lower else upper
 
     def _chain(self, factors: Sequence[sympy.Expr]) -> Node:
-        """Return the product of factors that are not fractions, in a textbook's order."""
+        # The factors are not fractions.
         nodes = [
             _number(each) if isinstance(each, sympy.Rational) else self._node(each)
             for each in sorted(factors, key=self._factor_order)
@@ -127,7 +127,7 @@ class Writer:
         return SymbolNode(Symbol(short, "number"))
 
     def _shorthand(self, function: str, terms: Sequence[sympy.Expr]) -> str | None:
-        """Return the shorthand for a function of a sum of joint angles, such as c12, or None."""
+        # The shorthand for a function of a sum of joint angles, such as c12.
         symbols = [self._symbols.get(str(term)) for term in terms]
         joints = [symbol.joint for symbol in symbols if symbol and symbol.joint is not None]
         if function == "tan" or len(joints) < len(terms):
@@ -135,13 +135,13 @@ class Writer:
         return function[0] + "".join(map(str, sorted(joints)))
 
     def _term_order(self, term: sympy.Expr) -> tuple[bool, list[FactorOrder], list[int], str]:
-        """Return a term's sort key: plus before minus, then lengths before sines, then joints."""
+        # Plus before minus, then lengths before sines, then joints.
         factors = sorted(map(self._factor_order, sympy.Mul.make_args(term)))
         joints = sorted(self._order[symbol.name] for symbol in term.free_symbols)
         return _negative(term), [each for each in factors if each[0] > 1], joints, str(term)
 
     def _factor_order(self, factor: sympy.Expr) -> FactorOrder:
-        """Return a factor's sort key: numbers, symbols, sines and cosines (by joints), brackets."""
+        # Numbers, symbols, sines and cosines (by joints), brackets.
         base = factor.base if isinstance(factor, sympy.Pow) else factor
         is_symbol, is_turn = isinstance(base, sympy.Symbol), isinstance(base, _TRIGONOMETRIC)
         rank = (bool(base.is_number), is_symbol, is_turn, True).index(True)
@@ -163,22 +163,21 @@ def _negative(term: sympy.Expr) -> bool:
 
 
 def _size(expression: sympy.Expr, known: dict[sympy.Expr, int]) -> int:
-    """Return the number of nodes of the formula; ``known`` memoizes subexpressions."""
+    # ``known`` memoizes subexpressions.
     if expression not in known:
         known[expression] = 1 + sum(_size(part, known) for part in expression.args)
     return known[expression]
 
 
 def _negated(node: Node) -> Node:
-    """Return the node with a minus before its first factor: −c1 s2, not −(c1 s2)."""
+    # A minus before the first factor: −c1 s2, not −(c1 s2).
     if isinstance(node, Binary) and node.operator in ("*", "/"):
         return Binary(node.operator, _negated(node.left), node.right)
     return Negation(node)
 
 
 def _without_negative_brackets(expression: sympy.Expr) -> sympy.Expr:
-    """Return the expression with the minus before brackets: −s2 (a + b) for s2 (−a − b)."""
-
+    # −s2 (a + b) for s2 (−a − b).
     def turned(product: sympy.Expr) -> sympy.Expr:
         factors = [
             -each if isinstance(each, sympy.Add) and all(map(_negative, each.args)) else each
@@ -191,14 +190,13 @@ def _without_negative_brackets(expression: sympy.Expr) -> sympy.Expr:
 
 
 def _number(value: sympy.Rational) -> Node:
-    """Return the node of a whole number or a finite decimal, which must not be negative."""
+    # A whole number or a finite decimal, which must not be negative.
     literal = str(value.p) if value.q == 1 else _decimal(value)
     assert literal is not None
     return Number(float(literal), literal)
 
 
 def _decimal(value: sympy.Rational) -> str | None:
-    """Return the number as a finite decimal, or None if it has none."""
     exact = Fraction(int(value.p), int(value.q))
     for digits in range(constants.DECIMALS + 1):
         scaled = exact * 10**digits

@@ -1,4 +1,4 @@
-"""The state while one exercise is solved, and the steps that several kinds share."""
+"""The state while one exercise is solved, and the steps that several answer kinds share."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,7 +42,7 @@ class Work:
         return [self._with_units(*each) for each in zip(formulas, quantities, strict=True)]
 
     def _with_units(self, formula: Expression, quantity: Kind) -> Node:
-        """Return the author's formula, with units that students who work in degrees need."""
+        # Students who work in degrees need the units.
         text = to_text(formula.tree)
         in_degrees = read(text, self.exercise.vocabulary, quantity=quantity, angle_unit="degrees")
         if in_degrees.tree == formula.tree:
@@ -61,7 +61,7 @@ class Work:
         )
 
     def link_matrices(self, convention: Convention) -> dict[str, PrintedAnswer]:
-        """Map row labels of the robot's table in this convention to the rows' transforms."""
+        """Return the transform of each row of the robot's table, by the row's label."""
         reference = self.exercise.robot.tables[convention]
         return {
             label: self.matrix(multiplied(link(row, convention, self.algebra)).matrix())

@@ -20,7 +20,7 @@ _PLAIN_ANGLE = 0.5
 
 
 class Drawing(NamedTuple):
-    """The SVG of a dimension line: what the mechanism may cover, and what is drawn over it."""
+    """The SVG of a dimension line, in two layers: under and over the mechanism."""
 
     below: list[str]
     above: list[str]
@@ -28,11 +28,10 @@ class Drawing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A dimension line in the picture: its ends, the ends of the measured piece, and its penalty.
+    """A dimension line in the picture."""
 
-    The line with the lowest penalty is drawn.
-    """
-
+    # Its ends, the ends of the measured piece, and its penalty. The line with the lowest penalty is
+    # drawn.
     ends: Numbers
     measured: Numbers
     penalty: float
@@ -41,10 +40,11 @@ class _Line:
 def dimension(
     camera: Camera, ends: Numbers, label: Label, extent: float, sides: Numbers, room: TakenRoom
 ) -> Drawing:
-    """Draw the dimension of a piece with the ends ``(2, 3)``, and mark its room as taken.
+    """Draw a dimension line for the piece between ``ends``, and mark its room as taken.
 
     ``sides`` ``(n, 3)`` are the directions in which the line may be moved away from the piece.
     """
+    # ``ends`` is ``(2, 3)``.
     line = min(_lines(camera, ends, extent, sides, room), key=lambda each: each.penalty)
     room.take_line(line.ends, 2.0, 1.0)
     for measured, end in zip(line.measured, line.ends, strict=True):
@@ -82,7 +82,7 @@ def _lines(
 
 
 def _beside(line: _Line, label: Label) -> Iterator[Numbers]:
-    """Yield places for the label next to the line, first on the side away from the piece."""
+    # First on the side away from the piece.
     flat = line.ends[1] - line.ends[0]
     flat = flat / max(float(np.linalg.norm(flat)), 1e-9)
     aside = np.array([-flat[1], flat[0]])
@@ -98,7 +98,7 @@ def _beside(line: _Line, label: Label) -> Iterator[Numbers]:
 
 
 def _witness(measured: Numbers, end: Numbers) -> str:
-    """Return the SVG of the line from the piece to slightly beyond its dimension line."""
+    # From the piece to slightly beyond its dimension line.
     step = end - measured
     size = max(float(np.linalg.norm(step)), 1e-9)
     return polyline(np.array([measured + 5 * step / size, end + 4 * step / size]), "witness")

@@ -19,7 +19,7 @@ _HEAD = 8.0
 class DrawnFrames:
     """Frames ``(frames, 4, 4)``, their indices, and the letters of the axes to draw for each frame.
 
-    If ``braces`` is set, the name of each frame, such as {0}, is drawn at its origin.
+    If ``braces`` is set, each origin has its frame's name, such as {0}.
     """
 
     poses: Matrices
@@ -30,8 +30,7 @@ class DrawnFrames:
 
 @dataclass(slots=True)
 class _Axis:
-    """An axis in the picture: its origin and tip, its letter, and the names of coincident axes."""
-
+    # An axis in the picture, with the names of coincident axes.
     line: Numbers
     letter: str
     names: list[str]
@@ -98,7 +97,7 @@ def named(
 
 
 def _axes(camera: Camera, drawn: DrawnFrames, length: float) -> list[_Axis]:
-    """Return the axes to draw. Coincident axes are drawn as z or x rather than as y."""
+    # Coincident axes are drawn as z or x rather than as y.
     found: list[tuple[Numbers, _Axis]] = []
     for letter in "zxy":
         for pose, label, letters in zip(drawn.poses, drawn.labels, drawn.axes, strict=True):
@@ -118,7 +117,7 @@ def _axes(camera: Camera, drawn: DrawnFrames, length: float) -> list[_Axis]:
 
 
 def _beyond(tip: Numbers, ahead: Numbers, label: Label) -> Numbers:
-    """Return the place for a label right in front of an arrow's tip."""
+    # Right in front of an arrow's tip.
     room = Rectangle.of(label, 0.0, 0.0)
     near = abs(ahead[0]) * room.half_width + abs(ahead[1]) * room.half_height + 0.7 * _HEAD
     return np.asarray(tip + near * ahead)

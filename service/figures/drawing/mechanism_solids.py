@@ -84,7 +84,6 @@ def ground_solid(sheet: Sheet, base: Numbers, normal: Numbers) -> Solid:
 
 
 def _shortened(corners: Numbers, by: float) -> Numbers:
-    """Return the line, shortened at its end by the length ``by``."""
     line = corners
     while len(line) > 1:
         last = line[-1] - line[-2]
@@ -98,7 +97,7 @@ def _shortened(corners: Numbers, by: float) -> Numbers:
 def _clear_of_joints(
     line: Numbers, link: int, shown: Configuration, mechanism: MovableMechanism
 ) -> Numbers:
-    """Return the line of a link between the surfaces of the joints at its two ends."""
+    # Between the surfaces of the joints at the link's two ends.
     first, last = line[0], line[-1]
     if link > 0:
         first = _surface(line[0], line[1], shown, link - 1, mechanism)
@@ -110,7 +109,7 @@ def _clear_of_joints(
 def _surface(
     start: Numbers, towards: Numbers, shown: Configuration, joint: int, mechanism: MovableMechanism
 ) -> Numbers:
-    """Return the point, slightly inside a joint, where a line from the joint's middle leaves it."""
+    # Slightly inside a joint, where a line from the joint's middle leaves it.
     step = towards - start
     length = float(np.linalg.norm(step))
     if length == 0:  # two joints in one place, where a short wrist has no room for both

@@ -50,7 +50,8 @@ def turning_arrow(
     camera: Camera, centre: Numbers, axis: Numbers, offset: float, radius: float,
     room: TakenRoom, *, both: bool,
 ) -> MotionArrow:  # fmt: skip
-    """Return an arc around the axis, on the viewer's side, at the less crowded end of the joint."""
+    """Return an arc around the joint's axis, at the less crowded end of the joint."""
+    # The arc is on the viewer's side.
     front = perpendicular(axis, camera.towards)
     aside = np.cross(axis, front)
     angles = np.radians(np.linspace(-95, 70, 24))
@@ -74,11 +75,9 @@ def sliding_arrow(
     camera: Camera, centre: Numbers, axis: Numbers, half: float, offset: float,
     room: TakenRoom, *, both: bool,
 ) -> MotionArrow:  # fmt: skip
-    """Return a straight arrow next to the joint, on its less crowded side in the picture.
-
-    If the arrow would cross an axis, a part or a name there, it is moved along the joint axis or
-    away from the joint.
-    """
+    """Return a straight arrow next to the joint, on its less crowded side in the picture."""
+    # If the arrow would cross an axis, a part or a name there, it is moved along the joint axis or
+    # away from the joint.
     aside = np.cross(perpendicular(axis, camera.towards), axis)
     steps = np.linspace(-half, half, 9)[:, None] * axis
 

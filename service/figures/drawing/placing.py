@@ -69,8 +69,7 @@ class Rectangle:
 
 
 class _Strokes(NamedTuple):
-    """Strokes as arrays: their ends, and the corners of the rectangle around each stroke."""
-
+    # ``low`` and ``high`` are the corners of the rectangle around each stroke.
     starts: Numbers
     ends: Numbers
     radii: Numbers
@@ -82,7 +81,6 @@ class _Strokes(NamedTuple):
 
     @classmethod
     def of(cls, starts: Numbers, ends: Numbers, radii: Numbers, weights: Numbers) -> "_Strokes":
-        """Return strokes with these starts, ends, radii and weights."""
         steps = ends - starts
         squares = np.maximum((steps**2).sum(axis=1), 1e-12)
         low = np.minimum(starts, ends) - radii[:, None]
@@ -90,7 +88,6 @@ class _Strokes(NamedTuple):
         return cls(starts, ends, radii, weights, steps, squares, low, high)
 
     def near(self, points: Numbers, clearance: float) -> "_Strokes":
-        """Return the strokes that may be within ``clearance`` of one of the points."""
         low, high = points.min(axis=0) - clearance, points.max(axis=0) + clearance
         near = ((self.low <= high) & (self.high >= low)).all(axis=1)
         return _Strokes(*(each[near] for each in self))
@@ -98,11 +95,12 @@ class _Strokes(NamedTuple):
 
 @dataclass(slots=True)
 class TakenRoom:
-    """The taken room: strokes with a radius and a weight, and the rectangles of labels.
+    """The taken room in a picture: strokes (lines with a width) and the rectangles of labels.
 
-    With ``hasty``, labels avoid only each other. Avoiding strokes, too, would be most of the work.
+    With ``hasty``, labels avoid only each other.
     """
 
+    # Avoiding strokes, too, would be most of the work. A stroke has a radius and a weight.
     hasty: bool = False
     _starts: list[Numbers] = field(default_factory=list)
     _ends: list[Numbers] = field(default_factory=list)
@@ -121,7 +119,6 @@ class TakenRoom:
         self._arrays = None
 
     def _strokes(self) -> "_Strokes":
-        """Return all strokes as arrays (memoized)."""
         if self._arrays is None:
             lists = (self._starts, self._ends, self._radii, self._weights)
             self._arrays = _Strokes.of(*map(np.array, lists))
@@ -173,11 +170,11 @@ class TakenRoom:
     ) -> Rectangle:
         """Return the best free place for a label, and mark it as taken.
 
-        Earlier points in ``wanted`` are better. The place never overlaps another label: if all
-        wanted places overlap labels, the label is placed farther away. ``named`` are the points
-        that the label names. Places far from these points are worse, because they need a line to
-        the points, especially if this line covers other labels.
+        Earlier points in ``wanted`` are better. ``named`` are the points that the label names.
         """
+        # The place never overlaps another label: if all wanted places overlap labels, the label is
+        # placed farther away. Places far from ``named`` are worse, because they need a line to
+        # these points, especially if this line covers other labels.
         best: tuple[float, Rectangle] | None = None
         size = Rectangle.of(label, 0.0, 0.0)
         for rank, point in enumerate(_farther(list(wanted))):
@@ -200,7 +197,7 @@ class TakenRoom:
 
 
 def _turn(start: Numbers, end: Numbers, point: Numbers) -> Numbers:
-    """Return numbers that are positive for points left of the line, and negative right of it."""
+    # Positive for points left of the line, and negative right of it.
     (x, y), (u, v) = (end - start).T, (point - start).T
     return np.asarray(x * v - y * u)
 
@@ -211,7 +208,6 @@ def around(point: Numbers, near: float) -> list[Numbers]:
 
 
 def _farther(wanted: list[Numbers]) -> Iterator[Numbers]:
-    """Yield the wanted points, then points at growing distances from the first one."""
     yield from wanted
     for i in range(2, 60):
         yield from around(wanted[0], 12.0 * i)[:12]

@@ -54,7 +54,7 @@ class Sheet:
 
     @property
     def _box(self) -> tuple[float, float, float, float]:
-        """The left and top edge of the figure, its width and its height."""
+        # Left, top, width, height.
         labels = self.room.labels
         corners = [np.array([[r.x - r.half_width, r.y - r.half_height]]) for r in labels]
         corners += [np.array([[r.x + r.half_width, r.y + r.half_height]]) for r in labels]
@@ -66,10 +66,8 @@ class Sheet:
 
     @property
     def excess(self) -> float:
-        """The factor by which the mechanism must shrink to fit on a phone; 1 if the figure fits.
-
-        Labels do not shrink with the mechanism.
-        """
+        """The factor by which the mechanism must shrink to fit on a phone; 1 if the figure fits."""
+        # Labels do not shrink with the mechanism.
         drawn = np.ptp(np.concatenate(self.points), axis=0)
         over = np.array(self._box[2:]) - [_WIDEST, _HIGHEST]
         factors = 1.01 * drawn / np.maximum(drawn - over, drawn / 2)

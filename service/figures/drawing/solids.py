@@ -41,11 +41,12 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """The SVG of a part, and its place; parts nearer to the viewer are drawn later.
+    """The SVG of a mechanism's part, and where it is.
 
-    The part is within ``radius`` pixels of the points ``spine`` ``(points, 3)``.
+    The part is within ``radius`` pixels of the points ``spine``.
     """
 
+    # Parts nearer to the viewer are drawn later. ``spine`` is ``(points, 3)``.
     svg: str
     spine: Numbers
     radius: float
@@ -228,8 +229,7 @@ def back_to_front(camera: Camera, solids: Sequence[Solid]) -> list[Solid]:
 
 @dataclass(frozen=True, slots=True)
 class _Shape:
-    """A projected solid: its spine ``(points, 2)``, its bounding box, and its nearness."""
-
+    # ``spine`` is ``(points, 2)``.
     spine: Numbers
     left: float
     top: float
@@ -247,7 +247,7 @@ class _Shape:
         return cls(spine, left, top, right, bottom, nearness, solid.radius)
 
     def nearer_than(self, other: "_Shape") -> float:
-        """Return by how much ``self`` is nearer than ``other`` where they overlap; else 0."""
+        # By how much ``self`` is nearer than ``other`` where they overlap; else 0.
         reach = self.radius + other.radius
         # A fast path: most solids are far from each other.
         across = max(self.left - other.right, other.left - self.right)

@@ -65,7 +65,7 @@ def _only(medium: str, palette: Mapping[str, str]) -> str:
 
 
 def _colours(of: Mapping[str, str]) -> str:
-    """Return the rules for all colours. They have no CSS variables: some programs ignore these."""
+    # No CSS variables: some programs ignore them.
     ink, soft, paper = of["ink"], of["soft"], of["paper"]
     rules = {
         ".paper": f"fill:{paper}",

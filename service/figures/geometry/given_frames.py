@@ -1,4 +1,4 @@
-"""The frames that an exercise gives: base, tool, and all frames between if no frame is free."""
+"""The frames that an exercise gives, such as the base and tool frames."""
 
 from dataclasses import dataclass
 
@@ -15,11 +15,10 @@ from service.kinematics.transforms import Matrices
 
 @dataclass(frozen=True, slots=True)
 class GivenFrames:
-    """Frames of a robot. ``numbers`` count them from the base frame, which is 0; -1 is the tool.
+    """Frames of a robot, with their numbers and labels."""
 
-    ``labels`` are their indices: "0" for {0}, or "s" and "b" for a robot with screw axes.
-    """
-
+    # ``numbers`` count them from the base frame, which is 0; -1 is the tool. ``labels`` are their
+    # indices: "0" for {0}, or "s" and "b" for a robot with screw axes.
     source: ReferenceTable | ScrewRobot
     numbers: tuple[int, ...]
     labels: tuple[str, ...]
@@ -38,9 +37,10 @@ class GivenFrames:
 def given_frames(exercise: Exercise) -> GivenFrames:
     """Return the frames that the exercise gives. Raises LookupError without a robot.
 
-    The base or the tool is left out if a part leaves it free. The frames between them are left out
-    if a part leaves them free, or if parts ask for frames in different conventions.
+    Frames that the student may choose are left out.
     """
+    # The frames between base and tool are also left out if parts ask for frames in different
+    # conventions.
     robot = exercise.reference
     if robot is None:
         raise LookupError(f"exercise {exercise.id!r} has no robot")
@@ -69,10 +69,8 @@ def table_frames_of(robot: Robot, convention: Convention | None = None) -> Given
 
 
 def frame_labels(table: ReferenceTable) -> tuple[str, ...]:
-    """Return the labels of a table's frames.
-
-    The base frame has the first joint's number minus 1; the other frames have the row labels.
-    """
+    """Return the labels of a table's frames."""
+    # The base frame has the first joint's number minus 1; the other frames have the row labels.
     return (str(table.joints[0].index - 1), *table.labels)
 
 

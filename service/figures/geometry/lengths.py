@@ -1,4 +1,4 @@
-"""The named lengths in a figure: lengths of pieces of the path, in symbols or numbers."""
+"""Find the lengths in a figure that have a name: a symbol, a sum or a number."""
 
 import re
 from collections.abc import Mapping
@@ -57,18 +57,17 @@ def named_lengths(
 
 
 def _decimals(statement: str) -> dict[str, float]:
-    """Map the spelling of each decimal in a text to its value."""
     return {found: float(found) for found in re.findall(r"(?<![\w.])\d+\.\d+", statement)}
 
 
 def _stated(step: Numbers, numbers: Mapping[str, float]) -> str | None:
-    """Return the number in the statement that is the constant length of a piece, or None."""
+    # Only for a piece of constant length.
     length = np.linalg.norm(step, axis=1)
     return next((text for text, n in numbers.items() if np.abs(length - n).max() < _EXACT), None)
 
 
 def _sum_of(step: Numbers, terms: Numbers) -> Numbers | None:
-    """Return a 0 or 1 for each term, so that the sum is a piece's length; None if impossible."""
+    # A 0 or 1 for each term, so that the sum is the piece's length; None if impossible.
     length = np.linalg.norm(step, axis=1)
     solved = np.linalg.lstsq(terms, length, rcond=None)[0]
     share = np.asarray(np.round(solved), dtype=np.float64)

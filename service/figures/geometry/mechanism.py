@@ -1,9 +1,10 @@
 """The mechanism that a picture shows: joints on their axes, links between them, base and tool.
 
-It is built from the joint axes and the path between them, once for given lengths, and then moves
-with the joints. A joint may be drawn anywhere on its axis, so it is moved along the path until it
-does not hide its neighbours. The mechanism does not depend on the frames of a table.
+A joint may be drawn anywhere on its axis. It is moved until it does not hide its neighbours.
 """
+
+# The mechanism is built from the joint axes and the path between them, once for given lengths, and
+# then moves with the joints. It does not depend on the frames of a table.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -33,11 +34,11 @@ _NOTHING = 1e-5
 class Configuration:
     """The mechanism at some joint values; points ``(3,)`` and unit vectors in the base frame.
 
-    There is one more link than joints: link 0 leads from the base to the first joint, link i from
-    joint i to the next, the last one to the tool. Each link is ``(corners, 3)``. Two corners may
-    coincide at some value of a prismatic joint.
+    Each link is a line ``(corners, 3)``. Link 0 leads from the base to the first joint.
     """
 
+    # There is one more link than joints: link i leads from joint i to the next, the last one to the
+    # tool. Two corners may coincide at some value of a prismatic joint.
     centres: Numbers
     axes: Numbers
     links: tuple[Numbers, ...]
@@ -51,11 +52,12 @@ class Configuration:
 class MovableMechanism:
     """The mechanism with all joint variables 0, which can be moved.
 
-    ``corners`` has the points ``(corners, 3)`` of each body, the base first. ``centres`` has the
-    middle of each joint, which moves with the body before the joint. ``extent`` is the size of the
-    whole mechanism, ``size`` the size of its parts.
+    ``corners`` has the points of each body, the base first. ``centres`` has the middle of each
+    joint.
     """
 
+    # A joint's middle moves with the body before the joint. ``extent`` is the size of the whole
+    # mechanism, ``size`` the size of its parts.
     reference: Reference
     lengths: Mapping[str, float]
     extent: float
@@ -100,7 +102,7 @@ class MovableMechanism:
 
 
 def _links(carried: Sequence[Numbers], centres: Numbers) -> Iterator[Numbers]:
-    """Yield the line of each link: the points of its body, between the middles of its joints."""
+    # The points of the link's body, between the middles of its joints.
     starts, ends = [carried[0][:0], *centres[:, None]], [*centres[:, None], carried[-1][:0]]
     for start, points, end in zip(starts, carried, ends, strict=True):
         yield np.concatenate([start, points, end])
@@ -118,7 +120,6 @@ def distinct(points: Numbers) -> Numbers:
 
 
 def _moved(body: Matrices, points: Numbers) -> Numbers:
-    """Move points ``(points, 3)`` with a body's pose ``(..., 4, 4)``: ``(..., points, 3)``."""
     turned = points @ np.swapaxes(body[..., :3, :3], -1, -2)
     return np.asarray(turned + body[..., None, :3, 3])
 
@@ -126,9 +127,9 @@ def _moved(body: Matrices, points: Numbers) -> Numbers:
 def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableMechanism:
     """Return the mechanism that can be moved.
 
-    ``numbers`` has the value of every symbol: each length and each joint variable. With these joint
-    values, no drawn joint should hide another joint.
+    ``numbers`` has the value of every symbol: each length and each joint variable.
     """
+    # With these joint values, no drawn joint should hide another joint.
     values: SymbolValues = as_samples(numbers, 1)
     path = path_of(reference, values, 1)
     bodies = motions(reference, values, 1)[:, 0]
@@ -155,11 +156,8 @@ def mechanism_of(reference: Reference, numbers: Mapping[str, float]) -> MovableM
 
 
 def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) -> "_Track":
-    """Return the track in which the joints are drawn as large as the room on their axes allows.
-
-    If possible, the first joint stands on the ground at the origin. A column below the origin would
-    suggest a length that the robot does not have.
-    """
+    # If possible, the first joint stands on the ground at the origin. A column below the origin
+    # would suggest a length that the robot does not have.
     tracks = [
         _Track.of(path, screws, joints, share, sunk=sunk)
         for share in _SIZES
@@ -170,13 +168,11 @@ def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) ->
 
 @dataclass(frozen=True, slots=True)
 class _Track:
-    """The path, extended to the ground, and the stretch of it on which each joint may be drawn.
+    """The path, extended to the ground, and the stretch of it on which each joint may be drawn."""
 
-    ``reached`` is the length of the path up to each corner. ``first`` and ``last`` are the ends of
-    each joint's stretch, and ``own`` has the ends of the piece along the joint's axis. All these
-    ends are given as lengths of the path up to them.
-    """
-
+    # ``reached`` is the length of the path up to each corner. ``first`` and ``last`` are the ends
+    # of each joint's stretch, and ``own`` has the ends of the piece along the joint's axis. All
+    # these ends are given as lengths of the path up to them.
     corners: Numbers
     reached: Numbers
     first: Numbers
@@ -246,18 +242,17 @@ class _Track:
         )
 
     def point(self, s: float) -> Numbers:
-        """Return the point ``(3,)`` of the path at the length ``s``."""
+        # ``s`` is the length of the path up to the point.
         return np.array([np.interp(s, self.reached, column) for column in self.corners.T])
 
     def corners_between(self, first: float, last: float) -> Numbers:
-        """Return the corners strictly between two lengths."""
         inside = (self.reached > first + _SAME) & (self.reached < last - _SAME) & self.bent
         inside[-1] = last == np.inf
         return self.corners[inside]
 
     @property
     def bent(self) -> NDArray[np.bool_]:
-        """True for corners where the path begins or bends; if corners coincide, only for one."""
+        # Corners where the path begins or bends; of coincident corners, only one.
         kept = np.flatnonzero(np.concatenate([[True], np.diff(self.reached) > _SAME]))
         steps = np.diff(self.corners[kept], axis=0)
         steps /= np.linalg.norm(steps, axis=1, keepdims=True)
@@ -269,21 +264,20 @@ class _Track:
 
     @property
     def arrival(self) -> Numbers:
-        """The direction ``(3,)`` of the path at its end."""
         line = distinct(self.corners)
         step = line[-1] - line[-2] if len(line) > 1 else self.base_normal
         return np.asarray(step / np.linalg.norm(step))
 
     @property
     def _across(self) -> NDArray[np.bool_]:
-        """True for joints that a link reaches from the side."""
+        # A link reaches these joints from the side.
         only = np.where(np.ptp([self.first, self.last], axis=0) > _SAME, -np.inf, self.last)
         before = np.concatenate([[-np.inf], only[:-1]])
         return np.asarray(self.first > self.own[:, 0] - _SAME) & (before < self.own[:, 0] - _SAME)
 
     @property
     def _halves(self) -> tuple[Numbers, Numbers]:
-        """The length of each joint along the path, before and after its middle."""
+        # Along the path, before and after the joint's middle.
         extended = self.last - self.first > _SAME
         length, side = JOINT_LENGTH / 2 * self.size, 1.3 * JOINT_RADIUS * self.size
         after = np.where(extended, length, side)
@@ -291,19 +285,18 @@ class _Track:
 
     @property
     def _apart(self) -> Numbers:
-        """The minimum distance between the middles of neighbouring joints along the path."""
+        # The minimum distance between the middles of neighbouring joints along the path.
         before, after = self._halves
         return np.asarray(after[:-1] + before[1:] + _CLEARANCE * self.size)
 
     @property
     def has_room(self) -> bool:
-        """True if the joints and the gripper can be placed without touching each other."""
         at = np.array(self.placed())
         to_tool = self.reached[-1] - at[-1] - self._halves[1][-1] - GRIPPER_LENGTH * self.size
         return bool((np.diff(at) > self._apart - _SAME).all() and to_tool > -_SAME)
 
     def placed(self) -> list[float]:
-        """Return each joint's place on the path, near the preferred place, clear of the others."""
+        # Near the preferred place, clear of the other joints.
         apart = self._apart
         low, high = self.first.copy(), self.last.copy()
         low[0] = max(low[0], min(JOINT_LENGTH / 2 * self.size, high[0]))
@@ -320,12 +313,9 @@ class _Track:
         return at
 
     def _wanted(self, lowest: float) -> Iterator[float]:
-        """Yield the preferred place of each joint, regardless of its neighbours.
-
-        If the first joint is revolute, it is on the ground. A prismatic joint is where its
-        displacement begins. Any other revolute joint is where its own piece begins if a link
-        arrives from the side, else in the middle of its piece.
-        """
+        # If the first joint is revolute, it is on the ground. A prismatic joint is where its
+        # displacement begins. Any other revolute joint is where its own piece begins if a link
+        # arrives from the side, else in the middle of its piece.
         for i, (start, end) in enumerate(self.own):
             if i == 0 and not self.slides[0]:
                 yield lowest
@@ -336,12 +326,9 @@ class _Track:
 def _foot(
     corners: Numbers, piece: int, line: tuple[Numbers, Numbers], size: float, *, sunk: bool
 ) -> tuple[Numbers, Numbers]:
-    """Return the point on the ground, and the normal of the ground.
-
-    If the first joint has no room on its axis between the origin and the first link, the ground is
-    below the origin: by half the length of the joint, or, if ``sunk``, by its whole length, so that
-    another joint has room at the origin. The ground is above an arm that hangs down from it.
-    """
+    # If the first joint has no room on its axis between the origin and the first link, the ground
+    # is below the origin: by half the length of the joint, or, if ``sunk``, by its whole length, so
+    # that another joint has room at the origin. The ground is above an arm that hangs down from it.
     up = np.array([0.0, 0.0, 1.0])
     origin = corners[0]
     point, direction = line

@@ -1,9 +1,10 @@
 """The chain as a path of straight pieces from the base frame to the tool.
 
-A piece is along the axis of a joint, or across from one axis to the next. A table gives both kinds:
-Z_i is along an axis, X_i is across (``kinematics.chain``). For a robot with screw axes, the path
-follows the common normals between the axes.
+A piece is along the axis of a joint, or across from one axis to the next.
 """
+
+# A table gives both kinds: Z_i is along an axis, X_i is across (``kinematics.chain``). For a robot
+# with screw axes, the path follows the common normals between the axes.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,10 +27,10 @@ PARALLEL = 1e-9
 class ChainPath:
     """The corners ``(k + 1, samples, 3)`` of a path with ``k`` pieces.
 
-    ``joints`` has, for each piece along the axis of a joint, the joint's index, counted from 0;
-    None for a piece across.
+    ``joints`` has the index of the joint along whose axis each piece is, or None.
     """
 
+    # The index counts from 0; None is a piece from one axis to the next.
     corners: Numbers
     joints: tuple[int | None, ...]
 
@@ -62,7 +63,8 @@ def path_of(reference: Reference, values: SymbolValues, samples: int) -> ChainPa
 
 
 def table_path(table: ReferenceTable, values: SymbolValues, samples: int) -> ChainPath:
-    """Return the path of a table. Pieces of a fixed row do not count as along a joint axis."""
+    """Return the path of a table."""
+    # Pieces of a fixed row do not count as along a joint axis.
     return path_of_rows(table.values(values, samples), table.convention, len(table.joints))
 
 
@@ -83,7 +85,6 @@ def path_of_rows(rows: Numbers, convention: Convention, joints: int) -> ChainPat
 
 
 def _screw_path(robot: ScrewRobot, values: SymbolValues, samples: int) -> ChainPath:
-    """Return the path along the axes and their common normals."""
     bodies = motions(robot, values, samples)
     screws = moved(bodies[:-1], robot.screws(values, samples))
     tool = robot.frame("tool", values, samples)[:, :3, 3]
@@ -94,10 +95,8 @@ def _screw_path(robot: ScrewRobot, values: SymbolValues, samples: int) -> ChainP
 
 
 def _corners(screws: Numbers, slides: Sequence[bool], tool: Numbers) -> Numbers:
-    """Return the corners of the path: across to each axis, along it, and at last to the tool.
-
-    The axis of a prismatic joint has no fixed place, so it goes through the point reached so far.
-    """
+    # Across to each axis, along it, and at last to the tool. The axis of a prismatic joint has no
+    # fixed place, so it goes through the point reached so far.
     directions = axis_directions(screws)
     points = np.cross(screws[:, :3], screws[:, 3:])
     here = np.zeros(3)
@@ -118,7 +117,7 @@ def _corners(screws: Numbers, slides: Sequence[bool], tool: Numbers) -> Numbers:
 
 
 def _nearest(point: Numbers, direction: Numbers, other: Numbers, its_direction: Numbers) -> Numbers:
-    """Return the point of a line nearest to another line; ``point`` if they are parallel."""
+    # ``point`` if the lines are parallel.
     normal = np.cross(direction, its_direction)
     if np.linalg.norm(normal) < PARALLEL:
         return point

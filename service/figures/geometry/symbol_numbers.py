@@ -10,11 +10,11 @@ _EXTENDED = 0.4
 
 
 def drawing_numbers(variables: Iterable[Variable]) -> dict[str, float]:
-    """Return a number for every symbol: the home configuration with extended prismatic joints.
+    """Return a number for every symbol, to draw the robot with extended prismatic joints.
 
-    A link parameter gets the middle of its range, a joint angle 0. A prismatic joint at 0 would be
-    invisible.
+    A link parameter gets the middle of its range, a joint angle 0.
     """
+    # A prismatic joint at 0 would be invisible.
     return {variable.name: _number(variable) for variable in variables}
 
 

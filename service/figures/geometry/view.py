@@ -31,11 +31,10 @@ class View:
 
 
 def best_view(shown: Configuration, extent: float) -> View:
-    """Return the clearest view of the mechanism; of equally clear views, the first.
-
-    In a clear view, no joint axis points at the viewer, no link is much foreshortened, different
-    directions look different, distinct points are apart, and the arm extends to the right.
-    """
+    """Return the clearest view of the mechanism."""
+    # Of equally clear views, the first. In a clear view, no joint axis points at the viewer, no
+    # link is much foreshortened, different directions look different, distinct points are apart,
+    # and the arm extends to the right.
     views = [View(azimuth, elevation) for elevation in _ELEVATIONS for azimuth in _AZIMUTHS]
     rotations = np.array([view.rotation for view in views])
     steps = np.concatenate([np.diff(link, axis=0) for link in shown.links])
@@ -68,7 +67,7 @@ def best_view(shown: Configuration, extent: float) -> View:
 
 
 def _flat(points: Numbers, rotations: Numbers) -> Numbers:
-    """Project points ``(points, 3)`` in each view, ``(views, points, 2)``."""
+    # ``(points, 3)`` becomes ``(views, points, 2)``.
     return np.asarray((points @ np.swapaxes(rotations, 1, 2))[..., :2])
 
 
@@ -77,7 +76,6 @@ def _parallel(directions: Numbers, direction: Numbers) -> NDArray[np.bool_]:
 
 
 def _different(rows: Numbers, alike: Callable[[Numbers, Numbers], NDArray[np.bool_]]) -> Numbers:
-    """Return the rows that are not like an earlier row."""
     kept = rows[:1]
     for row in rows[1:]:
         if not alike(kept, row).any():

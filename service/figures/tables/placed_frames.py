@@ -44,9 +44,10 @@ def placed_frames(
 ) -> PlacedFrames:
     """Return placed frames at values of the joint variables, ``(configurations, joints)``.
 
-    The frames are written with all joint variables 0, and move with their links. ``numbers`` has a
-    number for every symbol. Raises UnreadableAnswerError if the answer has no rows.
+    ``numbers`` has a number for every symbol. Raises UnreadableAnswerError if the answer has no
+    rows.
     """
+    # The frames are written with all joint variables 0, and move with their links.
     values = {name: np.full(SAMPLES, number) for name, number in numbers.items()}
     home = Samples(at_home(exercise.joints, values, SAMPLES))
     labels = frame_labels(exercise.robot, part.convention)
@@ -66,14 +67,13 @@ def placed_frames(
 
 
 def _is_begun(frame: StudentFrame) -> bool:
-    """True if a cell of the frame is not empty."""
     if frame.axis.number is not None or frame.z.name or frame.x.name:
         return True
     return any(entry.verdict is not Verdict.MISSING for _, entry in _entries(frame))
 
 
 def _entries(frame: StudentFrame) -> Iterator[tuple[str, Entry]]:
-    """Yield the entries of a frame, each with its cell; a direction such as +y has no entries."""
+    # A direction such as +y has no entries.
     yield FRAME_CELLS[0], frame.axis.entry
     yield from (("z", entry) for entry in frame.z.entries)
     yield from zip(FRAME_CELLS[2:5], frame.origin, strict=True)
@@ -81,10 +81,7 @@ def _entries(frame: StudentFrame) -> Iterator[tuple[str, Entry]]:
 
 
 def _frame(label: str, frame: StudentFrame, home: Samples) -> Matrices | CellWithoutNumber:
-    """Return a frame ``(4, 4)``, or the cell that prevents drawing it.
-
-    x is drawn as it is written, even if it is not perpendicular to z.
-    """
+    # x is drawn as it is written, even if it is not perpendicular to z.
     for cell, entry in _entries(frame):
         if cell != FRAME_CELLS[0] and not entry.readable:
             finding = entry.findings[0] if entry.findings else _NO_NUMBER
@@ -110,10 +107,7 @@ def _frame(label: str, frame: StudentFrame, home: Samples) -> Matrices | CellWit
 
 
 def _link_motions(exercise: Exercise, numbers: Mapping[str, float], amounts: Numbers) -> Matrices:
-    """Return the motion of each link from the pose with all joint variables 0.
-
-    Its shape is ``(links, configurations, 4, 4)``. Link i is moved by joints 1 to i.
-    """
+    # ``(links, configurations, 4, 4)``. Link i is moved by joints 1 to i.
     count = len(amounts)
     still = {name: np.full(count, number) for name, number in numbers.items()}
     moving = still | {joint.variable: amounts[:, i] for i, joint in enumerate(exercise.joints)}

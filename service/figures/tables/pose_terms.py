@@ -1,9 +1,10 @@
 """The pose of a table, multiplied out as text: sums of products of sines and cosines.
 
-The chain is X_0 Z_1 X_1 Z_2 …. Angles about the same axis, or about parallel axes, are added before
-their sine is taken, so an arm with parallel axes has the formulas of a textbook. Each entry is a
-sum of terms. The number of terms is bounded, and the terms are not simplified afterwards.
+Angles about parallel axes are added before their sine is taken, as in textbooks.
 """
+
+# The chain is X_0 Z_1 X_1 Z_2 …. Each entry is a sum of terms. The number of terms is bounded, and
+# the terms are not simplified afterwards.
 
 import re
 from collections.abc import Iterable, Sequence
@@ -31,8 +32,7 @@ class LongPoseError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class _Angle:
-    """A sum of angles and quarter turns. Each part is a text and its factor."""
-
+    # A sum of angles and quarter turns. Each part is a text and its factor.
     parts: tuple[tuple[str, int], ...] = ()
     quarters: int = 0
 
@@ -47,7 +47,7 @@ class _Angle:
         return _Angle(tuple((text, -factor) for text, factor in self.parts), -self.quarters)
 
     def cosine_and_sine(self) -> tuple[Terms, Terms]:
-        """Return the cosine and the sine of the angle; each quarter turn swaps them."""
+        # Each quarter turn swaps cosine and sine.
         cosine, sine = _number(1), _number(0)
         if self.parts:
             sign = 1 if self.parts[0][1] > 0 else -1
@@ -59,7 +59,7 @@ class _Angle:
 
 
 def _sum_text(parts: Sequence[tuple[str, int]]) -> str:
-    """Return a sum as text, without a leading +."""
+    # Without a leading +.
     ordered = [
         f"{'-' if factor < 0 else '+'}{'' if abs(factor) == 1 else f'{abs(factor)}*'}{text}"
         for text, factor in parts
@@ -68,7 +68,7 @@ def _sum_text(parts: Sequence[tuple[str, int]]) -> str:
 
 
 def _angle(cell: Expression) -> _Angle:
-    """Return the angle in a cell as a sum of symbols and quarter turns, or else as one text."""
+    # A sum of symbols and quarter turns, or else one text.
     names = sorted(cell.symbols)
     # Evaluate with all symbols 0, with each symbol 1, and at a point that shows if it is not a sum.
     points = np.vstack([np.zeros(len(names)), np.eye(len(names)), 0.37 + np.arange(len(names))])
@@ -87,7 +87,6 @@ def _angle(cell: Expression) -> _Angle:
 
 
 def _length(cell: Expression) -> Terms:
-    """Return the length in a cell as one factor."""
     text = cell.text()
     if text == "0":
         return {}
@@ -127,8 +126,7 @@ def _plus(one: Terms, other: Terms) -> Terms:
 
 
 class _Pose:
-    """The rotation's columns and the position so far, and a pending turn about z."""
-
+    # The rotation's columns and the position so far, and a pending turn about z.
     def __init__(self) -> None:
         self.columns = [[_number(int(i == j)) for i in range(3)] for j in range(3)]
         self.position = [Terms() for _ in range(3)]
@@ -142,7 +140,6 @@ class _Pose:
             ]
 
     def about(self, angle: _Angle, first: int, second: int) -> None:
-        """Turn the columns ``first`` and ``second`` by ``angle``."""
         cosine, sine = angle.cosine_and_sine()
         pairs = list(zip(self.columns[first], self.columns[second], strict=True))
         self.columns[first] = [_plus(_product(u, cosine), _product(v, sine)) for u, v in pairs]
@@ -157,7 +154,7 @@ class _Pose:
         self.turn = _Angle()
 
     def x_axis(self) -> list[Terms]:
-        """Return the direction of x after the pending turn about z."""
+        # After the pending turn about z.
         cosine, sine = self.turn.cosine_and_sine()
         return [
             _plus(_product(u, cosine), _product(v, sine))
@@ -196,6 +193,5 @@ def pose_texts(modified: Iterable[Row[Expression]]) -> list[list[str]]:
 
 
 def _text(terms: Terms) -> str:
-    """Return a sum of products as text."""
     ordered = [("*".join(product) or "1", count) for product, count in terms.items()]
     return _sum_text(ordered) or "0"

@@ -1,4 +1,4 @@
-"""The symbols and joints that a drawn table may use: those of an exercise, or of textbooks."""
+"""The symbols and joints that a drawn table may use, from an exercise or from textbooks."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class DrawingScope:
 
     @classmethod
     def of(cls, exercise: Exercise) -> "DrawingScope":
-        """Return the scope of an exercise."""
+        """Return the joints and symbols that a table of the exercise may use."""
         return cls(exercise.joints, exercise.variables, exercise.vocabulary)
 
     def numbers(self, given: Mapping[str, float]) -> dict[str, float]:
@@ -35,11 +35,9 @@ class DrawingScope:
 
 @lru_cache(maxsize=256)
 def free_scope(structure: str) -> DrawingScope:
-    """Return a scope of textbook symbols for a robot with the joints ``structure``, such as "RRP".
-
-    The variable of joint i is theta_i (or q_i) if it is revolute, and d_i (or q_i) if it is
-    prismatic. The other symbols a1, alpha1, d1, theta1, l1 up to index 12 are constants.
-    """
+    """Return textbook symbols for a robot with the joints ``structure``, such as "RRP"."""
+    # The variable of joint i is theta_i (or q_i) if it is revolute, and d_i (or q_i) if it is
+    # prismatic. The other symbols a1, alpha1, d1, theta1, l1 up to index 12 are constants.
     joints = tuple(
         Joint(i, f"d{i}" if letter == "P" else f"theta{i}", prismatic=letter == "P")
         for i, letter in enumerate(structure, 1)

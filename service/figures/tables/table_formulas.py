@@ -27,11 +27,12 @@ class RowInFormulas:
 class TableFormulas:
     """The formulas of a table.
 
-    A cell that is unreadable or too long to print is None in ``cells``; then the other fields are
-    empty. ``converted`` is an equivalent table in the other convention. ``pose`` has the entries
-    ``(4, 4)`` of the last frame's pose in the base frame; if these are too long, it is empty.
+    ``converted`` is an equivalent table in the other convention. ``pose`` has the entries ``(4,
+    4)`` of the last frame's pose in the base frame.
     """
 
+    # A cell that is unreadable or too long to print is None in ``cells``; then the other fields are
+    # empty. ``pose`` is empty if its entries are too long.
     cells: tuple[tuple[Expression | None, ...], ...]
     converted: tuple[RowInFormulas, ...] = ()
     pose: tuple[tuple[Expression, ...], ...] = ()
@@ -64,7 +65,7 @@ def _may_print(formula: Expression, budget: WorkBudget) -> bool:
 def _converted(
     rows: Sequence[Row[Expression]], convention: Convention, zero: Expression
 ) -> tuple[RowInFormulas, ...]:
-    """Return the rows in the other convention, with an extra fixed row if a and α need one."""
+    # There is an extra fixed row if a and α need one.
     count = len(rows)
     if convention is Convention.STANDARD:
         found = modified_rows(rows, zero)

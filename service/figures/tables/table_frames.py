@@ -47,12 +47,12 @@ class FreedomLoss:
 class TableFrames:
     """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
 
-    The frames end before the first row that has a cell without a number; ``unread`` lists such
-    cells. For the rows before that row, ``values`` has the numbers ``(configurations, rows, 4)``,
-    and ``row_joints`` has the joint whose variable is in the row. ``symbols`` are the symbols in
-    the table. ``freedoms`` is the number of degrees of freedom of a complete table, else None.
+    They end before the first row that has a cell without a number. ``unread`` lists such cells.
     """
 
+    # For the rows before that row, ``values`` has the numbers ``(configurations, rows, 4)``, and
+    # ``row_joints`` has the joint whose variable is in the row. ``symbols`` are the symbols in the
+    # table. ``freedoms`` is the number of degrees of freedom of a complete table, else None.
     frames: Matrices
     values: Numbers
     row_joints: tuple[Joint | None, ...]
@@ -115,12 +115,10 @@ def _symbols(row: StudentRow) -> Set[str]:
 
 
 def _joint(symbols: Set[str], scope: DrawingScope) -> Joint | None:
-    """Return the first joint whose variable is among the symbols of a row, or None."""
     return next((joint for joint in scope.joints if joint.variable in symbols), None)
 
 
 def _numbers(written: StudentTable, values: Mapping[str, Numbers], count: int) -> Table:
-    """Return the table in numbers, ``(rows, 4, values)``; NaN in a cell without a number."""
     known = values.keys()
     cells: list[Expression | None] = [
         each if each is not None and each.symbols <= known else None
@@ -158,7 +156,7 @@ _NO_NUMBER = reading_error(
 def _freedoms(
     table: Table, convention: Convention, scope: DrawingScope, used: Set[str]
 ) -> tuple[int, tuple[FreedomLoss, ...]]:
-    """Return the degrees of freedom at a generic configuration, and the redundant joints."""
+    # At a generic configuration.
     moving = [i for i, joint in enumerate(scope.joints) if joint.variable in used]
     still = tuple(joint for joint in scope.joints if joint.variable not in used)
     lost = [

@@ -1,8 +1,10 @@
 """The right answer to a part, with one module for each kind.
 
-A module ``<kind>.py`` has a function ``answer(part, work)``, which returns the right answer, and
-``lazy(part, exercise)``, which returns answers that need no knowledge. Modules are found by name.
+A module has the functions ``answer``, which returns the right answer, and ``lazy``, which returns
+answers that need no knowledge.
 """
+
+# The module ``<kind>.py`` is found by its name.
 
 from collections.abc import Callable, Mapping
 from importlib import import_module

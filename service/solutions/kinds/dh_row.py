@@ -19,11 +19,9 @@ _MOST_STEPS = 60
 
 
 def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
-    """Return the row (a, α, d, θ) of the part's transform, or the answer that it has no row.
-
-    The row follows from the entries of a link transform (Spong, Hutchinson, Vidyasagar, *Robot
-    Modeling and Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
-    """
+    """Return the DH row of the part's transform, or the answer that it has no row."""
+    # The row follows from the entries of a link transform (Spong, Hutchinson, Vidyasagar, *Robot
+    # Modeling and Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
     grid = work.exercise.formulas[part.id]
     numbers = np.moveaxis(grid_values(grid, trial_values(work.exercise.variables), TRIALS), -1, 0)
     broken = [dh1_residual(numbers, part.convention), dh2_residual(numbers, part.convention)]
@@ -43,10 +41,11 @@ def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
 
 
 def _simplified(length: sympy.Expr) -> sympy.Expr:
-    """Simplify l cos² φ + l sin² φ to l. Long formulas stay as they are, to save time."""
+    # l cos² φ + l sin² φ becomes l. Long formulas stay as they are, to save time.
     return sympy.trigsimp(sympy.expand(length)) if length.count_ops() < _MOST_STEPS else length
 
 
 def lazy(_part: DhRowSpec, _exercise: Exercise) -> list[object]:
-    """Return a row of zeros. "No row" is not included, because this guess may be right."""
+    """Return a row of zeros, which needs no knowledge."""
+    # "No row" is not included, because this guess may be right.
     return [dict.fromkeys(COLUMNS, "0")]

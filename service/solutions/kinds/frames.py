@@ -36,7 +36,6 @@ def answer(part: FramesSpec, work: Work) -> PrintedAnswer:
 
 
 def _direction(vector: sympy.Matrix, work: Work) -> str | list[Node]:
-    """Return a direction as a base direction such as +y, or as a vector."""
     simple = [sympy.simplify(each) for each in vector]
     for axis, component in enumerate(simple):
         if component in (1, -1):

@@ -20,7 +20,7 @@ def answer(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(part: LinkTransformsSpec, exercise: Exercise) -> list[object]:
-    """Return the motion of each joint, and the identity for each fixed row."""
+    """Return the motion of each joint, and the identity for each row without a joint."""
     table = exercise.robot.tables[part.convention]
     fixed = len(table.rows) - len(table.joints)
     return [[*(motion([joint]) for joint in table.joints), *[IDENTITY] * fixed]]

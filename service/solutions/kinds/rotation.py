@@ -12,13 +12,13 @@ _AXES = {"x": X, "y": Y, "z": Z}
 
 
 def answer(part: RotationSpec, work: Work) -> PrintedAnswer:
-    """Return the entries in the exercise file, the product of the steps, or a robot's rotation."""
+    """Return the rotation that the exercise file or the robot determines."""
     given = work.as_written(part) if part.steps is None else None
     return layout.matrix(given) if given else work.matrix(multiplied(_turns(part, work)).rotation)
 
 
 def _turns(part: RotationSpec, work: Work) -> list[Motion]:
-    """Return the rotation's turns as factors. A turn about a fixed axis goes to the front."""
+    # A turn about a fixed axis goes to the front.
     if part.steps is None:
         return work.pose_motions(part)
     angles = work.algebra.matrix(work.exercise.formulas[part.id])

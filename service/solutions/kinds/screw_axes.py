@@ -13,7 +13,7 @@ from service.solutions.work import Work
 
 
 def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
-    """Return the axes that the exercise file gives, or those of the robot's joints at home."""
+    """Return the axes that the exercise file gives, or else the robot's with all joints at 0."""
     given = work.as_written(part)
     if given:
         return layout.matrix(given)
@@ -28,7 +28,6 @@ def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
 
 
 def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, sympy.Matrix]]:
-    """Return the screw axis (ω; v) of each joint at home, in the base frame."""
     if isinstance(exercise.reference, ScrewRobot):
         rows = algebra.matrix(exercise.reference.axes).tolist()
         return [(sympy.Matrix(row[:3]), sympy.Matrix(row[3:])) for row in rows]
