@@ -56,7 +56,8 @@ class WrittenChain:
 
     @property
     def links(self) -> list[Numbers]:
-        """The line ``(3, 3)`` of each row: along z and along x, in the convention's order."""
+        """The line ``(3, 3)`` of each row, through three points: along z and along x."""
+        # In the convention's order.
         return [
             np.array([before[:3, 3], before[:3, 3] + self._first(before, after), after[:3, 3]])
             for before, after in pairwise(self.frames)

@@ -25,6 +25,7 @@ def motion(joints: Sequence[Joint]) -> _Rows:
 
 
 def poses(exercise: Exercise, size: int) -> list[_Rows]:
-    """Return the identity and the ``motion`` of all joints; ``size`` is 3 (rotations) or 4."""
+    """Return motions that need no knowledge: the identity and the ``motion`` of all joints."""
+    # ``size`` is 3 (rotations) or 4.
     of_joints = [motion(exercise.joints)] if exercise.joints else []
     return [[row[:size] for row in rows[:size]] for rows in (IDENTITY, *of_joints)]

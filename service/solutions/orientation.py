@@ -1,8 +1,10 @@
 """Euler angles as formulas.
 
-The angles of a product of turns are returned if the turns have the requested sequence: the ZYZ
-angles of a spherical wrist are its joint angles. Otherwise the angles are atan2 of entries.
+If the turns already have the requested sequence, their own angles are returned. Otherwise the
+angles are atan2 of matrix entries.
 """
+
+# The ZYZ angles of a spherical wrist are its joint angles.
 
 from collections.abc import Iterable
 from itertools import product

@@ -28,8 +28,7 @@ class Drawing(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class _Line:
-    """A dimension line in the picture."""
-
+    # A dimension line in the picture.
     # Its ends, the ends of the measured piece, and its penalty. The line with the lowest penalty is
     # drawn.
     ends: Numbers

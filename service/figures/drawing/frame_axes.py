@@ -87,7 +87,7 @@ def frame_names(camera: Camera, drawn: DrawnFrames, room: TakenRoom) -> list[str
 def named(
     label: Label, wanted: Sequence[Numbers], points: Numbers, kind: str, room: TakenRoom
 ) -> Iterator[str]:
-    """Yield the SVG of a label, and of a line to ``points`` if the label is far from ``points``."""
+    """Yield the SVG of a label, with a line to ``points`` if they are far away."""
     place = room.place(label, wanted, points)
     leader = place.leader(points)
     if leader is not None:

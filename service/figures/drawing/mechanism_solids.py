@@ -67,7 +67,8 @@ def joint_solid(sheet: Sheet, centre: Numbers, axis: Numbers, fill: str, *, slid
 
 
 def link_solid(sheet: Sheet, line: Numbers, drawn: Numbers) -> Solid:
-    """Return the solid of a link with the corners ``drawn``; mark the room along ``line``."""
+    """Return the solid of a link with the corners ``drawn``, and mark its room as taken."""
+    # The room is along ``line``.
     sheet.take(sheet.camera.seen(line), _ROD * sheet.unit / 2)
     return rod(sheet.camera, drawn, _ROD * sheet.unit)
 

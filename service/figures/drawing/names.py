@@ -39,7 +39,7 @@ class Label:
 
     @property
     def text(self) -> str:
-        """The plain text: θ1 + d2."""
+        """The plain text, such as θ1 + d2."""
         return "".join(stem + index for stem, index in self.runs)
 
     @property

@@ -153,7 +153,8 @@ class TakenRoom:
         )
 
     def crossings(self, line: Numbers) -> int:
-        """Count the labels and the strokes of full weight that a line ``(points, 2)`` crosses."""
+        """Count the labels and the main strokes that a line ``(points, 2)`` crosses."""
+        # Main strokes have at least the weight 1.
         written = self.covered(line)
         if not self._starts:
             return written

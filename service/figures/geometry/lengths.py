@@ -17,7 +17,7 @@ _EXACT = 1e-9
 
 @dataclass(frozen=True, slots=True)
 class NamedLength:
-    """A piece of the path whose length is the sum of the symbols ``names``.
+    """A piece of the chain's path whose length is the sum of the symbols ``names``.
 
     ``start`` and ``end`` are indices of corners of ``ChainPath``.
     """
@@ -30,10 +30,8 @@ class NamedLength:
 def named_lengths(
     reference: Reference, variables: tuple[Variable, ...], statement: str = ""
 ) -> list[NamedLength]:
-    """Return the pieces whose length is a sum of symbols, or a number in the statement.
-
-    Students know all symbols of an exercise, so the names reveal nothing.
-    """
+    """Return the pieces whose length is a sum of symbols, or a number in the statement."""
+    # Students know all symbols of an exercise, so the names reveal nothing.
     turning = {joint.variable for joint in reference.joints if not joint.prismatic}
     values = {
         name: np.zeros(TRIALS) if name in turning else trial

@@ -168,8 +168,9 @@ def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) ->
 
 @dataclass(frozen=True, slots=True)
 class _Track:
-    """The path, extended to the ground, and the stretch of it on which each joint may be drawn."""
+    """The chain's path, and the stretch of it on which each joint may be drawn."""
 
+    # The path is extended to the ground.
     # ``reached`` is the length of the path up to each corner. ``first`` and ``last`` are the ends
     # of each joint's stretch, and ``own`` has the ends of the piece along the joint's axis. All
     # these ends are given as lengths of the path up to them.

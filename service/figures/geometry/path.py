@@ -27,7 +27,7 @@ PARALLEL = 1e-9
 class ChainPath:
     """The corners ``(k + 1, samples, 3)`` of a path with ``k`` pieces.
 
-    ``joints`` has the index of the joint along whose axis each piece is, or None.
+    ``joints`` has, for each piece, the joint whose axis it follows, or None.
     """
 
     # The index counts from 0; None is a piece from one axis to the next.
@@ -38,8 +38,9 @@ class ChainPath:
 def motions(reference: Reference, values: SymbolValues, samples: int) -> Matrices:
     """Return each body's motion from its home position, ``(joints + 1, samples, 4, 4)``.
 
-    Body 0 is the base; joints 1 to i move body i by e^{[S_1]q_1} … e^{[S_i]q_i}.
+    Body 0 is the base; joints 1 to i move body i.
     """
+    # The motion is e^{[S_1]q_1} … e^{[S_i]q_i}.
     screws = reference.screws(values, samples)
     moved_by = [np.broadcast_to(np.eye(4), (samples, 4, 4))]
     for joint, screw in zip(reference.joints, screws, strict=True):

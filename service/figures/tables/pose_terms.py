@@ -172,7 +172,7 @@ class _Pose:
 
 
 def pose_texts(modified: Iterable[Row[Expression]]) -> list[list[str]]:
-    """Return the entries ``(4, 4)`` of the product of a modified table's rows, as texts.
+    """Return the product of a table's rows in the modified convention, as texts ``(4, 4)``.
 
     Raises LongPoseError if there are too many terms.
     """

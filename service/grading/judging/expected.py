@@ -76,5 +76,5 @@ def is_whole_chain(part: PosePartSpec, exercise: Exercise) -> bool:
 
 
 def as_entries(matrices: Matrices) -> Numbers:
-    """Convert ``(..., SAMPLES, rows, columns)`` to ``(..., rows, columns, SAMPLES)``."""
+    """Move the samples of matrices to the last axis: ``(..., rows, columns, SAMPLES)``."""
     return np.moveaxis(matrices, -3, -1)

@@ -14,7 +14,7 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True, slots=True)
 class ExpectedMatrix:
-    """The correct matrix: its ``values`` ``(rows, columns, SAMPLES)`` and their quantities.
+    """The correct matrix: the ``values`` and the quantity (length, angle …) of each entry.
 
     ``rigid`` marks a homogeneous transform (4×4) or a rotation (3×3).
     """

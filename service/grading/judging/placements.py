@@ -40,11 +40,10 @@ AXIS, Z, ORIGIN, X = 0, 1, slice(2, 5), 5
 
 @dataclass(frozen=True, slots=True)
 class FramesAtHome:
-    """The frames to be placed and the given frames, with all joint variables 0.
+    """The frames to be placed and the given frames, with all joint variables 0."""
 
-    ``joints`` are the numbers of the frames' joints. ``base`` and ``tool`` are ``(SAMPLES, 4, 4)``.
-    """
-
+    # ``joints`` are the numbers of the frames' joints. ``base`` and ``tool`` are ``(SAMPLES, 4,
+    # 4)``.
     convention: Convention
     asked: tuple[AskedFrame, ...]
     joints: tuple[int, ...]
@@ -151,9 +150,9 @@ def ways_to_judge(
     written: Sequence[StudentFrame] | None,
     home: Samples,
 ) -> list[JudgedFrames]:
-    """Judge placed frames in several ways, which differ in the axes of sliding joints.
+    """Judge placed frames in several ways, because the axis of a sliding joint has no fixed place.
 
-    ``written`` are the student's entries, which may be rounded.
+    ``written`` are the student's entries.
     """
     # The axis of a sliding joint has no fixed place. The first way puts each sliding axis through
     # the origin that the student chose, if the rules allow that. If cells are then wrong, the other
@@ -246,17 +245,16 @@ def _match(error: float, slack: float) -> int:
 
 
 def lazy_frames(robot: FramesAtHome) -> list[PlacedFrame]:
-    """Return frames at the base frame with the correct joint numbers: they need no geometry."""
+    """Return an answer that needs no geometry: all frames are equal to the base frame."""
+    # The joint numbers are correct.
     count = len(robot.base)
     z, x = (np.tile(np.eye(3)[i], (count, 1)) for i in (2, 0))
     return [PlacedFrame(joint, z, 0.0, np.zeros((3, count)), 0.0, x, 0.0) for joint in robot.joints]
 
 
 def known_frames(robot: FramesAtHome, home: Samples) -> NDArray[np.bool_]:
-    """Return a mask ``(frames, 6)`` of the cells that need geometry.
-
-    In these cells, frames that are all placed at the base frame are wrong.
-    """
+    """Return a mask ``(frames, 6)`` of the cells that need geometry."""
+    # In these cells, frames that are all placed at the base frame are wrong.
     everywhere = (True,) * len(robot.asked)
     judged = _judged(robot, lazy_frames(robot), None, home, everywhere)
     return np.asarray(judged.found == Match.DIFFERENT)

@@ -126,7 +126,7 @@ class Judgement:
 def judged_table(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Compare a student's table with the reference, or with the nearest valid table."""
+    """Compare a student's table with the reference table, or with one in the student's frames."""
     reference = grading.exercise.robot.tables.get(convention)
     if reference is None:
         return _judged_by_nearest(part, rows, convention, grading)
@@ -254,7 +254,8 @@ _UNREACHED = _TOOL_NOT_REACHED.finding(
 def judged_by_intended(
     intended: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Compare the table with the ``intended`` table ``(rows, 4, SAMPLES)``; no row is missing."""
+    """Compare a table with the table that the student intended; no row is missing."""
+    # ``intended`` is ``(rows, 4, SAMPLES)``.
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)
     judgement = _judged_by(nearest, roles, convention, grading)

@@ -31,7 +31,7 @@ from service.kinematics.dh import Convention
 def table_content(
     part: DhTableSpec, judgement: Judgement, convention: Convention, grading: Grading
 ) -> Content:
-    """Return the content cells: those that differ from zeros and bare joint variables."""
+    """Return the content cells of a table: the cells that need knowledge."""
     exercise = grading.exercise
     task = _Task(exercise.version, part.id, convention, part, exercise)
     # Unreadable cells alone do not increase the cost of a unit.

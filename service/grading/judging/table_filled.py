@@ -34,19 +34,15 @@ def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Gradi
 
 
 def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) -> StudentTable:
-    """Return the table with wrong numbers in ``cells`` ``(rows, 4)``.
-
-    The numbers are wrong whatever frames are chosen.
-    """
+    """Return the table with wrong numbers in ``cells`` ``(rows, 4)``."""
+    # The numbers are wrong whatever frames are chosen.
     numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
     return _filled(answer, cells, np.repeat(numbers, SAMPLES, axis=-1), GIVEN_UP)
 
 
 def with_wrong_rows(answer: StudentTable, more: int, grading: Grading) -> StudentTable:
-    """Return the table with ``more`` rows of wrong numbers at its end.
-
-    The numbers are wrong whatever frames are chosen.
-    """
+    """Return the table with ``more`` rows of wrong numbers at its end."""
+    # The numbers are wrong whatever frames are chosen.
     rows = len(answer.rows)
     numbers = out_of_place(rows + more, grading.exercise.length_scale)[rows:]
     values = np.repeat(numbers, SAMPLES, axis=-1)

@@ -70,7 +70,7 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """Judge the table row by row and cell by cell.
 
-    A wrong table is also judged with its columns in another order, and in other such ways.
+    A wrong table is also judged under other assumptions, such as another order of columns.
     """
     if np.isnan(answer.values).any():
         # Values for unread cells are looked for with what the judging itself leaves.
@@ -82,7 +82,8 @@ def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
 
 
 def judged_once(part: DhTableSpec, answer: StudentTable, grading: Grading) -> JudgedTable:
-    """Judge the table as written, in its convention. A correct table is not diagnosed."""
+    """Judge the table as written, in its convention."""
+    # A correct table is not diagnosed.
     convention, judgement, findings = judged_in_convention(part, answer, grading)
     notes = grading.messages((*answer.findings, *findings))
     judge_rows = _judged_wrong if judgement.wrong or judgement.slips else _judged_right

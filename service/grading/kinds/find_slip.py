@@ -50,9 +50,10 @@ _MARK_LINE: Final = re.compile(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.I
 class FoundSlip:
     """An answer: the marked cells and the corrected table.
 
-    ``table`` is None if it is missing or unreadable; ``unread`` has the reason.
+    ``table`` is None if it is missing or unreadable.
     """
 
+    # ``unread`` has the reason.
     marked: MarkedCells
     table: StudentTable | None
     unread: Finding | None = None

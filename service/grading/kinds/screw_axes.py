@@ -50,8 +50,9 @@ COSTS = {"body_for_space": 0.5, "space_for_body": 0.5}
 
 @dataclass(frozen=True, slots=True)
 class ExpectedScrews:
-    """The expected axes, and the same axes in the other frame: ``(joints, 6, SAMPLES)`` each."""
+    """The expected screw axes in the requested frame, and the same axes in the other frame."""
 
+    # ``(joints, 6, SAMPLES)`` each; ``labels`` are the joints' numbers.
     axes: Numbers
     elsewhere: Numbers | None
     labels: tuple[str, ...]

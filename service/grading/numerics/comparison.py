@@ -1,7 +1,7 @@
 """Compare values with the expected ones.
 
-Values are equal only if they are equal at all samples (random joint values). A rounded decimal with
-three or more figures is right.
+Values must be equal at all samples (random joint values). Decimals with at least three figures may
+be rounded.
 """
 
 # Arrays are ``(..., samples)``. No tolerance depends on the drawn samples, so that every draw gives
@@ -133,7 +133,8 @@ def is_rounded(
     *,
     angle: bool = False,
 ) -> bool:
-    """True if shifts of an entry's decimals make the entry equal ``expected`` ``(samples,)``."""
+    """True if rounding of an entry's decimals explains its difference from ``expected``."""
+    # ``expected`` is ``(samples,)``.
     if not expression.has_decimal or not 0 < len(decimals_of(expression).units) <= MAX_DECIMALS:
         return False
     # A table is compared several times, and most of its cells with the same numbers.
@@ -233,9 +234,9 @@ def _rounding_slack(expression: Expression, samples: Samples) -> float:
 def fitted_shifts(
     errors: Callable[[Numbers], Numbers], units: Numbers, tolerance: float
 ) -> Numbers | None:
-    """Return shifts ``(m,)`` of decimals that leave no error, or None.
+    """Find small shifts of decimals after which no error is left, or return None.
 
-    ``errors`` returns the errors ``(K, n)`` for shifts ``(K, m)``.
+    ``errors`` returns the errors ``(K, n)`` for K sets of shifts ``(K, m)``.
     """
     # ``units`` ``(m,)`` are the units of the decimals. Each shift is at most as large as rounding
     # or cutting off allows.
@@ -251,10 +252,8 @@ def fitted_shifts(
 
 
 def difference_steps(sizes: Numbers) -> Numbers:
-    """Return step sizes ``(N,)`` for computing derivatives by central differences.
-
-    ``sizes`` is the effect of each unknown.
-    """
+    """Return step sizes ``(N,)`` for computing derivatives by central differences."""
+    # ``sizes`` is the effect of each unknown.
     # The steps are about as large as the unknowns, and large compared with floating-point errors.
     return np.maximum(0.5, LEAST_STEP / sizes)
 
@@ -265,9 +264,9 @@ def fitted_unknowns(
     count: int,
     tolerance: float,
 ) -> Numbers | None:
-    """Return unknowns ``(N,)`` that leave no error, or None.
+    """Find values of the unknowns that leave no error, or return None.
 
-    ``linearised`` returns the errors ``(n,)`` for unknowns, and their derivative ``(n, N)``.
+    ``linearised`` returns the errors ``(n,)`` and their derivative ``(n, N)``.
     """
     # The first ``count`` unknowns are shifts. ``sizes`` ``(N,)`` is the direct effect of each
     # unknown on an error. All unknowns are small, so that the Gauss-Newton method needs few steps.
@@ -323,10 +322,8 @@ class SharedDecimals:
             self._parts, self.count, self.units = [], 0, np.zeros(0)
 
     def shifted(self, shifts: Numbers, values: Numbers) -> Numbers:
-        """Return ``values`` ``(entries, samples)`` with shifted decimals: ``(K, entries, ...)``.
-
-        ``shifts`` is ``(K, count)``.
-        """
+        """Return ``values`` with shifted decimals, for K sets of shifts ``(K, count)``."""
+        # ``values`` is ``(entries, samples)``, the result ``(K, entries, ...)``.
         moved = np.repeat(values[None], len(shifts), axis=0)
         for i, decimals, places, symbol_values in self._parts:
             moved[:, i] = decimals.shifted(shifts[:, places], symbol_values)

@@ -11,7 +11,7 @@ from service.kinematics.transforms import Numbers
 
 
 def halves(values: Numbers) -> tuple[Numbers, Numbers]:
-    """Return the halves of values ``(..., samples)``: same links, different joint values."""
+    """Split values in two halves, which have the same link lengths but other joint values."""
     half = values.shape[-1] // 2
     return values[..., :half], values[..., half:]
 
@@ -23,7 +23,7 @@ def changes(values: Numbers) -> Numbers:
 
 
 def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
-    """Return a mask of the values that change with the joints as ``motion`` or −``motion``."""
+    """Return a mask of the values whose change with the joints is ``motion`` or −``motion``."""
     # Values are ``(..., samples)``, ``motion`` is ``(..., samples / 2)``. The mask is false for
     # NaN.
     either_sign = np.array([motion, -motion])
@@ -72,7 +72,7 @@ def joint_counts(
 def coefficients(
     values: Numbers, joints: tuple[Joint, ...], samples: Samples, angle: NDArray[np.bool_]
 ) -> list[tuple[int, ...] | None]:
-    """Return the factors of the joint variables in each cell; None for a cell of another form."""
+    """Return the factors of the joint variables in each cell; None for a nonlinear cell."""
     counts, linear = joint_counts(values, joints, samples, angle)
     found = zip(counts.tolist(), linear.tolist(), strict=True)
     return [tuple(cell) if is_linear else None for cell, is_linear in found]

@@ -45,7 +45,7 @@ class Samples:
 
     @cached_property
     def memo(self) -> dict[str, Numbers]:
-        """The sines and cosines that expressions share at these samples."""
+        """Memoized sines and cosines of expressions at these samples."""
         return {}
 
     @cached_property
@@ -68,7 +68,7 @@ class Samples:
         return next(map(len, self.values.values()), self.bare_count)
 
     def subset(self, count: int) -> "Samples":
-        """Return the first ``count`` samples of each half."""
+        """Return a subset of the samples: the first ``count`` of each half."""
         return self.cached(
             count,
             lambda: Samples(
@@ -95,7 +95,7 @@ class Samples:
         return self.with_names(absent).values if absent else self.values
 
     def renamed(self, meanings: Mapping[str, str]) -> "Samples":
-        """Return these samples, where each name in ``meanings`` has the values of its meaning."""
+        """Return these samples with more names, each of which ``meanings`` maps to a symbol."""
         values = {name: self.values[meaning] for name, meaning in meanings.items()}
         return Samples({**self.values, **values}, self.in_degrees)
 
@@ -105,7 +105,7 @@ class Samples:
         return np.concatenate([values[..., :count], values[..., HALF : HALF + count]], axis=-1)
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:
-        """Return the values of the named symbols in one sample, with four figures."""
+        """Return the values of the named symbols in one sample, rounded to four figures."""
         units = {name: math.degrees if name in self.in_degrees else float for name in names}
         return {
             name: float(f"{units[name](values[sample]):.4g}")

@@ -1,1 +1,1 @@
-"""Read answers, as JSON or pasted text, as entries (single cells)."""
+"""Read answers in JSON or pasted text; each cell becomes an entry."""

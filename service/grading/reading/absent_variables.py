@@ -19,7 +19,8 @@ _FIRST_ABSENT_JOINT: Final = 1000
 
 @lru_cache(maxsize=256)
 def with_absent_variables(vocabulary: Vocabulary) -> Vocabulary:
-    """Return the vocabulary with the usual joint variables that it lacks, counted from 0."""
+    """Add the usual joint variables that the robot does not have to the vocabulary."""
+    # They are counted from 0.
     # Names such as ``d2`` are added only if some joint slides; otherwise they are unknown lengths.
     if not vocabulary.joints:
         return vocabulary

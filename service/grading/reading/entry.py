@@ -50,10 +50,10 @@ BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
 class Entry:
     """One cell as read: an expression, or the reason why it cannot be read.
 
-    Without an expression, ``verdict`` is MISSING or UNREADABLE. With an expression, the verdict is
-    not known yet.
+    Without an expression, ``verdict`` is MISSING or UNREADABLE.
     """
 
+    # With an expression, the verdict is not known yet.
     expression: Expression | None
     verdict: Verdict = Verdict.CORRECT
     findings: tuple[Finding, ...] = ()

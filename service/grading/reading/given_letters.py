@@ -25,7 +25,7 @@ _MOST: Final = 40
 
 
 def with_given_letters(grid: Grid, text: str, reader: Reader) -> Grid:
-    """Return the grid with letters replaced by the text's numbers, and a note on that."""
+    """Return the grid with numbers for the letters that a text defines, and a note on them."""
     given = _given(text, reader)
     used: dict[str, None] = {}
     rows = tuple(tuple(_cell(cell, given, used) for cell in row) for row in grid.rows)

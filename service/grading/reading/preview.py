@@ -41,10 +41,10 @@ class Problem:
 class CellPreview:
     """How one cell is read, as plain text, LaTeX and MathML; or the problem with it.
 
-    ``span`` is the cell's [from, to) in the pasted text, and ``typed`` the text there. ``entry`` is
-    the text that means the same in a single field.
+    ``span`` is the cell's [start, end) in the pasted text.
     """
 
+    # ``typed`` is the text there. ``entry`` is the text that means the same in a single field.
     # ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta"
     # or the column's number. ``entry`` differs from ``typed`` if the column's header has a unit. An
     # empty cell has neither a reading nor a problem. A cell beyond the work budget has no LaTeX and
@@ -66,7 +66,7 @@ class CellPreview:
 class PastedPreview:
     """How a pasted text is read: its rows, or the problem with the whole text.
 
-    All spans are [from, to) in the pasted text.
+    All spans are [start, end) in the pasted text.
     """
 
     # Rows are in the order in which they are graded; columns of a table are a, alpha, d, theta.

@@ -26,10 +26,8 @@ _NO_UNITS: Final = frozenset({"m", "in", "foot"})
 
 
 def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption says that lengths have another unit.
-
-    ``kinds`` are the quantities of the entries.
-    """
+    """Raise GridError if a comment or a caption says that lengths have another unit."""
+    # ``kinds`` are the quantities of the entries.
     # Without lengths, all comments are accepted.
     if "length" not in kinds or CONVERTS_LENGTHS.search(text):
         return
@@ -49,7 +47,7 @@ def comments(text: str) -> Iterator[re.Match[str]]:
 
 
 def comments_and_captions(text: str) -> Iterator[re.Match[str]]:
-    """Yield the comments and captions without numbers."""
+    """Yield the comments and captions that contain no digit."""
     captions = islice(_CAPTION.finditer(text), _MOST_COMMENTS)
     for found in chain(comments(text), captions):
         if not _DIGIT.search(found[found.lastindex or 0]):

@@ -93,7 +93,8 @@ def misnamed_value(name: LeftSide, asked: str) -> Finding:
 
 
 def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]:
-    """Return reordered entries with the note ``message`` in place of the notes on equations."""
+    """Return reordered entries with the note ``message`` on their order."""
+    # It replaces the notes on equations.
     # The note has no span, so that the report shows it once for all entries.
     note = reading_note("ordered_by_names", message)
     return tuple(

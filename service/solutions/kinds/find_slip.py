@@ -11,7 +11,7 @@ from service.solutions.work import Work
 
 
 def answer(part: FindSlipSpec, work: Work) -> PrintedAnswer:
-    """Return the cells to mark, and the mended table."""
+    """Return the cells to mark, and the corrected table."""
     robot = work.exercise.robot
     table = robot.tables[part.convention]
     drawn = slip_of(part, work.exercise)

@@ -13,7 +13,8 @@ from service.solutions.work import Work
 
 
 def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
-    """Return the axes that the exercise file gives, or else the robot's with all joints at 0."""
+    """Return the screw axes that the exercise file gives, or else those of the robot."""
+    # The robot's joints are at home.
     given = work.as_written(part)
     if given:
         return layout.matrix(given)

@@ -51,7 +51,7 @@ class _Loss:
 
 @dataclass(frozen=True, slots=True)
 class _Marks:
-    """What an answer has lost, in quarters or hundredths of a point."""
+    """The loss of an answer, in quarters or hundredths of a point."""
 
     worth: CellWorth
     lost: int

@@ -59,7 +59,7 @@ class CellWorth:
 
     @cached_property
     def groups(self) -> dict[int, int]:
-        """The largest loss of each group of cells, in steps."""
+        """For each group of cells, the largest loss, in quarters or hundredths of a point."""
         if self.is_fixed:
             counts = _counts(self.content)
             return {g: max(1, n * self.unit + self.least_besides) for g, n in counts.items()}
@@ -75,7 +75,7 @@ class CellWorth:
 
     @cached_property
     def units(self) -> dict[int, int]:
-        """The cost of a wrong cell that needs no knowledge, for each group of cells."""
+        """For each group of cells, the cost of a wrong cell that needs no knowledge."""
         units = dict.fromkeys(self.groups, self.unit)
         if not self.is_fixed:
             least: dict[int, int] = {}

@@ -1,8 +1,7 @@
-"""Find the poses that frame 0 may have if the student chose it.
+"""Find the poses that frame 0 may have if the student chose it."""
 
-Poses are compared with all joint variables 0. The joint screws and the pose there determine a chain
-(Lynch and Park, *Modern Robotics*, section 4.1).
-"""
+# Poses are compared with all joint variables 0. The joint screws and the pose there determine a
+# chain (Lynch and Park, *Modern Robotics*, section 4.1).
 
 from collections.abc import Iterator
 from itertools import accumulate, product
@@ -54,7 +53,7 @@ def possible_bases(
 
 
 def directed(frames: Matrices, signs: Integers) -> Matrices:
-    """Return the frames, with z reversed if the sign is −1."""
+    """Return the frames, with the z axis reversed where the sign is −1."""
     directed = frames.copy()
     directed[signs < 0, :, :3, :3] *= np.array([1.0, -1.0, -1.0])
     return directed

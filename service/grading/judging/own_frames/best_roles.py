@@ -64,10 +64,8 @@ def roles_in(
     *,
     in_order: bool | None = None,
 ) -> tuple[Role, ...]:
-    """Return each submitted row with its joint, and with rounded angles made exact.
-
-    ``in_order`` is true if the rows are in the order of the joints, None if unknown.
-    """
+    """Return each submitted row with its joint, and with rounded angles made exact."""
+    # ``in_order`` is true if the rows are in the order of the joints, None if unknown.
     expected_rows = expected_rows or usual_rows(convention, grading)
     rows = without_idle_rows(rows, expected_rows)
     joints = grading.exercise.robot.joints

@@ -79,10 +79,11 @@ class _Case:
 def completed(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable | None:
-    """Return the table if some values in its unread cells make it describe the robot, else None.
+    """Return the table if some values in its unreadable cells make it describe the robot.
 
-    The result has 0 in the unread cells, because these values are not unique.
+    Return None if there are no such values. The result has 0 in the unreadable cells.
     """
+    # The values are not unique.
     # The frames of the result are those of the reference. The directions of the joint axes count as
     # given.
     if any(role.row is None for role in roles):

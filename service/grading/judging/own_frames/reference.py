@@ -82,7 +82,7 @@ def frames_on_axes(
     convention: Convention,
     mechanism: Mechanism,
 ) -> Matrices:
-    """Return the student's frames on the joint axes, as seen from the reference frames.
+    """Return the student's frames on the joint axes, relative to the reference frames.
 
     The shape is ``(joints, ..., 4, 4)``.
     """

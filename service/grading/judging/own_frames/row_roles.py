@@ -1,4 +1,4 @@
-"""Pair the rows of a submitted table with joints, and read which frames an exercise leaves free.
+"""Pair the rows of a submitted table with joints.
 
 Each pair of a row and its joint is called a role.
 """
@@ -39,7 +39,7 @@ def freedom_of(part: DhTableSpec) -> FrameFreedom:
 class Role:
     """A row of a submitted table, and the joint that it belongs to.
 
-    ``joint`` is None for a fixed row. ``row`` is None if the student left out the joint's row.
+    ``joint`` is None for a row without a joint. ``row`` is None if the student left it out.
     """
 
     row: StudentRow | None

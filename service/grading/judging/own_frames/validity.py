@@ -1,4 +1,4 @@
-"""Test which of many tables describe the robot, whatever valid frames they use."""
+"""Test which of many tables describe the robot."""
 
 import numpy as np
 from numpy.typing import NDArray

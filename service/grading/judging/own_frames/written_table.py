@@ -40,7 +40,8 @@ class WrittenTable(Rereadable):
         return self.constants + self.motion
 
     def subset(self, count: int) -> "WrittenTable":
-        """Return the table at the first ``count`` samples of each half."""
+        """Return the table at a subset of the samples."""
+        # The first ``count`` samples of each half.
         constants, motion = (
             Samples.subset_of(cells, count) for cells in (self.constants, self.motion)
         )
@@ -51,7 +52,7 @@ class WrittenTable(Rereadable):
         return WrittenTable(constants, motion, self.convention, reference, exchanges)
 
     def changed(self, constants: Table, motion: Table | None = None) -> "WrittenTable":
-        """Return the table with these constants, and with this motion if it is given."""
+        """Return a copy of the table with other constants or another motion."""
         # ``replace`` takes three times as long, and one diagnosis builds dozens of hypotheses.
         moves = self.motion if motion is None else motion
         return WrittenTable(constants, moves, self.convention, self.reference, self.exchanges)

@@ -34,10 +34,8 @@ _CHANGED = register(
 
 
 def with_given_rows(part: DhTableSpec, table: StudentTable, grading: Grading) -> StudentTable:
-    """Return the table with the given rows as the exercise gives them.
-
-    A table with too many rows is unchanged.
-    """
+    """Return the table with the rows that the exercise gives."""
+    # A table with too many rows is unchanged.
     if not part.given or not table.rows:
         return table
     robot = grading.exercise.robot

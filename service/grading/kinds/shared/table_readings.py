@@ -1,7 +1,9 @@
 """Interpret a wrong table in several ways, called readings, and take the best one.
 
-The first reading is the table as written. Others have, for example, the columns in another order.
+One reading has, for example, the columns in another order.
 """
+
+# The first reading is the table as written.
 
 # Others are the table with other joint numbers, with its columns in another order, with its lengths
 # in another unit, or with a and d of one row exchanged. All readings are judged in the same way. A
@@ -63,10 +65,11 @@ class _Reading(NamedTuple):
 def best_reading(
     part: DhTableSpec, table: StudentTable, first: JudgedTable, judge: Judge, grading: Grading
 ) -> Judged:
-    """Return the judgement of a wrong table in its best interpretation, with limited points.
+    """Return the judgement of a wrong table in its best interpretation.
 
     ``first`` is the judgement of the table as written.
     """
+    # The points are limited.
     work = search_work(part, table, grading)
     readings = _Readings(part, judge, work, grading)
     written = readings.limited(table, first)

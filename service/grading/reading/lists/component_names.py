@@ -1,4 +1,6 @@
-"""Find the places in a list that names such as x, p_y, φ or pitch may mean."""
+"""Find the place in a list that a name such as x, p_y, φ or pitch means."""
+
+# A name may mean several places.
 
 import re
 import unicodedata

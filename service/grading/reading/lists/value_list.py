@@ -44,10 +44,10 @@ def read_list(
 ) -> StudentValues:
     """Read a list of values, one for each of the expected ``names``.
 
-    Values with names, such as y = l1 s1, are ordered by their names. One of the ``tails`` may
-    follow the values, as in [x, y, 0]. Raises UnreadableAnswerError if there is no list of the
-    expected length.
+    Values with names, such as y = l1 s1, are ordered by their names. Raises UnreadableAnswerError
+    if there is no list of the expected length.
     """
+    # One of the ``tails`` may follow the values, as in [x, y, 0].
     # A list may also be a column (a list of lists with one value each), a row within a list, or
     # pasted text. Omitted values at the end are missing. A value with the name of another place is
     # unreadable. A tail is ignored, with a note.

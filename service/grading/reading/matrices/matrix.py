@@ -59,9 +59,9 @@ class StudentMatrix:
 def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> StudentMatrix:
     """Read the matrix in a nested list or a pasted text.
 
-    Omitted rows at the end are missing. Raises UnreadableAnswerError if there are no rows, or too
-    many.
+    Raises UnreadableAnswerError if there are no rows, or too many.
     """
+    # Omitted rows at the end are missing.
     # A row of the wrong length is unreadable, because its entries are ambiguous.
     return matrix_of_entries(_entries(answer, quantities, reader), quantities, reader)
 
@@ -72,7 +72,7 @@ def matrix_of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> Studen
 
 
 def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) -> StudentMatrix:
-    """Return an unreadable matrix; its first entry has the finding."""
+    """Return an unreadable matrix; its first entry has the message."""
     entries = [_unreadable_row(None, kinds) for kinds in quantities]
     entries[0] = _unreadable_row(finding, quantities[0])
     return matrix_of_entries(entries, quantities, reader)
@@ -81,7 +81,8 @@ def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) 
 def matrix_of_entries(
     entries: list[list[Entry]], quantities: Quantities, reader: Reader
 ) -> StudentMatrix:
-    """Return the matrix with these rows; omitted rows at the end are missing."""
+    """Return the matrix with these rows."""
+    # Omitted rows at the end are missing.
     entries = [*entries, *([MISSING] * len(row) for row in quantities[len(entries) :])]
     return StudentMatrix(entries, quantities, matrix_values(entries, quantities, reader.samples))
 

@@ -31,9 +31,9 @@ def read_matrices(
 ) -> list[StudentMatrix]:
     """Read the matrices of a pasted text, one for each label.
 
-    The entries of an absent matrix are missing. Raises UnreadableAnswerError if the matrices cannot
-    be found or identified.
+    Raises UnreadableAnswerError if the matrices cannot be found or identified.
     """
+    # The entries of an absent matrix are missing.
     # Matrices are identified by their names, if they have any. An unreadable matrix affects only
     # itself.
     if not text.strip():

@@ -46,10 +46,8 @@ def is_product(name: str) -> bool:
 
 
 def places_of(names: Sequence[Indices], count: int) -> tuple[tuple[_Place, ...], str]:
-    """Return which link transform each name means, 1 to ``count`` or None, and a note.
-
-    The note is on unusual counting.
-    """
+    """Return the number (or None) of each named link transform, and a note on unusual counting."""
+    # The numbers are 1 to ``count``.
     # There are several ways to count: A0 may be the first link, and 12 may be the twelfth link or
     # the link between frames 1 and 2. The way that gives the most link transforms is chosen. The
     # note is empty for usual counting.

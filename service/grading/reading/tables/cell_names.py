@@ -25,10 +25,7 @@ _SHIFTED: Final = frozenset({"a", "alpha"})
 
 
 def arranged_row(cells: Sequence[object], vocabulary: Vocabulary) -> Arrangement | None:
-    """Arrange the four cells of a row by their names.
-
-    Return None if no name contradicts its column.
-    """
+    """Arrange the four cells of a row by their names; None if they are in order."""
     return arranged(cells, _LABELS, _columns_of, vocabulary)
 
 
@@ -38,10 +35,8 @@ def _columns_of(names: Sequence[LeftSide | None], _: Vocabulary) -> list[Places]
 
 
 def first_number(rows: Sequence[Sequence[object]], vocabulary: Vocabulary) -> int | None:
-    """Return the number of the first row: 0 if its θ or d has the index 0, else 1.
-
-    Return None for a single row, which may belong to any joint.
-    """
+    """Return the number of the first row: 0 if its θ or d has the index 0, else 1."""
+    # None for a single row, which may belong to any joint.
     if len(rows) < 2:
         return None
     names = [name_of(cell, vocabulary) for cell in rows[0]]
@@ -58,10 +53,9 @@ def row_entries(
     placed: Callable[[int, Entry], Entry],
     vocabulary: Vocabulary,
 ) -> tuple[Entry, ...]:
-    """Return the entries of a row, whose ``cells`` were arranged as in ``found``.
-
-    ``read`` returns the entry of a column. ``placed`` counts its spans in the whole text.
-    """
+    """Return the entries of a row whose ``cells`` were arranged by their names."""
+    # ``found`` is the arrangement. ``read`` returns the entry of a column. ``placed`` moves the
+    # spans of an entry from its cell to the whole text.
     entries: list[Entry] = []
     for column, cell in enumerate(cells):
         wrong = found.misnamed.get(column) if found else None

@@ -290,10 +290,9 @@ _NO_SAMPLES: Final = Samples({})
 
 
 def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
-    """Read the cells of row ``number``, which is None if unknown.
-
-    A cell is a JSON value, or the finding that says why the cell is unreadable.
-    """
+    """Read the four cells of one row as entries."""
+    # A cell is a JSON value, or the finding that says why the cell is unreadable. ``number`` is
+    # None if unknown.
     found = arranged_row(cells, reader.vocabulary)
     ordered = [cells[i] for i in found.order] if found else cells
 

@@ -1,4 +1,4 @@
-"""Convert lengths below a header with another unit than the exercise has, such as mm for m."""
+"""Convert the lengths in a column from the header's unit to the exercise's unit."""
 
 from dataclasses import replace
 

@@ -32,7 +32,7 @@ class MarkedCells:
 
     @property
     def verdict(self) -> Verdict | None:
-        """MISSING or UNREADABLE; None if there are readable marks."""
+        """The verdict MISSING or UNREADABLE, or None if there are readable marks."""
         if self.findings:
             return Verdict.UNREADABLE
         return None if self.cells else Verdict.MISSING

@@ -1,4 +1,6 @@
-"""Read a pasted DH table as rows of entries. Spans count in the whole pasted text."""
+"""Read a pasted DH table as rows of entries."""
+
+# Spans count in the whole pasted text.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace

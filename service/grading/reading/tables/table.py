@@ -61,12 +61,12 @@ class StudentRow:
 
     @property
     def is_exact(self) -> bool:
-        """True if the values are the numbers as written."""
+        """True if the numbers are those that the student wrote."""
         return self.as_written is None
 
     @property
     def handed_in(self) -> Table:
-        """The numbers as written."""
+        """The numbers that the student wrote."""
         return self.values if self.as_written is None else self.as_written
 
     @property
@@ -93,7 +93,7 @@ class StudentRow:
         return False
 
     def values_at(self, samples: Samples) -> Table:
-        """Return the numbers as written, at other samples."""
+        """Return the numbers that the student wrote, at other samples."""
         return np.asarray(_values([self.entries], samples)[0])
 
     @property
@@ -125,10 +125,11 @@ Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
 
 
 def without_empty_end(table: StudentTable, joints: int, asked: int) -> StudentTable:
-    """Return the table without empty rows after the rows of all joints.
+    """Return the table without empty rows at its end.
 
     A table with more rows than ``asked`` is unchanged.
     """
+    # The rows of all joints are kept.
     # A table that is correct in the other convention may have one row fewer than the form. Such a
     # table is recognized only without the empty row at its end. An extra empty row costs as much as
     # an extra wrong row.
@@ -357,7 +358,7 @@ _NOT_VALUES = reading_error("wrong_shape", say("Write the four values a, α, d, 
 
 
 def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
-    """Return the numbers of the rows as written, at other samples: ``(rows, 4, samples)``."""
+    """Return the numbers that the student wrote, at other samples: ``(rows, 4, samples)``."""
     return _values([row.entries for row in rows], samples)
 
 

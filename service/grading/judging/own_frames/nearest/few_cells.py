@@ -51,12 +51,13 @@ UNREAD = WRONG_CELL / 10
 
 @dataclass(frozen=True, slots=True)
 class NearestTable:
-    """The valid table, which describes the robot, that is nearest to the submitted table.
+    """The table that describes the robot and is nearest to the submitted table.
 
-    ``frames`` are its frames on the joint axes, as seen from the reference frames. The submitted
-    table is valid if ``cost`` is below 1.
+    The submitted table is valid if ``cost`` is below 1.
     """
 
+    # ``frames`` are the valid table's frames on the joint axes, as seen from the reference's
+    # frames.
     # ``frames`` is ``(joints, samples, 4, 4)``; ``frame_choice`` explains ``cost``. ``lost`` is the
     # loss for the wrong cells: a single wrong cell loses one unit. It is computed for the valid
     # table with the smallest loss (not always this table), and infinite if unknown.
@@ -120,7 +121,7 @@ def nearest_by_few_cells(
 def single_repairs(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> frozenset[CellIndex]:
-    """Return the cells that can each be repaired alone, so that the table describes the robot.
+    """Return the cells of which each, if corrected alone, makes the table describe the robot.
 
     Every row and every cell must have a value.
     """
@@ -134,10 +135,11 @@ def single_repairs(
 def frames_from_reference(
     table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Matrices:
-    """Return a table's frames on the joint axes, as seen from the reference's frames.
+    """Return a table's frames on the joint axes, relative to the reference frames.
 
-    The shape is ``(joints, samples, 4, 4)``, at a subset of the samples.
+    The shape is ``(joints, samples, 4, 4)``.
     """
+    # At a subset of the samples.
     reached = frames(table[..., SUBSET_SAMPLES], convention)[:, None]
     return _from_reference(reached, roles, convention, grading)[:, 0]
 

@@ -192,10 +192,8 @@ def _searched(
 def parallel_neighbours(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NDArray[np.bool_]:
-    """Return a mask ``(rows,)`` of the rows whose axis is parallel to a neighbouring axis.
-
-    Offsets along parallel axes add up.
-    """
+    """Return a mask ``(rows,)`` of the rows whose axis is parallel to a neighbouring axis."""
+    # Offsets along parallel axes add up.
     reference = reference_frames(grading.exercise, convention, grading.samples)
     axes = reference[:, :2, :3, 2]
     parallel = np.abs(cross(axes[:-1], axes[1:])).max(axis=(1, 2)) < PARALLEL

@@ -49,8 +49,9 @@ SUBSET = 2
 
 @dataclass(frozen=True, slots=True)
 class _Repair:
-    """A new constant for a cell, and the pose of one end of the chain after this repair."""
+    """A repair of one cell by a new constant."""
 
+    # With the pose of one end of the chain after this repair.
     # The end is the last frame if ``is_last`` is true, else frame 0. Its pose ``(L, 4, 4)`` is in
     # the reference's frame 0. ``attempt`` is the index of the assumption on which the repair is
     # based.
@@ -63,8 +64,7 @@ class _Repair:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    """A table as a product of factors, and the reference's axes in the same order."""
-
+    # A table as a product of factors, and the reference's axes in the same order.
     # ``joints`` ``(n,)`` are the indices of the factors that a joint moves. ``axes`` ``(n, L, 4,
     # 4)`` are the correct poses of the joint axes in the reference's frame 0. ``is_reversed`` is
     # true if the factors start from the last frame instead of frame 0.
@@ -95,7 +95,7 @@ class _Body:
 
 @dataclass(frozen=True, slots=True)
 class _Case:
-    """A table to be repaired, as constants, and the mechanism of the reference."""
+    """A table to be repaired, and the robot of the reference table."""
 
     # The constants are ``(rows, 4, L)``. ``wrong`` are the cells that are wrong whatever frames are
     # chosen. ``joint_signs`` ``(rows + 1,)`` are the signs of the joint variables, 0 if irrelevant.
@@ -125,7 +125,7 @@ class _Case:
 
 @dataclass(frozen=True, slots=True)
 class _Repaired:
-    """Repairs that make the table valid, and the repaired tables."""
+    """Repairs after which the table describes the robot, and the repaired tables."""
 
     # There are T repairs. ``links`` is ``(T, rows + 1, 4, L)``; ``poses`` ``(rows + 1, T, L, 4,
     # 4)`` are the relative poses of the repaired tables.

@@ -27,10 +27,8 @@ def out_of_place(rows: int, length_scale: float) -> Table:
 def with_spoiled_row(
     roles: tuple[Role, ...], expected: Table, length_scale: float
 ) -> tuple[Role, ...] | None:
-    """Replace the only row that differs from ``expected`` by wrong numbers.
-
-    Return None if several rows differ, or none can be replaced.
-    """
+    """Replace the only row that differs from ``expected`` by wrong numbers, or return None."""
+    # None if several rows differ, if the row is missing, or if it was replaced before.
     handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
     right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)
     wrong = np.flatnonzero(~right).tolist()

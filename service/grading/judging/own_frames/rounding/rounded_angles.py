@@ -76,7 +76,8 @@ def _slack_of_angles(
 def slack_of_cells(
     roles: tuple[Role, ...], samples: Samples, columns: NDArray[np.bool_] = EVERY_COLUMN
 ) -> Numbers:
-    """Return the largest possible rounding error of each cell; 0 outside ``columns``."""
+    """Return the largest possible rounding error of each cell."""
+    # 0 outside ``columns``.
     slack = np.zeros((len(roles), len(COLUMNS)))
     for i, role in enumerate(roles):
         for column in np.flatnonzero(columns).tolist() if role.row else ():

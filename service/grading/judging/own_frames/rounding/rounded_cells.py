@@ -1,8 +1,9 @@
 """Correct the rounding of all decimals of a table at once, so that it describes the robot.
 
-Each decimal is shifted by at most a unit of its last place. So a less precise decimal cannot hide a
-wrong number.
+Each decimal is shifted by at most a unit of its last place.
 """
+
+# So a less precise decimal cannot hide a wrong number.
 
 # In a row of parallel axes it does not matter which offset was rounded. The errors of the chain
 # depend almost linearly on the shifts (``kinematics.chain_match``). The pose of a free base may
@@ -54,8 +55,9 @@ LEAST_SIZE = 1e-16
 
 @dataclass(frozen=True, slots=True)
 class _Chain:
-    """A table to be made valid, at L sets of links."""
+    """A table whose decimals are shifted until it describes the robot."""
 
+    # At L sets of link lengths.
     # ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of the table; ``values`` ``(rows,
     # 4, SAMPLES)`` are its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or
     # None if frame 0 is given. The ``unknown`` cells may have any value.
@@ -156,10 +158,11 @@ def with_true_numbers(
 def with_rounded_cells(
     nearest: NearestTable, convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> NearestTable:
-    """Return the valid table nearest to a wrong table, computed from the exact numbers.
+    """Find the nearest valid table again, with exact numbers for rounded decimals.
 
-    ``nearest`` was computed from the rounded decimals.
+    A valid table describes the robot.
     """
+    # ``nearest`` was computed from the rounded decimals.
     # So even its correct cells differ slightly from the written cells.
     roles = nearest.roles
     if nearest.cost < WRONG_CELL or not _has_decimals(roles):
