@@ -17,7 +17,7 @@ class Shown:
 
 @dataclass(frozen=True, slots=True)
 class PrintedAnswer(Shown):
-    """An answer. ``answer`` is its JSON value, or None if it is too long to be handed in."""
+    """An answer. ``answer`` is its JSON value, or None if it is too long to be submitted."""
 
     answer: object
 
@@ -64,5 +64,5 @@ class ModelSolution:
 
     @property
     def answers(self) -> dict[str, object]:
-        """The answers of all parts by part id, as in a submission."""
+        """The answer to each part, by the part's id."""
         return {part.part: part.answer for part in self.parts}

@@ -66,7 +66,7 @@ class Pose:
 
 @dataclass(frozen=True, slots=True)
 class Normal:
-    """A product of motions whose constant rotation is at the right end."""
+    """A product of motions, sorted so that its constant rotation comes last."""
 
     # The factors are the shift ``start``, the turns, each followed by a shift, and the rotation
     # ``end``.

@@ -1,4 +1,4 @@
-"""The sheet that a figure is drawn on: its layers, the taken room, and the SVG."""
+"""The sheet that a figure is drawn on: its layers, its labels' room, and the SVG."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

@@ -85,7 +85,8 @@ def perpendicular(direction: Numbers, wanted: Numbers) -> Numbers:
 def cylinder(
     camera: Camera, centre: Numbers, axis: Numbers, half: float, radius: float, fill: str
 ) -> Solid:
-    """Return a revolute joint: a cylinder about its axis. ``fill`` is the id of its gradient."""
+    """Return a revolute joint, drawn as a cylinder about its axis."""
+    # ``fill`` is the id of its gradient.
     spine = np.linspace(centre - half * axis, centre + half * axis, 9)
     near = axis if axis @ camera.towards >= 0 else -axis
     tilt = float(near @ camera.towards)
@@ -114,10 +115,8 @@ def cylinder(
 
 
 def box(camera: Camera, centre: Numbers, axis: Numbers, half: float, width: float) -> Solid:
-    """Return a prismatic joint: a box along its axis.
-
-    ``half`` is half the length of the box, and ``width`` is half its width.
-    """
+    """Return a prismatic joint, drawn as a box along its axis."""
+    # ``half`` is half the length of the box, and ``width`` is half its width.
     one = perpendicular(axis, np.array([0.0, 0.0, 1.0]))
     edges = [axis * half, one * width, np.cross(axis, one) * width]
     faces = []
@@ -138,7 +137,8 @@ def box(camera: Camera, centre: Numbers, axis: Numbers, half: float, width: floa
 
 
 def rod(camera: Camera, corners: Numbers, width: float) -> Solid:
-    """Return a link: a rod along its corners ``(points, 3)``; ``width`` is in pixels."""
+    """Return a link, drawn as a rod along its corners ``(points, 3)``."""
+    # ``width`` is in pixels.
     flat = camera.seen(corners)
     svg = polyline(flat, "rim", width + 2.6) + polyline(flat, "rod", width)
     return Solid(svg, along(corners), width / 2)
@@ -153,10 +153,8 @@ def along(corners: Numbers, pieces: int = 8) -> Numbers:
 def gripper(
     camera: Camera, tool: Numbers, direction: Numbers, length: float, width: float
 ) -> Solid:
-    """Return a gripper whose two fingertips are at the tool point, opened across the picture.
-
-    ``width`` is the width of its fingers in pixels.
-    """
+    """Return a gripper whose two fingertips are at the tool point."""
+    # It is opened across the picture. ``width`` is the width of its fingers in pixels.
     aside = np.cross(direction, camera.towards)
     size = float(np.linalg.norm(aside))
     aside = perpendicular(direction, camera.rotation[0]) if size < 1e-6 else aside / size

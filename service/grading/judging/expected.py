@@ -1,4 +1,4 @@
-"""The correct answer to a part in numbers, from the robot's frames or the part's formulas."""
+"""Compute the correct answer to a part of an exercise in numbers."""
 
 import numpy as np
 
@@ -12,10 +12,8 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 
 
 def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
-    """Return the values of the formulas in the part's file, ``(rows, columns, SAMPLES)``.
-
-    Return None if the file has no formulas.
-    """
+    """Return the values of the part's formulas in the exercise file, or None."""
+    # ``(rows, columns, SAMPLES)``. Without formulas, the correct answer follows from the robot.
     grid = grading.exercise.formulas.get(part.id)
     return None if grid is None else grid_values(grid, grading.samples.values, SAMPLES)
 

@@ -263,10 +263,8 @@ def known_frames(robot: FramesAtHome, home: Samples) -> NDArray[np.bool_]:
 def table_of_frames(
     robot: FramesAtHome, placed: Sequence[PlacedFrame], exercise: Exercise, samples: Samples
 ) -> Table:
-    """Return the DH table ``(rows, 4, samples)`` that follows from correct frames.
-
-    If the z axis of a frame is opposite to its joint's axis, the joint variable has a minus sign.
-    """
+    """Return the DH table ``(rows, 4, samples)`` that follows from correct frames."""
+    # If the z axis of a frame is opposite to its joint's axis, the joint variable has a minus sign.
     frames = [robot.base]
     senses = {0: np.ones(len(robot.base))} if robot.convention is Convention.STANDARD else {}
     for asked, frame in zip(robot.asked, placed, strict=True):

@@ -69,7 +69,7 @@ _ROW_TOO_MANY = register(
 def row_places(
     table: StudentTable, judgement: Judgement, convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
-    """Return the finding on rows that are graded under another number than in the answer."""
+    """Return a message on the rows that are graded under another number."""
     robot = grading.exercise.robot
     reference = robot.tables.get(convention)
     labels = [str(joint.index) for joint in robot.joints]

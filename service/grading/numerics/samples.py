@@ -101,7 +101,8 @@ class Samples:
 
     @staticmethod
     def subset_of(values: Numbers, count: int) -> Numbers:
-        """Return the values ``(..., SAMPLES)`` at the samples that ``subset`` keeps."""
+        """Return values ``(..., SAMPLES)`` at a subset of the samples."""
+        # The same subset as in ``subset``.
         return np.concatenate([values[..., :count], values[..., HALF : HALF + count]], axis=-1)
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:

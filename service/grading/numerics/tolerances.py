@@ -1,8 +1,10 @@
-"""All tolerances of grading, with their reasons; tolerances of poses are in kinematics.
+"""All tolerances of grading, with their reasons.
 
 Unless stated otherwise, lengths are in units of the exercise's typical length, and angles are in
 radians.
 """
+
+# Tolerances of poses are in kinematics.
 
 from typing import Final
 

@@ -41,7 +41,7 @@ _Verdicts = Sequence[Sequence[Verdict]]
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """Points lost in one row, or in the whole answer if ``row`` is None."""
+    """The points lost in one row, or in the whole answer if ``row`` is None."""
 
     # ``steps`` are quarters or hundredths of a point.
     code: str

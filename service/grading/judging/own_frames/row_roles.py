@@ -23,7 +23,7 @@ _NOTHING = np.full((len(COLUMNS), SAMPLES), np.nan)
 
 @dataclass(frozen=True, slots=True)
 class FrameFreedom:
-    """Which of base frame, tool frame and axis directions the student may choose."""
+    """What an exercise lets the student choose: base frame, tool frame, axis directions."""
 
     base: bool = False
     tool: bool = False

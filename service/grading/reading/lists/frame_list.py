@@ -265,7 +265,7 @@ def _components(text: str) -> list[object] | None:
 
 
 def unread_verdict(entries: Sequence[Entry]) -> Verdict | None:
-    """Return the verdict on a cell that could not be read, or None."""
+    """Return the verdict on a cell that could not be read; None if it was read."""
     return next((entry.verdict for entry in entries if not entry.readable), None)
 
 

@@ -52,7 +52,7 @@ class StudentMatrix:
         return np.where(np.array(empty)[..., None], 0.0, self.values)
 
     def values_at(self, samples: Samples) -> Numbers:
-        """Return the values at other samples."""
+        """Return the values of the entries at other samples (random joint values)."""
         return matrix_values(self.entries, self.quantities, samples)
 
 

@@ -112,7 +112,7 @@ def _of_columns(grid: Grid) -> Grid:
 
 
 def columns_as_axes(grid: Grid) -> Note:
-    """Return the note that the columns of a matrix were read as the axes."""
+    """Return the note that the columns of a matrix were read as the screw axes."""
     place = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
     return Note("columns_as_axes", say("The columns were read as the axes."), place)
 

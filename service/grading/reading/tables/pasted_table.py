@@ -125,7 +125,8 @@ def table_of(
 
 
 def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
-    """Return the DH rows of the robot in a script; the angles of its links are in radians."""
+    """Return the DH rows of the robot in a pasted script."""
+    # The angles of its links are in radians.
     # Raises GridError if the table has headers that cannot be identified.
     if robot.has_headers:
         return table_of(robot.grid, reader)
