@@ -1,15 +1,12 @@
 """Limit the points of a wrong table, so that an empty row never earns more than a wrong row.
 
-The frames that a student chose are found by comparing rows. A wrong row can mislead this search, so
-that correct rows look wrong; an empty row cannot. So a wrong table earns at least as much as the
-same table with one wrong row replaced by numbers that are wrong in all frames. A table with empty
-cells earns at most as much as the same table with such numbers in these cells. A table with wrong
-rows after the rows of all joints earns at least as much as the table without these rows, because
-empty rows at the end are left out.
+A wrong row can mislead the search for the frames that the student chose. Then correct rows look
+wrong. An empty row cannot do that.
 """
 
 # So a wrong table earns at least as much as the same table with one wrong row replaced by numbers
-# that are wrong in all frames. A table with empty cells earns at most as much as the same table
+# that are wrong in all frames, and as the table without the wrong rows after the rows of all joints
+# (there, empty rows are left out). A table with empty cells earns at most as much as the same table
 # with such numbers in these cells.
 
 from collections.abc import Callable
@@ -44,14 +41,11 @@ AGAIN = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FairPoints:
-    """Limits the points of wrong tables.
-
-    ``judged_again`` judges other tables, whose points are the limits.
-    """
-    # ``work`` is the work of judging a table with messages.
+    """Limits the points of wrong tables to those of other tables, which ``judged_again`` judges."""
 
     part: DhTableSpec
     judged_again: Callable[[StudentTable], Judged]
+    # The work of judging a table with messages.
     work: float
     grading: Grading
 
