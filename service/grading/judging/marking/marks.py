@@ -89,9 +89,14 @@ def unjudged_report(
     part: PartSpec, verdict: Verdict, feedback: tuple[Feedback, ...] = ()
 ) -> PartReport:
     """Return the report on a part without an answer, or with an unreadable answer."""
+    report = _without_rows(part.id, part.kind, part.points, verdict)
+    return replace(report, feedback=feedback) if feedback else report
+
+
+@lru_cache(maxsize=1024)
+def _without_rows(part: str, kind: str, points: float, verdict: Verdict) -> PartReport:
     code = NO_ANSWER if verdict is Verdict.MISSING else NOT_READ
-    lost = (lost_points(code, part.points),)
-    return PartReport(part.id, part.kind, verdict, 0.0, part.points, False, (), feedback, lost)
+    return PartReport(part, kind, verdict, 0.0, points, False, (), (), (lost_points(code, points),))
 
 
 def has_earned(part: PartSpec, judged: Judged, share: float) -> bool:
