@@ -24,11 +24,12 @@ UNIT_FACTORS: Final = (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001)
 
 
 def axes_of_row(axis: str, label: str, last: int) -> str:
-    """Return the names of the two x or z axes that a row connects; ``axis`` is "x" or "z".
+    """Return the names of the two x or z axes that a row connects.
 
-    ``label`` is the label of the row; ``last`` is the number of the last joint. For some fixed rows
-    the axes have no numbers; then the result is "the two z axes".
+    ``axis`` is "x" or "z", and ``last`` is the number of the last joint.
     """
+    # label is the label of the row. For some fixed rows the axes have no numbers; then the result
+    # is "the two z axes".
     if label.isdecimal() and label != "0":
         return listed([f"{axis}{int(label) - 1}", f"{axis}{label}"])
     if label == "e":
@@ -55,7 +56,7 @@ def wrong_throughout(column: int) -> Sentence:
 
 
 def change_every_sign(column: int) -> Sentence:
-    """Return the correction of a column in which every sign is wrong."""
+    """Return the correction for a column in which every sign is wrong."""
     return say("Change the sign of every {symbol}.", symbol=SYMBOLS[column])
 
 

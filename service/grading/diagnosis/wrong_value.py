@@ -1,4 +1,4 @@
-"""A wrong value, a wrong table cell and a wrong array, and how hypotheses explain them."""
+"""Wrong values, table cells and arrays, and how misconceptions explain them."""
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
@@ -33,39 +33,37 @@ Hypotheses = Iterator[Hypothesis[Numbers]]
 
 @dataclass(frozen=True, kw_only=True)
 class WrongValue:
-    """A submitted value that differs from the expected value.
-
-    ``actual`` and ``expected`` are ``(SAMPLES,)``, angles in radians. ``correction`` is the correct
-    answer as the student would write it. It is None if no formula is known, or if ``corrects`` is
-    False: then the report must not contain corrections.
-    """
+    """A submitted value that differs from the expected value."""
 
     expression: Expression
+    # (SAMPLES,), like expected; angles in radians.
     actual: Numbers
     expected: Numbers
     samples: Samples
     scale: float
     angle: bool
+    # The correct answer as the student would write it, or None if no formula is known.
     correction: Correction | None = None
+    # If False, the report must not contain corrections.
     corrects: bool = True
     spelling: Spelling = PLAIN
 
     @property
     def constants(self) -> tuple[Numbers, Numbers]:
-        """The actual and the expected value that hypotheses are compared with."""
+        """The actual and the expected value."""
         return self.actual, self.expected
 
     @cached_property
     def slack(self) -> float:
-        """The largest error of the value that rounding can cause."""
+        """The largest error that rounding can cause in the value."""
         return rounding_slack(self.expression, self.samples)
 
     def equal(self, one: Numbers, other: Numbers) -> bool:
-        """True if two values of this quantity are equal within rounding."""
+        """True if two values are equal within rounding."""
         return same(one, other, self.scale, self.angle, self.slack)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Return the hypotheses that explain the value; each is compared on demand."""
+        """Return the misconceptions that explain the value."""
         return filter(self._is_explained_by, hypotheses)
 
     def _is_explained_by(self, hypothesis: Hypothesis[Any]) -> bool:
@@ -89,37 +87,39 @@ def finding_on(
     *,
     otherwise: str = "",
 ) -> Finding:
-    """Return a finding with the correction of the wrong value, or else with ``otherwise``."""
+    """Return a finding with a hint and the correction of the value."""
+    # Without a correction, otherwise takes its place.
     return Finding("", hint, case.correction or otherwise, values=values)
 
 
 @dataclass(frozen=True, kw_only=True)
 class WrongCell(WrongValue):
-    """A wrong table cell. ``joint`` is the row's joint, or None in a fixed row.
-
-    ``contained`` maps each joint to the factor of its variable in the student's cell. It is None if
-    the cell is not linear in the variables. ``required`` maps each joint to the factor in the
-    expected cell. ``shared`` is true if the joint's axis is parallel to a neighbouring axis, so
-    that offsets along both axes add up. ``joints`` are all joints of the robot. ``label`` is the
-    label of the row, "" if there is only one row.
-    """
+    """A wrong cell of a DH table."""
 
     column: int
+    # The joint of the row, or None in a fixed row.
     joint: Joint | None
+    # The factor of each joint's variable in the student's cell, or None if the cell is not linear
+    # in the variables.
     contained: Mapping[Joint, int] | None
+    # The factor of each joint's variable in the expected cell.
     required: Mapping[Joint, int]
+    # True if the joint's axis is parallel to a neighbouring axis, so that offsets along both axes
+    # add up.
     shared: bool = False
+    # All joints of the robot.
     joints: tuple[Joint, ...] = ()
+    # "" if there is only one row.
     label: str = ""
 
     @property
     def symbol(self) -> str:
-        """The parameter that the cell holds: a, α, d or θ."""
+        """The parameter in the cell: a, α, d or θ."""
         return SYMBOLS[self.column]
 
     @property
     def axis(self) -> str:
-        """The axis along or about which the parameter in the cell is measured: x or z."""
+        """The axis along or about which the cell is measured: x or z."""
         return AXES[self.column]
 
     def name(self, joint: Joint) -> str:
@@ -128,7 +128,7 @@ class WrongCell(WrongValue):
 
     @property
     def same_motion(self) -> bool:
-        """True if the cell changes with the joints as it should: only its constant is wrong."""
+        """True if only the constant of the cell is wrong, not its joint variables."""
         return self.contained == self.required
 
     @property
@@ -139,38 +139,35 @@ class WrongCell(WrongValue):
 
     @cached_property
     def constants(self) -> tuple[Numbers, Numbers]:
-        """The actual and the expected value without the joint variables that they share."""
+        """The actual and the expected value without the joint variables in both."""
         values = self.samples.values
         motion = sum(count * values[joint.variable] for joint, count in self.required.items())
         return self.actual - motion, self.expected - motion
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Return the hypotheses that explain the constant; none if the joint variables differ."""
+        """Return the misconceptions that explain the constant of the cell."""
+        # None of them does if the joint variables differ.
         return super().explained_by(hypotheses if self.same_motion else ())
 
 
 @dataclass(frozen=True)
 class WrongNumbers:
-    """Submitted numbers that differ from the expected numbers, ``(..., SAMPLES)`` each.
-
-    ``scale`` ``(...)`` is the size that the error of each number is compared with.
-    """
+    """Submitted numbers that differ from the expected numbers, ``(..., SAMPLES)`` each."""
 
     actual: Numbers
     expected: Numbers
+    # The size (...) that the error of each number is compared with.
     scale: ArrayLike
     angle: ClassVar[ArrayLike] = False
 
     def agree(self, one: Numbers, other: Numbers, entries: Index = ...) -> Mask:
-        """Return a mask ``(...)``: True where ``one`` equals ``other`` within rounding."""
+        """Return a mask ``(...)`` of the numbers that are equal within rounding."""
         scale = np.asarray(self.scale)[entries]
         return nearly_equal(one, other, scale, self.angle)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Return the hypotheses that explain the numbers, all compared at once.
-
-        All hypotheses must be about the same entries.
-        """
+        """Return the misconceptions that explain the numbers."""
+        # All hypotheses must be about the same entries, because they are compared at once.
         tried = list(hypotheses)
         if not tried:
             return []
@@ -199,7 +196,7 @@ UNEXPLAINED = "value"
     unlike={"6/d": "0"},
 )
 def undefined(case: WrongValue) -> Finding | None:
-    """The formula has no value at some pose of the robot: 1/0, √−1, or too large a number."""
+    """The formula has no value at some pose, for example 1/0 or √−1."""
     bad = np.flatnonzero(~np.isfinite(case.actual))
     if not bad.size:
         return None
@@ -222,10 +219,8 @@ def undefined(case: WrongValue) -> Finding | None:
 
 
 def differs(case: WrongValue, hint: str) -> Finding:
-    """Return a finding with ``hint`` and a counterexample, for a value that nothing else explains.
-
-    The counterexample is computed from the printed numbers, so that a pocket calculator agrees.
-    """
+    """Return a finding with a hint and a counterexample."""
+    # The counterexample is computed from the printed numbers, so that a pocket calculator agrees.
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None
     symbols = case.samples.values.keys() if alone else case.expression.symbols
@@ -238,7 +233,6 @@ def differs(case: WrongValue, hint: str) -> Finding:
 
 
 def _at_printed(case: WrongValue) -> float:
-    """Return the value of the student's entry, computed from the rounded numbers that are shown."""
     samples, names = case.samples, case.expression.symbols
     printed = {
         name: np.array([math.radians(number) if name in samples.in_degrees else number])
@@ -248,6 +242,5 @@ def _at_printed(case: WrongValue) -> float:
 
 
 def _printed(case: WrongValue, value: float) -> float:
-    """Return the value rounded to four digits, in degrees if the student uses degrees."""
     number = math.degrees(value) if case.angle and case.samples.in_degrees else value
     return 0.0 if abs(number) < PRINTED_NUMBER else float(f"{number:.4g}")

@@ -1,4 +1,4 @@
-"""A wrong entry, and the search for the formula that the student intended."""
+"""Search for the formula that the student intended with a wrong entry."""
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -27,24 +27,22 @@ MAX_TEXT = 200
 
 @dataclass(slots=True)
 class Rewritten(Repaired[Node]):
-    """A student's formula, rewritten as if the student did not have some misconception.
+    """The student's formula with one possible mistake corrected.
 
-    The misconception explains the wrong entry if the rewritten formula is correct. Its sign may be
-    wrong, unless ``signed`` is true.
+    The mistake explains the wrong entry if the corrected formula is right.
     """
 
+    # If False, the corrected formula may also have the opposite sign.
     signed: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
 class WrongEntry(WrongValue):
-    """A wrong entry of a matrix or a list.
+    """A wrong entry of a matrix or a list."""
 
-    ``turning`` maps the number of each turning joint to the symbol of its angle. If
-    ``only_compared`` is true, the formula of the entry is not rewritten.
-    """
-
+    # The symbol of the angle of each turning joint, by the number of the joint.
     turning: Mapping[int, Symbol]
+    # If True, the formula of the entry is not rewritten.
     only_compared: bool = False
 
     @cached_property
@@ -59,7 +57,7 @@ class WrongEntry(WrongValue):
 
     @cached_property
     def can_be_repaired(self) -> bool:
-        """True if the formula is small enough to be rewritten, and has a value everywhere."""
+        """True if the formula is short enough to be rewritten and always has a value."""
         is_small = not self.only_compared and self.size <= MAX_NODES
         return is_small and bool(np.isfinite(self.actual).all())
 
@@ -69,7 +67,7 @@ class WrongEntry(WrongValue):
         return list(filter(is_sine_or_cosine, nodes(self.tree)))
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Yield the hypotheses that explain the entry; each is tried on demand."""
+        """Yield the misconceptions that explain the entry."""
         for hypothesis in hypotheses:
             if not isinstance(hypothesis, Rewritten):
                 yield from super().explained_by((hypothesis,))
@@ -77,10 +75,7 @@ class WrongEntry(WrongValue):
                 yield self._completed(hypothesis, sign)
 
     def _sign(self, rewritten: Rewritten) -> int | None:
-        """Return 1 if the rewritten formula is correct, -1 if its negative is correct, else None.
-
-        Return None also if the rewritten formula has the same value as the student's formula.
-        """
+        """Return 1 if the rewritten formula is correct, -1 if its negative is; otherwise None."""
         tree = rewritten.answer
         if tree is self.tree:
             return None

@@ -1,8 +1,10 @@
-"""Functions that rewrite a student's formula without one misconception.
+"""Functions that correct one possible mistake in a student's formula.
 
-A tree is never changed. The new tree shares all unchanged parts with it. If there is nothing to
-rewrite, the tree itself is returned.
+They return a new tree and never change the old one.
 """
+
+# The new tree shares all unchanged parts with the old one. If there is nothing to rewrite, the old
+# tree itself is returned.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import reduce
@@ -36,7 +38,7 @@ def is_sine_or_cosine(node: Node) -> TypeGuard[Call]:
 
 
 def mapped(node: Node, rewrite: Rewriting) -> Node:
-    """Return the node with ``rewrite`` applied to each of its operands or arguments."""
+    """Return the node with ``rewrite`` applied to each operand or argument."""
     if isinstance(node, Binary):
         left, right = rewrite(node.left), rewrite(node.right)
         unchanged = left is node.left and right is node.right
@@ -63,7 +65,7 @@ def everywhere(tree: Node, rewrite: Rewriting) -> Node:
 
 
 def at_sines_and_cosines(tree: Node, rewrite: Rewriting) -> Node:
-    """Return the tree with ``rewrite`` applied to its sines and cosines, but not inside them."""
+    """Return the tree with ``rewrite`` applied to each sine and cosine."""
 
     def visit(node: Node) -> Node:
         return rewrite(node) if is_sine_or_cosine(node) else mapped(node, visit)
@@ -72,7 +74,7 @@ def at_sines_and_cosines(tree: Node, rewrite: Rewriting) -> Node:
 
 
 def one_place(node: Node, rewrite: Rewriting) -> Iterator[tuple[Node, Node]]:
-    """Yield trees with ``rewrite`` applied in one place, each with the node that was replaced."""
+    """Yield each tree with one node rewritten, and the node that was replaced."""
     changed = rewrite(node)
     if changed is not node:
         yield changed, node
@@ -86,12 +88,12 @@ def _with_child(node: Node, child: Node, replacement: Node) -> Node:
 
 
 def exchanged(node: Node) -> Node:
-    """Return a sine as a cosine or the other way round; other nodes are unchanged."""
+    """Return a cosine for a sine and a sine for a cosine; return other nodes unchanged."""
     return Call(EXCHANGED[node.function], node.arguments) if is_sine_or_cosine(node) else node
 
 
 def other_operator(node: Node) -> Node:
-    """Return a sum as a difference or the other way round; other nodes are unchanged."""
+    """Return a difference for a sum and a sum for a difference; return other nodes unchanged."""
     if not _is_sum(node):
         return node
     return Binary("-" if node.operator == "+" else "+", node.left, node.right)
@@ -105,15 +107,14 @@ def first_term_negated(node: Node) -> Node:
 
 
 def without_degrees(node: Node) -> Node:
-    """Return the number without its unit of degrees, so that it is read in radians."""
+    """Return the number without the unit degrees, so that it means radians."""
     return node.operand if isinstance(node, Unit) and node.unit == "deg" else node
 
 
 def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
-    """Return a rewriting of the sine or cosine of a single joint angle.
+    """Return a function that replaces joint angles by sums of angles: c2 becomes c12.
 
-    The angle of joint ``k`` becomes the sum of the angles from joint ``first`` to joint ``k``: c2
-    becomes c12.
+    The angle of joint ``k`` becomes the sum of the angles from joint ``first`` to joint ``k``.
     """
 
     def rewrite(node: Node) -> Node:
@@ -128,7 +129,7 @@ def summed_from(first: int, turning: Mapping[int, Symbol]) -> Rewriting:
 
 
 def with_angle(symbol: Symbol) -> Rewriting:
-    """Return a rewriting that adds ``symbol`` to the joint angles in a sine or cosine."""
+    """Return a function that adds ``symbol`` to the angle of a sine or cosine."""
 
     def rewrite(node: Node) -> Node:
         if not (isinstance(node, Call) and is_sine_or_cosine(node)):
@@ -142,7 +143,7 @@ def with_angle(symbol: Symbol) -> Rewriting:
 
 
 def without_angle(symbol: Symbol) -> Rewriting:
-    """Return a rewriting that removes ``symbol`` from a sum of joint angles in a sine or cosine."""
+    """Return a function that removes ``symbol`` from the angle of a sine or cosine."""
 
     def rewrite(node: Node) -> Node:
         if not (isinstance(node, Call) and is_sine_or_cosine(node)):
@@ -158,31 +159,26 @@ def without_angle(symbol: Symbol) -> Rewriting:
 
 
 def _joints_in(call: Call) -> set[int]:
-    """Return the turning joints whose angles are in the argument."""
     joints = map(_joint_of, nodes(call.arguments[0]))
     return {joint for joint in joints if joint is not None}
 
 
 def _joint_of(node: Node) -> int | None:
-    """Return the joint number if the node is only the angle of a turning joint, else None."""
     if isinstance(node, SymbolNode) and node.symbol.kind == "angle":
         return node.symbol.joint
     return None
 
 
 class _Term(NamedTuple):
-    """A term of a sum: its sign, its last sine or cosine (or None), and its other factors."""
-
+    # The last sine or cosine of a term is apart from its other factors.
     sign: int
     factors: list[Node]
     call: Call | None
 
 
 def sums_merged(node: Node) -> Node:
-    """Return the node with f(a) + f(b) merged to f(a + b); f is the sine or the cosine.
-
-    Only terms with equal other factors are merged.
-    """
+    """Return the node with cos a + cos b replaced by cos(a + b), and likewise for sines."""
+    # Only terms with equal other factors are merged.
     if not _is_sum(node):
         return mapped(node, sums_merged)
     terms = [_split(sign, sums_merged(term)) for sign, term in terms_of(node)]
@@ -210,12 +206,10 @@ def _merged_term(group: list[_Term]) -> Signed:
 
 
 def products_merged(tree: Node, joints: frozenset[int] | None = None) -> Node:
-    """Return the tree with f(a) f(b) merged to f(a + b); f is the sine or the cosine.
+    """Return the tree with cos a cos b replaced by cos(a + b), and likewise for sines."""
 
-    With ``joints``, only the angles of these joints are merged, and only in products that contain
-    all these angles.
-    """
-
+    # With joints, only the angles of these joints are merged, and only in products that contain all
+    # these angles.
     def visit(node: Node) -> Node:
         if is_sine_or_cosine(node):
             return node
@@ -251,10 +245,8 @@ def _merged_factors(
 
 
 def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:
-    """Return sets of joints whose sines (or cosines) are multiplied, such as {1, 2} for c1 c2.
-
-    Each set has two or more consecutive joints of ``turning``.
-    """
+    """Return sets of joints whose sines (or cosines) are multiplied: {1, 2} for c1 c2."""
+    # Each set has two or more consecutive joints of turning.
     found: dict[frozenset[int], None] = {}
     for factors in _products(tree):
         for function in EXCHANGED:
@@ -271,7 +263,6 @@ def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]
 
 
 def _products(tree: Node) -> Iterator[list[Node]]:
-    """Yield the factors of each product that is not a factor of a larger product."""
     pending = [tree]
     while pending:
         node = pending.pop()
@@ -288,7 +279,7 @@ def _is_sum(node: Node) -> TypeGuard[Binary]:
 
 
 def terms_of(node: Node) -> list[Signed]:
-    """Return the terms of a sum with their signs; a node that is no sum is the only term."""
+    """Return the terms of a sum with their signs."""
     if _is_sum(node):
         sign = 1 if node.operator == "+" else -1
         right = [(sign * inner, term) for inner, term in terms_of(node.right)]
@@ -299,7 +290,7 @@ def terms_of(node: Node) -> list[Signed]:
 
 
 def factors_of(node: Node) -> tuple[int, list[Node]]:
-    """Return the sign of a product and its factors without their minus signs."""
+    """Return the sign of a product, and its factors without minus signs."""
     if isinstance(node, Binary) and node.operator == "*":
         first, left = factors_of(node.left)
         second, right = factors_of(node.right)
@@ -311,7 +302,7 @@ def factors_of(node: Node) -> tuple[int, list[Node]]:
 
 
 def joined(terms: list[Signed]) -> Node:
-    """Return the sum of the terms. There must be at least one term."""
+    """Return the sum of one or more terms."""
     (sign, first), *others = terms
     total = _with_sign(sign, first)
     for sign, term in others:
@@ -328,7 +319,8 @@ def _with_sign(sign: int, node: Node) -> Node:
 
 
 def negated(node: Node) -> Node:
-    """Return the node with the other sign; in a product the first factor gets the minus."""
+    """Return the node with the opposite sign."""
+    # In a product the first factor gets the minus.
     if isinstance(node, Negation):
         return node.operand
     if isinstance(node, Binary) and node.operator in ("*", "/"):

@@ -1,4 +1,4 @@
-"""The quantity that a formula looks like: a length, an angle or a plain number."""
+"""Find out if a formula is a length, an angle or a plain number."""
 
 from typing import Final, TypeAlias
 
@@ -15,11 +15,11 @@ _DEEPEST: Final = 60
 
 
 def quantity_of(tree: Node, depth: int = 0) -> Quantity:
-    """Return the quantity of a formula, or None if it is unknown.
+    """Return the quantity of a formula: length, angle or plain number; None if it is unknown.
 
-    The sum of a number and an angle is an angle; the sum of a number and a length is a length.
-    ``90deg`` and ``pi/2`` are angles, ``2 l1`` and ``l1 cos(theta1)`` are lengths.
+    For example, ``90deg`` is an angle, and ``l1 cos(theta1)`` is a length.
     """
+    # The sum of a number and an angle is an angle; the sum of a number and a length is a length.
     if depth > _DEEPEST:
         return None
     match tree:

@@ -49,7 +49,7 @@ NOT_RIGHT = say("This angle is not right: check which two directions it is measu
 
 
 class WrongAngle(WrongValue):
-    """Misconceptions about wrong angles are registered under this class. It has no instances."""
+    """A wrong angle; misconceptions about angles are registered under this class."""
 
 
 @misconception(
@@ -62,7 +62,7 @@ class WrongAngle(WrongValue):
     unlike="[theta4, theta5, theta6 + 1]",
 )
 def sign(case: WrongValue) -> Hypotheses:
-    """The angle has the right size and the wrong sign."""
+    """The angle has the wrong sign."""
     yield Written(-case.expected, finding_on(case, WRONG_SIGN))
 
 
@@ -111,7 +111,7 @@ def is_constant(angle: Numbers) -> bool:
     unlike={"3/1": "theta6/2"},
 )
 def lost_quadrant(case: WrongValue) -> Hypotheses:
-    """The student used atan(y/x) instead of atan2(y, x). If x is negative, they differ by 180°."""
+    """The student used atan(y/x) instead of atan2(y, x)."""
     opposite = np.abs(difference(case.actual, case.expected, angle=True)) > np.pi / 2
     if opposite.any() and not opposite.all():
         finding = finding_on(
@@ -134,7 +134,7 @@ def lost_quadrant(case: WrongValue) -> Hypotheses:
     unlike="[asind(e1), a]",
 )
 def lost_sign(case: WrongValue) -> Hypotheses:
-    """The angle was computed by acos or asin, so it is correct for only half of all directions."""
+    """The student used acos or asin instead of atan2."""
     names = {
         "acos": (
             -case.expected,
@@ -190,10 +190,8 @@ def half_turn(case: WrongValue) -> Hypotheses:
     unlike={"3/1": "theta6/2"},
 )
 def swapped_atan2(case: WrongValue) -> Hypotheses:
-    """The arguments of atan2 were exchanged, so the result is 90° minus the angle.
-
-    If the angle is a constant without an arctangent, a wrong quarter turn is more likely.
-    """
+    """The arguments of atan2 were exchanged."""
+    # If the angle is a constant without an arctangent, a wrong quarter turn is more likely.
     if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
         yield Written(np.pi / 2 - case.expected, finding_on(case, ARGUMENTS_SWAPPED))
 
@@ -217,7 +215,7 @@ def _calls(tree: Node, *functions: str) -> bool:
     unlike="[theta4, theta5, theta6 + pi]",
 )
 def quarter_turn(case: WrongValue) -> Hypotheses:
-    """A turn by 90° was left out or added."""
+    """The angle differs by 90° from the correct angle."""
     finding = finding_on(case, NOT_RIGHT, otherwise=say("It is off by a quarter turn (90°)."))
     error = difference(case.actual, case.expected, angle=True)
     yield Written(case.expected + np.copysign(np.pi / 2, error), finding, tolerance=ROUNDED_VALUE)
@@ -225,7 +223,7 @@ def quarter_turn(case: WrongValue) -> Hypotheses:
 
 @check(of=WrongAngle, rank=200)
 def of_sum(case: WrongValue) -> Explained | None:
-    """The correct angle is a sum of angles, and the student made a mistake in this sum."""
+    """The correct angle is a sum, and the student made a mistake in this sum."""
     return explanation(case, WrongSum.of(case))
 
 

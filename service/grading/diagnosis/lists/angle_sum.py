@@ -34,10 +34,7 @@ def addends(case: WrongValue) -> dict[str, int]:
 
 
 def _computed(case: WrongValue, names: Sequence[str]) -> dict[str, int]:
-    """Return the factor of each symbol if the correct angle was computed, for example by atan2.
-
-    A computed angle may differ from the sum of its symbols by whole turns.
-    """
+    # A computed angle may differ from the sum of its symbols by whole turns.
     sums = [
         dict(zip(some, signs, strict=True))
         for count in (1, 2)
@@ -55,28 +52,29 @@ def _sum_of(case: WrongValue, counts: Mapping[str, int]) -> Numbers:
 
 @dataclass(frozen=True, slots=True)
 class WrongSum:
-    """A wrong angle, with the factor of each symbol in the correct angle."""
+    """A wrong angle whose correct value is a sum of angles."""
 
     case: WrongValue
+    # The factor of each symbol in the correct angle.
     counts: Mapping[str, int]
 
     @classmethod
     def of(cls, case: WrongValue) -> "WrongSum":
-        """Return the wrong angle, with the factor of each symbol in the correct angle."""
+        """Make a ``WrongSum`` from a wrong value."""
         return cls(case, addends(case))
 
     def named(self, names: Iterable[str]) -> str:
-        """Return the symbols as a list in words, by the names that the student uses."""
+        """Return these symbols in words, by the names that the student uses."""
         return listed([self.case.spelling.names.get(name, name) for name in names])
 
     def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:
-        """Yield each proper subset of the angles and the sum of its angles, the smallest first."""
+        """Yield the shorter sums of some of the angles: their names, and the value of the sum."""
         names = list(self.counts) if len(self.counts) <= MAX_ADDENDS else []
         for some in chain.from_iterable(combinations(names, k) for k in range(1, len(names))):
             yield some, _sum_of(self.case, {name: self.counts[name] for name in some})
 
     def others(self) -> Iterator[tuple[str, Numbers]]:
-        """Yield the symbols that only the student's angle contains, with their values."""
+        """Yield the symbols that do not belong in the sum, with their values."""
         for name in sorted(self.case.expression.symbols) if self.counts else ():
             if name not in self.counts:
                 yield name, self.case.samples.values[name]
@@ -92,7 +90,7 @@ class WrongSum:
     unlike={"3/1": "2*q1 + q2 + q3"},
 )
 def left_out(wrong: WrongSum) -> Hypotheses:
-    """Some of the angles are missing in the sum, for example all but the last."""
+    """Some angles are missing in the sum."""
     for names, part in wrong.subsets():
         hint = say_count(
             "{angles} is missing from this angle. Check which angles add up to it.",
@@ -113,7 +111,7 @@ def left_out(wrong: WrongSum) -> Hypotheses:
     unlike={"3/1": "theta7/2"},
 )
 def constant(wrong: WrongSum) -> Hypotheses:
-    """The sum contains no angle."""
+    """The student wrote a constant instead of a sum of angles."""
     if wrong.counts and np.ptp(wrong.case.actual) < CONSTANT:
         hint = say(
             "This angle is constant, but it must not be: check which variables it depends on."
@@ -131,7 +129,7 @@ def constant(wrong: WrongSum) -> Hypotheses:
     unlike={"3/1": "0"},
 )
 def reversed_addends(wrong: WrongSum) -> Hypotheses:
-    """Some of the angles have the wrong sign in the sum."""
+    """Some angles have the wrong sign in the sum."""
     for names, part in wrong.subsets():
         hint = say_count(
             "{angles} has the wrong sign in this angle: check which way this turn counts positive.",
@@ -153,7 +151,7 @@ def reversed_addends(wrong: WrongSum) -> Hypotheses:
     unlike={"1/1": "π/2"},
 )
 def counted_twice(wrong: WrongSum) -> Hypotheses:
-    """An angle is counted twice."""
+    """An angle is counted twice in the sum."""
     for name, count in wrong.counts.items():
         hint = say(
             "{angle} counts twice in this angle. Check which angles add up to it.",
@@ -195,7 +193,7 @@ def added(wrong: WrongSum) -> Hypotheses:
     unlike={"3/1": "0"},
 )
 def of_another_joint(wrong: WrongSum) -> Hypotheses:
-    """The sum contains the angle of a wrong joint in place of the correct angle."""
+    """The sum contains the angle of a wrong joint."""
     for other, value in wrong.others():
         for name, count in wrong.counts.items():
             hint = say(

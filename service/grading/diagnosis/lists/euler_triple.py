@@ -24,27 +24,27 @@ from service.translations import Sentence, say
 
 @dataclass(frozen=True)
 class WrongTriple:
-    """Three angles that do not describe the correct rotation.
+    """Three angles that do not describe the correct rotation."""
 
-    ``angles`` is ``(3, SAMPLES)`` and has a value everywhere. ``rotation`` is the correct rotation,
-    ``(SAMPLES, 3, 3)``. ``sequence`` names the axes; the axes move unless ``fixed``.
-    ``arctangents`` says which angles were written with an arctangent.
-    """
-
+    # (3, SAMPLES), with a value everywhere.
     angles: Numbers
+    # The correct rotation, (SAMPLES, 3, 3).
     rotation: Matrices
+    # The names of the axes, such as ZYZ.
     sequence: str
+    # True for fixed axes, False for moving axes.
     fixed: bool
+    # Which angles were written with an arctangent.
     arctangents: Sequence[bool] = (False, False, False)
 
     @property
     def is_right(self) -> bool:
-        """True if the angles describe the rotation."""
+        """True if the angles describe the correct rotation."""
         described = from_angles(self.sequence, self.angles.T, fixed=self.fixed)
         return bool(np.abs(described - self.rotation).max() < ROUNDED_VALUE)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Yield the hypotheses that make the triple correct; each is tried on demand."""
+        """Yield the misconceptions that explain the three angles."""
         return (hypothesis for hypothesis in hypotheses if hypothesis.answer.is_right)
 
 
@@ -66,7 +66,7 @@ RepairedTriple = Repaired[WrongTriple]
     unlike="[theta4, theta5, theta6 + 1]",
 )
 def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """One, two or all three of the angles have the same slip."""
+    """One or more of the three angles have the same mistake."""
     angles = case.angles
     repairs = (
         (-angles, Finding("sign", angle.WRONG_SIGN, say("Change its sign."))),
@@ -90,7 +90,7 @@ def some_angles(case: WrongTriple) -> Iterator[RepairedTriple]:
 
 
 def _on_angles(finding: Finding, angles: Numbers) -> Finding:
-    """Return the finding. If it is on the unit of ``angles`` that vary, its hint is reworded."""
+    # A hint on the unit of angles that vary is reworded.
     is_of_unit = finding.hint in (angle.FITS_IN_DEGREES, angle.FITS_IN_RADIANS)
     if is_of_unit and not all(map(angle.is_constant, angles)):
         return replace(finding, hint=angle.CONVERTED)
@@ -107,7 +107,7 @@ def _on_angles(finding: Finding, angles: Numbers) -> Finding:
     unlike={"1/1": "theta5"},
 )
 def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """The angles were written in another order, most often from last to first."""
+    """The angles are correct, but in the wrong order."""
     finding = says(
         say(
             "These angles are right, but in another order: the first angle is that of the first "
@@ -129,7 +129,7 @@ def other_order(case: WrongTriple) -> Iterator[RepairedTriple]:
     unlike={"1/1": "theta5"},
 )
 def inverse_rotation(case: WrongTriple) -> Iterator[RepairedTriple]:
-    """The angles describe the first frame in the last one."""
+    """The angles describe the inverse rotation."""
     finding = says(
         say("These angles describe the inverse rotation: the first frame as seen from the last."),
         say("Take them from the matrix whose columns are the axes of the last frame."),
@@ -180,8 +180,6 @@ def _asked_for(sequence: str, *, fixed: bool) -> Sentence:
 
 
 def explain_triple(case: WrongTriple) -> Explained | None:
-    """Return the hypothesis that explains the angles, or None.
-
-    The ``entries`` of the hypothesis are the angles that have the slip.
-    """
+    """Return the misconception that explains the three angles, or None."""
+    # The entries of the result are the angles that have the slip.
     return None if case.is_right else explanation(case)

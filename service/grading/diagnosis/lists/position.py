@@ -26,16 +26,15 @@ from service.translations import say, template
 
 @dataclass(frozen=True)
 class WrongPosition(WrongNumbers):
-    """Wrong coordinates ``(n, SAMPLES)`` of a point, along the ``axes`` 0, 1, 2.
+    """Wrong coordinates ``(n, SAMPLES)`` of a point."""
 
-    If the point is the end of a chain of links, ``chains`` holds these links. ``slips`` compares
-    the point with the wrong answers that mistakes in the table lead to. ``motion`` holds the
-    displacements in the formulas of the exercise.
-    """
-
+    # The axes of the coordinates: 0, 1 or 2.
     axes: tuple[int, ...]
+    # The links whose end is the point, if it is the end of a chain of links.
     chains: tuple[Chain, ...] = ()
+    # Compares the point with the wrong answers that mistakes in the table lead to.
     slips: SlipSearch | None = None
+    # The displacements in the formulas of the exercise.
     motion: GivenMotion | None = None
 
     @cached_property
@@ -66,7 +65,8 @@ def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=20)
 def slip(case: WrongPosition) -> Explained | None:
-    """A mistake in the table explains the position, and is likelier than a reversed position."""
+    """A likely mistake in the table explains the position."""
+    # It is likelier than a reversed position.
     found = case.slip
     return None if found is None or found.findings[0].code in AFTER_SIGNS else found
 
@@ -81,7 +81,7 @@ def slip(case: WrongPosition) -> Explained | None:
     unlike="[a1 c1 + a2 c12, -a1 s1 - a2 s12]",
 )
 def reversed_position(case: WrongPosition) -> Hypotheses:
-    """The vector was taken from the point to the origin."""
+    """All signs are wrong: the vector leads from the point to the origin."""
     finding = says(
         say("Every coordinate has the wrong sign: check where the vector must start and end."),
     )
@@ -90,7 +90,8 @@ def reversed_position(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=40)
 def slip_after_signs(case: WrongPosition) -> Explained | None:
-    """A mistake in the table explains the position, but is less likely than a reversed position."""
+    """A less likely mistake in the table explains the position."""
+    # It is less likely than a reversed position.
     return case.slip
 
 
@@ -104,17 +105,15 @@ def slip_after_signs(case: WrongPosition) -> Explained | None:
     unlike="[1000*(a1 c1 - a2 c12), 1000*(a1 s1 - a2 s12)]",
 )
 def length_unit(case: WrongPosition) -> Hypotheses:
-    """The coordinates are in another unit."""
+    """The coordinates are in another unit of length."""
     for times in UNIT_FACTORS:
         yield Written(times * case.expected, other_length_unit(times))
 
 
 @misconception(of=WrongPosition, rank=50)
 def other_pose(case: WrongPosition) -> Hypotheses:
-    """The position belongs to another pose of the chain.
-
-    A constant position, such as the origin itself, does not show which pose it belongs to.
-    """
+    """The position is that of a wrong pose, such as the pose of another frame."""
+    # A constant position, such as the origin itself, does not show which pose it belongs to.
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]
         if np.ptp(position, axis=-1).max() > EXACT_VALUE:

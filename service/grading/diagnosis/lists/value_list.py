@@ -1,4 +1,4 @@
-"""Slips in a list of single values; each value is a length, an angle or a number."""
+"""Slips in a list of values; each value is a length, an angle or a number."""
 
 import numpy as np
 
@@ -21,7 +21,7 @@ SEARCH_WORK = 15.0
 def search_of(
     answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> SlipSearch | None:
-    """Return the search for mistakes in the table that explain a list of values, or None."""
+    """Return a search for mistakes in the robot's table that explain the list, or None."""
     if answers is None:
         return None
     student = compared.student
@@ -44,11 +44,9 @@ def slips_of(
     grading: Grading,
     answers: SlippedAnswers | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """Return the findings on the wrong values of a list, as far as the work budget allows.
-
-    The key of a finding is ``(index of the value, 0)``. ``answers`` tells on which symbols each
-    correct value depends.
-    """
+    """Return the findings on the wrong values of a list; the keys are ``(index, 0)``."""
+    # The work budget limits the findings. answers tells on which symbols each correct value
+    # depends.
     student, scales = compared.student, compared.scales(grading)
     requirements = answers and Requirements(
         answers, grading.exercise, grading.samples, compared.expected, scales

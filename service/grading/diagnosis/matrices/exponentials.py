@@ -18,19 +18,18 @@ from service.translations import say
 
 @dataclass(frozen=True, slots=True)
 class Exponentials:
-    """The factors of a product of exponentials: screw axes, joint values and home pose.
+    """The factors of a product of exponentials: screw axes, joint values and home pose."""
 
-    The screw axes are given in the space frame and in the body frame, ``(n, SAMPLES, 6)`` each.
-    """
-
+    # The screw axes in the space frame, (n, SAMPLES, 6).
     space: Numbers
+    # The screw axes in the body frame, (n, SAMPLES, 6).
     body: Numbers
     amounts: Numbers
     home: Matrices
 
     @classmethod
     def of(cls, robot: ScrewRobot, samples: Samples) -> "Exponentials":
-        """Return the factors for the reference robot."""
+        """Return the factors for the exercise's robot."""
         values, count = samples.values, samples.count
         home = robot.frame("tool", at_home(robot.joints, values, count), count)
         space = robot.screws(values, count)
@@ -60,7 +59,7 @@ def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
     unlike={"4/2": "1"},
 )
 def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
-    """Space axes were multiplied on the right of M, or body axes on its left."""
+    """The home pose M is on the wrong side of the exponentials."""
     finding = says(
         say(
             "M stands on the wrong side of the exponentials: space axes are multiplied in front "
@@ -89,7 +88,7 @@ def home_on_the_wrong_side(product: Exponentials) -> Hypotheses:
     unlike={"2/1": "2*s13"},
 )
 def missing_home(product: Exponentials) -> Hypotheses:
-    """The home pose was left out."""
+    """The home pose M was left out."""
     finding = says(
         say("This is the product of the exponentials alone: the home pose M is missing."),
         say("Multiply M behind the space axes' exponentials."),
@@ -157,10 +156,7 @@ def moment_sign(product: Exponentials) -> Hypotheses:
 
 
 def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> list[Explanation]:
-    """Return the explanation of a wrong pose that should be a product of exponentials.
-
-    The list is empty if no misconception about such products explains the pose.
-    """
+    """Return explanations of a wrong pose that should be a product of exponentials."""
     if not isinstance(exercise.reference, ScrewRobot):
         return []
     subset = samples.subset(case.actual.shape[-1] // 2)

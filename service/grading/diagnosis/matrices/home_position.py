@@ -1,4 +1,4 @@
-"""Find joint variables in an answer that is for the home position: the pose M, or a screw axis."""
+"""Find joint variables in answers for the home position, where these variables are 0."""
 
 from collections.abc import Sequence
 
@@ -44,9 +44,6 @@ def with_joint_variable(entries: Sequence[Sequence[Entry]], exercise: Exercise) 
 def explain_moving(
     case: MatrixCase, entries: Sequence[Sequence[Entry]], exercise: Exercise
 ) -> list[Explanation]:
-    """Return the explanation of the wrong entries of a home pose that contain a joint variable.
-
-    The list is empty if there are no such entries.
-    """
+    """Return explanations of the entries of a home pose that contain a joint variable."""
     moving = np.asarray(case.wrong & with_joint_variable(entries, exercise))
     return [Explanation(NOT_AT_HOME, moving)] if moving.any() else []

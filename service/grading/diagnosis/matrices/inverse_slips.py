@@ -1,9 +1,10 @@
 """Slips in the inverse of a homogeneous transform.
 
-If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp. The same wrong
-numbers also occur in transforms that are not inverses. They then mean a vector in the wrong frame
-or in the opposite direction.
+If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp.
 """
+
+# The same wrong numbers also occur in transforms that are not inverses. They then mean a vector in
+# the wrong frame or in the opposite direction.
 
 import numpy as np
 
@@ -24,15 +25,11 @@ from service.translations import Sentence, say
 
 
 def _with_rule(sentence: Sentence) -> Finding:
-    """Return a finding with this sentence and the rule for the inverse."""
     return says(say("{sentence} The inverse of (R, p) is (Rᵀ, −Rᵀp).", sentence=sentence))
 
 
 def _parts(case: MatrixCase) -> tuple[Numbers, Numbers]:
-    """Return the rotation and the position of the inverse of the correct transform.
-
-    They are ``(3, 3, samples)`` and ``(3, samples)``.
-    """
+    # The rotation (3, 3, samples) and the position (3, samples) of the inverse.
     rotation = np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1)
     return rotation, -_turned(rotation, case.expected[:3, 3])
 
@@ -56,7 +53,7 @@ def _turned(rotation: Numbers, vector: Numbers) -> Numbers:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
-    """The student transposed the whole transform to invert it. That inverts only a rotation."""
+    """The student transposed the whole transform to invert it."""
     finding = _with_rule(
         say(
             "This is the transpose of the transform, not its inverse: only a rotation is inverted "
@@ -86,7 +83,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
     unlike={"1/4": "-px", "2/4": "-py"},
 )
 def negated_for_inverse(case: MatrixCase) -> Hypotheses:
-    """The student inverted a transform by changing all signs, or only those of the position."""
+    """The student changed signs to invert a transform."""
     if case.is_transform:
         rotation, position = _parts(case)
         for sign in (1, -1):
@@ -105,7 +102,7 @@ def negated_for_inverse(case: MatrixCase) -> Hypotheses:
     unlike={"1/1": "0", "1/3": "1"},
 )
 def negated_rotation(case: MatrixCase) -> Hypotheses:
-    """The student changed the signs of a rotation in order to invert it."""
+    """The student changed signs to invert a rotation."""
     rotation = case.expected[ROTATION_BLOCK]
     for written in (-np.swapaxes(rotation, 0, 1), -rotation):
         yield Written(written, NEGATED, ROTATION_BLOCK)

@@ -24,10 +24,8 @@ class Lines:
     unlike={"1/4": "1"},
 )
 def line_sign(case: MatrixCase) -> Hypotheses:
-    """A whole column or row has the wrong sign, because an axis points the opposite way.
-
-    A column or row with a single wrong entry is not reported here.
-    """
+    """A whole column or row has the wrong sign."""
+    # A column or row with a single wrong entry is not reported here.
     opposite = case.agree(case.actual, -case.expected)
     wrong = case.wrong & case.mask(UPPER_ROWS)
     columns = [j for j in range(wrong.shape[1]) if opposite[:3, j].all() and wrong[:, j].sum() > 1]
@@ -73,6 +71,5 @@ def _numbers(indices: list[int]) -> str:
 
 
 def _parts(indices: list[int]) -> str:
-    """Return the names of the columns or rows: axes of a frame, or the position vector."""
     names = [*(say("{letter} axis", letter=letter) for letter in "xyz"), say("position vector")]
     return listed([names[i] for i in indices])

@@ -1,4 +1,4 @@
-"""Slips in a single link transform, such as the angles of earlier joints in it."""
+"""Slips in a single link transform."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -27,13 +27,11 @@ from service.translations import say
 
 @dataclass(frozen=True)
 class LinkAmongOthers:
-    """A link transform and the links before it.
+    """A link transform, together with the links before it."""
 
-    ``links`` ``(k, samples, 4, 4)`` are the correct transforms; the last one is the link itself.
-    ``angles`` ``(j, samples)`` are the joint angles of the links before it.
-    """
-
+    # The correct transforms (k, samples, 4, 4); the last one is the link itself.
     links: Matrices
+    # The joint angles (j, samples) of the links before it.
     angles: Sequence[Numbers]
     convention: Convention
 
@@ -46,10 +44,7 @@ class LinkAmongOthers:
         convention: Convention,
         count: int,
     ) -> "LinkAmongOthers":
-        """Return the last of ``links`` ``(k, SAMPLES, 4, 4)``, together with the links before it.
-
-        The result has fewer samples; ``count`` says how many.
-        """
+        """Return the last of the ``links`` with the links before it, at ``count`` samples."""
         turning = [joint.variable for joint in joints[: len(links) - 1] if not joint.prismatic]
         values = samples.subset(count).values
         subset = Samples.subset_of(np.moveaxis(links, 1, -1), count)
@@ -73,7 +68,7 @@ class LinkAmongOthers:
     unlike={"A1.3/2": "1"},
 )
 def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
-    """The angle was measured from the base: A2 contains θ1 + θ2 instead of θ2."""
+    """The student added the angles of earlier joints: A2 contains θ1 + θ2 instead of θ2."""
     finding = says(
         say(
             "A link transform holds the variable of its own joint only. The joints before it have "
@@ -128,7 +123,7 @@ def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
     unlike={"A1.2/4": "R*s2"},
 )
 def translation_not_turned(link: LinkAmongOthers) -> Hypotheses:
-    """The student wrote a and d into the position without turning them by the link's angle."""
+    """The student wrote a and d into the position without turning them."""
     finding = says(
         say(
             "The rotation is right, but the last column is not turned with it. Check the order of "
@@ -152,7 +147,7 @@ class PositionAmongOthers:
 
 @misconception(of=RotationAmongOthers, rank=10)
 def angle_in_rotation(link: LinkAmongOthers) -> Hypotheses:
-    """The student added the angles of earlier joints to the link's angle in the rotation only."""
+    """Only the rotation contains the angles of earlier joints."""
     return _in_block(link, ROTATION_BLOCK)
 
 
@@ -162,7 +157,7 @@ def angle_in_rotation(link: LinkAmongOthers) -> Hypotheses:
     example=("planar-rr", "links", {"A2.1/4": "a2 c12", "A2.2/4": "a2 s12"}),
 )
 def angle_in_position(link: LinkAmongOthers) -> Hypotheses:
-    """The student added the angles of earlier joints to the link's angle in the position only."""
+    """Only the position contains the angles of earlier joints."""
     return _in_block(link, POSITION_BLOCK)
 
 
@@ -173,7 +168,7 @@ def _in_block(link: LinkAmongOthers, block: Block) -> Hypotheses:
 
 
 def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:
-    """Return the slips that explain a wrong link transform, such as an earlier joint's angle."""
+    """Return explanations of a wrong link transform."""
     return as_explanations(case, explanation(case, link)) or [
         found
         for block, kind in (

@@ -24,19 +24,18 @@ BOTTOM_ROW: Block = (slice(3, 4), slice(None))
 
 @dataclass(frozen=True)
 class MatrixCase(WrongNumbers):
-    """A wrong matrix ``(rows, columns, SAMPLES)``; unreadable entries are NaN.
+    """A wrong matrix ``(rows, columns, SAMPLES)``; unreadable entries are NaN."""
 
-    ``wrong`` ``(rows, columns)`` marks the entries that have a value and are wrong. ``rigid`` is
-    True for a transform (4×4) or a rotation (3×3). If the correct matrix is a product of links,
-    ``chains`` holds these links, else it is empty. ``motion`` holds the turns and displacements in
-    the formulas of the exercise. ``slips`` compares the matrix with the wrong answers that mistakes
-    in the table lead to. It is None if there are no such answers.
-    """
-
+    # The entries (rows, columns) that have a value and are wrong.
     wrong: Mask
+    # True for a transform or a rotation.
     rigid: bool
+    # The links whose product is the correct matrix, if it is such a product.
     chains: tuple[Chain, ...] = ()
+    # Compares the matrix with the wrong answers that mistakes in the table lead to. None if there
+    # are no such answers.
     slips: SlipSearch | None = None
+    # The turns and displacements in the formulas of the exercise.
     motion: GivenMotion | None = None
 
     @property
@@ -46,10 +45,8 @@ class MatrixCase(WrongNumbers):
 
     @cached_property
     def other_poses(self) -> tuple[list[Explained], Numbers]:
-        """The wrong poses that mistakes in the product of links lead to, and all their entries.
-
-        The entries are ``(poses, rows, columns, SAMPLES)``, cut to the size of the expected matrix.
-        """
+        """The wrong poses that mistakes in the product of links lead to, and their entries."""
+        # The entries are (poses, rows, columns, SAMPLES), cut to the size of the expected matrix.
         poses = other_poses(self.chains)
         rows, columns = self.expected.shape[:2]
         if not poses:
@@ -57,7 +54,7 @@ class MatrixCase(WrongNumbers):
         return poses, as_entries(np.array([pose.answer for pose in poses]))[:, :rows, :columns]
 
     def mask(self, *blocks: Index) -> Mask:
-        """Return a mask ``(rows, columns)`` of the entries in these blocks."""
+        """Return a mask ``(rows, columns)`` that is True in these blocks."""
         mask = np.zeros(self.expected.shape[:2], dtype=np.bool_)
         for block in blocks:
             mask[block] = True
@@ -78,17 +75,14 @@ class PositionBlock:
 
 @dataclass(frozen=True, slots=True)
 class Explanation:
-    """A finding on several entries at once, and a mask of the entries that it explains."""
+    """A finding on several entries, and a mask of these entries."""
 
     finding: Finding
     entries: Mask
 
 
 def as_explanations(case: MatrixCase, found: Explained | None) -> list[Explanation]:
-    """Convert a hypothesis to explanations: its findings, with a mask of the entries they explain.
-
-    The list is empty if ``found`` is None.
-    """
+    """Return the findings of a misconception as explanations; None gives an empty list."""
     if found is None:
         return []
     return [Explanation(finding, case.mask(found.entries)) for finding in found.findings]

@@ -44,7 +44,7 @@ Formulas = Iterator[Rewritten]
     unlike={"1/2": "c12"},
 )
 def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
-    """The entry has the right size and the wrong sign."""
+    """The entry has the wrong sign."""
     yield Written(-case.expected, finding_on(case, say("The sign is wrong.")))
 
 
@@ -59,7 +59,7 @@ def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     unlike={"1/2": "s12"},
 )
 def degrees_as_radians(case: WrongEntry) -> Formulas:
-    """A number of degrees was written in a sine or cosine, but is read in radians."""
+    """A number of degrees in a sine or cosine is read in radians."""
     finding = says(
         say(
             "A number in a sine or cosine was read in radians, but it fits in degrees: write the "
@@ -71,7 +71,6 @@ def degrees_as_radians(case: WrongEntry) -> Formulas:
 
 
 def _has_bare_number(node: Node) -> bool:
-    """True if the node contains a number other than 0 without a unit."""
     if isinstance(node, Number):
         return node.value != 0
     return not isinstance(node, Unit) and any(map(_has_bare_number, children(node)))
@@ -96,7 +95,7 @@ def _has_bare_number(node: Node) -> bool:
     unlike={"4/3": "1"},
 )
 def radians_as_degrees(case: WrongEntry) -> Formulas:
-    """A number of radians was written in a sine or cosine, but is read in degrees."""
+    """A number of radians in a sine or cosine is read in degrees."""
     finding = says(
         say(
             "A number in a sine or cosine was read in degrees, but it fits in radians: write the "
@@ -117,7 +116,7 @@ def radians_as_degrees(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def sine_for_cosine(case: WrongEntry) -> Formulas:
-    """Sine and cosine are exchanged, throughout or in one place."""
+    """Some or all sines and cosines are exchanged."""
     count = len(case.sines_and_cosines)
     if count > 0:
         finding = says(say("Sine and cosine are exchanged."))
@@ -139,7 +138,7 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def sum_of_cosines(case: WrongEntry) -> Formulas:
-    """The cosine (or sine) of a sum was written as a sum of cosines (or sines)."""
+    """The student wrote cos(a + b) as cos a + cos b, or sin(a + b) as sin a + sin b."""
     finding = says(
         say(
             "cos(a + b) is not cos(a) + cos(b), and sin(a + b) is not sin(a) + sin(b): add the "
@@ -185,7 +184,7 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
     unlike={"1/2": "s12"},
 )
 def relative_angle(case: WrongEntry) -> Formulas:
-    """The student wrote a joint's own angle for the sum of the angles up to it: c2 for c12."""
+    """The student wrote the joint's own angle instead of a sum of angles: c2 for c12."""
     finding = says(
         say(
             "A joint angle is measured from the link before: the direction of a link is the sum "
@@ -244,17 +243,13 @@ def angle_too_many(case: WrongEntry) -> Formulas:
 
 
 def _joint_angles(case: WrongEntry) -> list[Symbol]:
-    """Return all joint angles if the formula contains a sine or cosine, else an empty list."""
     return [case.turning[k] for k in sorted(case.turning)] if case.sines_and_cosines else []
 
 
 def _with_angles_changed(
     case: WrongEntry, change: rewriting.Rewriting, finding: Finding
 ) -> Formulas:
-    """Yield the formula with ``change`` in all its sines and cosines.
-
-    If the formula is short, also yield it with ``change`` in each single sine or cosine.
-    """
+    # If the formula is short, each single sine or cosine is also changed alone.
     yield Rewritten(rewriting.at_sines_and_cosines(case.tree, change), finding, signed=True)
     if 1 < len(case.sines_and_cosines) <= MAX_PLACES:
         for tree, _ in rewriting.one_place(case.tree, change):
@@ -293,11 +288,9 @@ def diagnose_entries(
     work_budget: float = WORK_BUDGET,
     requirements: Requirements | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """Return the findings on the wrong entries of a matrix, as far as the work budgets allow.
-
-    ``affords`` takes work from the budget of the submission. ``work_budget`` is the budget of the
-    matrix. When it is used up, formulas are no longer rewritten.
-    """
+    """Return the findings on the wrong entries of a matrix."""
+    # affords takes work from the budget of the submission; work_budget is the budget of the matrix.
+    # When it is used up, formulas are no longer rewritten.
     findings: dict[tuple[int, int], Finding] = {}
     for place, entry in wrong.items():
         if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):

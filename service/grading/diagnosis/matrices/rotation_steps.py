@@ -1,4 +1,4 @@
-"""Slips in a composite rotation: a wrong axis, sense, angle, side or order, or a missing turn."""
+"""Slips in a composite rotation, such as a wrong axis or a missing turn."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -22,18 +22,17 @@ MAX_STEPS = 4
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """One turn of a composite rotation.
+    """One turn of a composite rotation."""
 
-    ``axis`` is "X", "Y" or "Z", ``rotation`` is ``(SAMPLES, 3, 3)``. The axis is fixed or moving.
-    """
-
+    # "X", "Y" or "Z".
     axis: str
+    # (SAMPLES, 3, 3).
     rotation: Matrices
+    # True for a fixed axis, False for a moving axis.
     fixed: bool
 
 
 def _with_rule(sentence: Sentence) -> Finding:
-    """Return a finding with this sentence and the rule for the side of a turn."""
     return says(
         say(
             "{sentence} A turn about a fixed axis is multiplied from the left, one about a moving "
@@ -66,7 +65,7 @@ def _made_of(steps: Sequence[Step], finding: Finding) -> Written[Numbers]:
     unlike={"2/3": "cos(theta)*cos(psi)", "3/3": "-sin(theta)"},
 )
 def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
-    """A turn about a moving axis was multiplied as if the axis were fixed, or vice versa."""
+    """The student took a moving axis for a fixed one, or a fixed axis for a moving one."""
     exchanged = [replace(step, fixed=not step.fixed) for step in steps]
     finding = _with_rule(say("Every turn was multiplied from the wrong side."))
     yield _made_of(exchanged, finding)
@@ -85,7 +84,7 @@ def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
     unlike={"1/1": "1"},
 )
 def turned_back(steps: Sequence[Step]) -> Hypotheses:
-    """Some or all turns have the opposite sense."""
+    """One or more turns have the opposite sense."""
     back = [replace(step, rotation=np.swapaxes(step.rotation, 1, 2)) for step in steps]
     for some in _subsets(steps):
         axes = listed(sorted({steps[i].axis.lower() for i in some}))
@@ -120,7 +119,7 @@ def turned_back(steps: Sequence[Step]) -> Hypotheses:
     unlike={"2/1": "0"},
 )
 def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
-    """One turn is about another coordinate axis."""
+    """One turn is about the wrong coordinate axis."""
     for i, step in enumerate(steps):
         for axis in "XYZ".replace(step.axis, ""):
             finding = says(
@@ -145,7 +144,7 @@ def about_another_axis(steps: Sequence[Step]) -> Hypotheses:
     unlike={"3/2": "0"},
 )
 def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
-    """One turn has the angle of another turn, or two turns have exchanged their angles."""
+    """A turn has the angle of another turn."""
     for i, j in permutations(range(len(steps)), 2):
         finding = says(
             say(
@@ -187,7 +186,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
     unlike={"3/1": "1"},
 )
 def left_out(steps: Sequence[Step]) -> Hypotheses:
-    """Some turns are missing in the product."""
+    """One or more turns are missing in the product."""
     for some in _subsets(steps):
         if len(some) < len(steps):
             hint = say_count(
@@ -216,7 +215,7 @@ def left_out(steps: Sequence[Step]) -> Hypotheses:
     unlike={"1/1": "0"},
 )
 def another_order(steps: Sequence[Step]) -> Hypotheses:
-    """The turns were multiplied in another order."""
+    """The turns were multiplied in the wrong order."""
     moving = [replace(step, fixed=False) for step in steps if not step.fixed]
     factors = [*(replace(step, fixed=False) for step in steps[::-1] if step.fixed), *moving]
     finding = _with_rule(say("The turns were multiplied in the wrong order."))
@@ -225,16 +224,12 @@ def another_order(steps: Sequence[Step]) -> Hypotheses:
 
 
 def _about(axis: str, step: Step) -> Matrices:
-    """Return the rotation of a turn by the same angle, but about ``axis``."""
     shift = (ord(axis) - ord(step.axis)) % 3
     return np.roll(step.rotation, (shift, shift), axis=(1, 2))
 
 
 def _subsets(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
-    """Yield sets of turns by their indices, the smallest sets first.
-
-    If there are many turns, yield only sets of one turn.
-    """
+    # If there are many turns, only sets of one turn are tried.
     most = len(steps) if len(steps) <= MAX_STEPS else 1
     return chain.from_iterable(combinations(range(len(steps)), k) for k in range(1, most + 1))
 
@@ -244,10 +239,7 @@ def _numbers(places: Sequence[int]) -> str:
 
 
 def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
-    """Return the explanation of a wrong rotation that should be the product of these turns.
-
-    The list is empty if no misconception explains the rotation.
-    """
+    """Return explanations of a wrong rotation that should be the product of these turns."""
     count = case.actual.shape[-1] // 2
     subset = [replace(step, rotation=Samples.subset_of(step.rotation.T, count).T) for step in steps]
     return as_explanations(case, explanation(case, subset, Step)) if steps else []

@@ -1,7 +1,6 @@
-"""Slips in a whole matrix, or in its whole rotation or position.
+"""Slips in a whole matrix, or in its whole rotation or position."""
 
-If such a slip explains an entry, the entry gets no finding of its own.
-"""
+# If such a slip explains an entry, the entry gets no finding of its own.
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -62,7 +61,7 @@ class BottomRow:
     unlike={"3/3": "0", "3/4": "1"},
 )
 def transposed_matrix(case: MatrixCase) -> Hypotheses:
-    """The whole matrix was written with rows and columns exchanged."""
+    """The student exchanged the rows and the columns of the whole matrix."""
     code = "transposed_rotation" if case.rigid and not case.is_transform else "transposed_matrix"
     finding = Finding(code, say("This matrix is transposed."), say("Write its rows as columns."))
     if case.expected.shape[0] == case.expected.shape[1]:
@@ -104,13 +103,12 @@ OTHER_WAY = replace(
 
 
 def _inverted(matrix: Numbers) -> Numbers:
-    """Return the inverse of transforms ``(..., 4, 4, SAMPLES)``."""
     return as_entries(inverse(np.moveaxis(matrix, -1, -3)))
 
 
 @misconception(of=UpperRows, rank=60)
 def other_pose(case: MatrixCase) -> Hypotheses:
-    """The student submitted the pose of another frame, or another product of the links."""
+    """The student submitted a wrong pose, such as the pose of another frame."""
     for pose, entries in zip(*case.other_poses, strict=True):
         # Translators: {pose} is a name such as "the pose of frame {2}".
         found = named(pose, template("This matrix is {pose}. {advice}"))
@@ -131,7 +129,7 @@ def other_pose(case: MatrixCase) -> Hypotheses:
     unlike={"2/2": "90"},
 )
 def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
-    """The student submitted the inverse of another pose than the expected one."""
+    """The student submitted the inverse of a wrong pose."""
     if case.is_transform:
         poses, entries = case.other_poses
         for pose, inverted in zip(poses, _inverted(entries), strict=True):
@@ -150,7 +148,7 @@ def inverse_of_other_pose(case: MatrixCase) -> Hypotheses:
     unlike={"1/3": "1", "4/4": "0"},
 )
 def transposed_rotation(case: MatrixCase) -> Hypotheses:
-    """The student submitted the transpose of the correct rotation."""
+    """The rotation is transposed."""
     finding = says(
         say(
             "The rotation is transposed: its columns, not its rows, must be the axes of the frame "
@@ -171,7 +169,7 @@ def transposed_rotation(case: MatrixCase) -> Hypotheses:
     unlike={"1/1": "0", "1/3": "1"},
 )
 def columns_exchanged(case: MatrixCase) -> Hypotheses:
-    """The axes of the last frame were written in another order."""
+    """The columns of the rotation are in the wrong order."""
     for order in list(permutations(range(3)))[1:]:
         finding = says(
             say(
@@ -185,7 +183,7 @@ def columns_exchanged(case: MatrixCase) -> Hypotheses:
 
 @misconception(of=RotationBlock, rank=60)
 def other_rotation(case: MatrixCase) -> Hypotheses:
-    """Only the rotation belongs to another pose."""
+    """The rotation is that of a wrong pose, such as the pose of another frame."""
     # Translators: {pose} is a name such as "the pose of frame {2}".
     told = template("The rotation comes from {pose}. {advice}")
     return _from_other_poses(case, ROTATION_BLOCK, told)
@@ -209,7 +207,7 @@ def length_unit(case: MatrixCase) -> Hypotheses:
 
 @misconception(of=PositionBlock, rank=60)
 def other_position(case: MatrixCase) -> Hypotheses:
-    """Only the position belongs to another pose."""
+    """The position is that of a wrong pose, such as the pose of another frame."""
     # Translators: {pose} is a name such as "the pose of frame {2}".
     told = template("The position comes from {pose}. {advice}")
     return _from_other_poses(case, POSITION_BLOCK, told)
@@ -226,7 +224,7 @@ def _from_other_poses(case: MatrixCase, block: Block, told: str) -> Hypotheses:
 
 @check(of=UpperRows, rank=20)
 def slip_of_rows(case: MatrixCase) -> Explained | None:
-    """A mistake in the DH table explains the wrong rotation and the wrong position."""
+    """A mistake in the DH table explains the wrong rotation and position."""
     return _of_slips(case, UPPER_ROWS)
 
 
@@ -243,11 +241,7 @@ def slip_of_position(case: MatrixCase) -> Explained | None:
 
 
 def _of_slips(case: MatrixCase, block: Block) -> Explained | None:
-    """Return the mistakes in the DH table that explain a block of the matrix, or None.
-
-    If axes of a frame with wrong signs explain the block, too, that simpler explanation is
-    preferred.
-    """
+    # If axes with wrong signs explain the block, too, that simpler explanation is preferred.
     entries = case.mask(block)
     if case.slips is None or (case.wrong[block].sum() == 1 and block != UPPER_ROWS):
         return None
@@ -279,12 +273,10 @@ def bottom_row(case: MatrixCase) -> Explained | None:
 
 @dataclass(frozen=True)
 class WrongAxes:
-    """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix.
-
-    ``codes`` are the codes of the findings on the entries of the rotation.
-    """
+    """The rotation ``(SAMPLES, 3, 3)`` of a wrong matrix."""
 
     rotation: Numbers
+    # The codes of the findings on the entries of the rotation.
     codes: list[str]
 
 
@@ -322,7 +314,7 @@ def left_handed_rotation(axes: WrongAxes) -> Finding | None:
     unlike={"1/1": "l1"},
 )
 def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
-    """The columns are not unit vectors at right angles."""
+    """The columns are not perpendicular unit vectors."""
     fault = _fault(axes.rotation)
     if fault is None:
         return None
@@ -330,7 +322,6 @@ def rotation_not_orthonormal(axes: WrongAxes) -> Finding | None:
 
 
 def _fault(rotation: Numbers) -> Sentence | None:
-    """Return the message on a rotation whose columns are not orthonormal, or None if they are."""
     products = np.swapaxes(rotation, 1, 2) @ rotation
     wrong = np.abs(products - np.eye(3)).max(axis=0) > 4 * ROUNDED_VALUE
     for j in range(3):
@@ -352,7 +343,7 @@ def _fault(rotation: Numbers) -> Sentence | None:
 
 
 def explain(case: MatrixCase) -> list[Explanation]:
-    """Return the explanations of the matrix as a whole, or of large parts of it."""
+    """Return the explanations of the whole matrix or of large parts of it."""
     whole = explanation(case)
     if whole is not None or not case.rigid:
         return as_explanations(case, whole)
@@ -372,7 +363,7 @@ def _of_blocks(case: MatrixCase) -> list[Explanation]:
 
 
 def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
-    """Return a mask of the wrong entries that none of the explanations covers."""
+    """Return a mask of the wrong entries that no explanation covers."""
     return np.asarray(case.wrong & ~np.any([each.entries for each in explained], axis=0))
 
 

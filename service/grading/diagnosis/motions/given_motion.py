@@ -1,9 +1,11 @@
-"""Split a composite motion, which an exercise gives in formulas, into turns and displacements.
+"""Split a composite motion into turns and displacements.
 
-A displacement is the part of the position that contains certain lengths. The turns before a
-displacement are those whose angles change this part. A turn is the rotation that remains if all
-angles except one are set to 0.
+A displacement is the part of a position that contains certain lengths. A turn is the rotation that
+remains if all angles except one are 0.
 """
+
+# An exercise gives the motion in formulas. The turns before a displacement are those whose angles
+# change it.
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -35,21 +37,20 @@ IN_NUMBERS = Displacement((), ())
 
 @dataclass(frozen=True)
 class GivenMotion:
-    """A composite motion given in formulas: a position (one row), a rotation or a transform.
+    """A composite motion, which an exercise gives in formulas."""
 
-    ``angles`` and ``lengths`` are the symbols in the formulas. ``values`` are the values of these
-    symbols at ``count`` samples.
-    """
-
+    # A position (one row), a rotation or a transform.
     grid: FormulaGrid
+    # The values of the symbols at count samples.
     values: Mapping[str, Numbers]
     count: int
+    # The symbols in the formulas.
     angles: tuple[str, ...]
     lengths: tuple[str, ...]
 
     @classmethod
     def of(cls, part_id: str, exercise: Exercise, samples: Samples) -> "GivenMotion | None":
-        """Return the motion that a part of an exercise asks for, or None if it has no formulas."""
+        """Return the motion in the formulas of a part, or None if the part has no formulas."""
         grid = exercise.formulas.get(part_id)
         if grid is None:
             return None
@@ -76,7 +77,7 @@ class GivenMotion:
             return grid_values(tuple(map(tuple, grid)), values, self.count)
 
     def part(self, displacement: Displacement, straight: Sequence[str] = ()) -> Numbers:
-        """Return one displacement in numbers. The angles named in ``straight`` are set to 0."""
+        """Return the values of one displacement, with the angles ``straight`` set to 0."""
         key = displacement.lengths, tuple(straight)
         if key not in self._parts:
             self._parts[key] = self._part(displacement, straight)
@@ -94,11 +95,8 @@ class GivenMotion:
 
     @cached_property
     def displacements(self) -> list[Displacement]:
-        """The displacements that sum to the position.
-
-        Displacements with few turns before them come first. The list is empty if the position is
-        not a sum of displacements.
-        """
+        """The displacements that sum to the position, or an empty list."""
+        # Displacements with few turns before them come first.
         by_angles: dict[tuple[str, ...], list[str]] = {}
         for name in self.lengths:
             by_angles.setdefault(self._turning(Displacement((name,), ())), []).append(name)
@@ -109,7 +107,6 @@ class GivenMotion:
         return sorted(found, key=lambda each: len(each.angles)) if _is_zero(rest) else []
 
     def _turning(self, displacement: Displacement) -> tuple[str, ...]:
-        """Return the angles that change this displacement."""
         right = self.part(displacement)
         return tuple(
             angle for angle in self.angles if not _is_zero(self.part(displacement, [angle]) - right)
@@ -125,12 +122,12 @@ class GivenMotion:
         return next(fits, None)
 
     def turned(self, order: Sequence[str]) -> Numbers:
-        """Return the product ``(3, 3, samples)`` of single turns in this order."""
+        """Return the product ``(3, 3, samples)`` of the turns in this order."""
         return np.moveaxis(product([self._turns[angle] for angle in order]), 0, -1)
 
     @cached_property
     def _turns(self) -> dict[str, Matrices]:
-        """The rotation ``(samples, 3, 3)`` about each angle, with all other angles 0."""
+        # The rotation (samples, 3, 3) about each angle, with all other angles 0.
         return {
             angle: np.moveaxis(self.rotation(set(self.angles) - {angle}), -1, 0)
             for angle in self.angles
@@ -138,10 +135,8 @@ class GivenMotion:
 
     @cached_property
     def steps(self) -> list[Matrices] | None:
-        """The single motions ``(samples, 4, 4)`` whose product is the whole motion, or None.
-
-        Each single motion is a displacement and then a turn.
-        """
+        """The motions ``(samples, 4, 4)`` whose product is the whole motion, or None."""
+        # Each of them is a displacement and then a turn.
         if self.order is None or len(self.displacements) > len(self.order) + 1:
             return None
         places = {frozenset(self.order[:i]): i for i in range(len(self.order) + 1)}

@@ -1,10 +1,12 @@
 """Slips in a product of link transforms.
 
-Each misconception yields the wrong pose ``(SAMPLES, 4, 4)`` that it leads to. Its finding has a
-phrase for this pose, such as "the pose of frame {2}", and advice. The student may have submitted
-the pose, or only its rotation or its position. Therefore ``named`` puts the phrase into a sentence
-that fits the answer: "This matrix is …", or "The position comes from …".
+Each misconception yields a wrong pose ``(SAMPLES, 4, 4)`` and a phrase for it, such as "the pose of
+frame {2}".
 """
+
+# The student may have submitted the pose, or only its rotation or its position. Therefore named()
+# puts the phrase into a sentence that fits the answer: "This matrix is …", or "The position comes
+# from …".
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -26,14 +28,12 @@ LinkPose = Written[Matrices]
 
 @dataclass(frozen=True)
 class Chain:
-    """The links of the reference robot.
+    """The links of the exercise's robot."""
 
-    ``table`` is the DH table ``(rows, 4, SAMPLES)``. ``frames`` are the names of the frames before
-    each row and of the last frame.
-    """
-
+    # The DH table (rows, 4, SAMPLES).
     table: Table
     convention: Convention
+    # The names of the frames before each row and of the last frame.
     frames: tuple[str, ...]
 
     @cached_property
@@ -43,26 +43,26 @@ class Chain:
 
     @cached_property
     def from_base(self) -> Matrices:
-        """The poses of frames 1, 2, … in the base frame: A_1, A_1 A_2 and so on."""
+        """The poses of frames 1, 2, … in the base frame."""
         return _running_products(self.links)
 
     @cached_property
     def to_end(self) -> Matrices:
-        """The pose of the last frame in frames 0, 1, …: A_1 … A_n first, A_n last."""
+        """The poses of the last frame in frames 0, 1, …."""
         turned = np.swapaxes(self.links[::-1], -1, -2)
         return np.swapaxes(_running_products(turned), -1, -2)[::-1]
 
     @cached_property
     def misread_links(self) -> Matrices:
-        """The link transforms of the table, computed with the formula of the other convention."""
+        """The link transforms, computed with the formula of the other DH convention."""
         return links(self.table, self.convention.other)
 
     def product(self, order: Sequence[int]) -> str:
-        """Return the product of the links in this order as a formula: A1·A2·A3."""
+        """Return a product of links as a formula: A1·A2·A3."""
         return "·".join(f"A{self.frames[i + 1]}" for i in order)
 
     def frame(self, i: int) -> str:
-        """Return the name of frame ``i`` in braces, as in textbooks."""
+        """Return the name of frame ``i`` in braces: {2}."""
         return f"{{{self.frames[i]}}}"
 
 
@@ -75,7 +75,7 @@ def _running_products(transforms: Matrices) -> Matrices:
 
 
 def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
-    """Return the links of the exercise's robot, as a tuple with a single element."""
+    """Return the links of the exercise's robot, as a tuple with one ``Chain``."""
     robot = exercise.robot
     table = robot.tables[robot.convention]
     base = str(robot.joints[0].index - 1)
@@ -84,7 +84,6 @@ def chains_of(exercise: Exercise, samples: Samples) -> tuple[Chain, ...]:
 
 
 def _other_pose(pose: Sentence, advice: Sentence, correction: Sentence) -> Finding:
-    """Return a finding with a phrase for a wrong pose; ``named`` puts it into a sentence."""
     return says(say("{pose}. {advice}", pose=pose, advice=advice), correction)
 
 
@@ -121,7 +120,7 @@ def reversed_product(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/1": "0"},
 )
 def other_convention(chain: Chain) -> Iterator[LinkPose]:
-    """The table's numbers were put into the link transform of the other convention."""
+    """The table was multiplied out with the formula of the other DH convention."""
     if chain.convention is Convention.STANDARD:
         pose = say(
             "the product that the table gives with the link transform of the modified convention"
@@ -171,7 +170,7 @@ def wrong_frame(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/1": "0"},
 )
 def wrong_base(chain: Chain) -> Iterator[LinkPose]:
-    """The pose was described in a later frame instead of in the base frame."""
+    """The pose is described in a later frame instead of in the base frame."""
     for k in range(1, len(chain.links)):
         finding = _other_pose(
             say("the pose seen from frame {frame}", frame=chain.frame(k)),
@@ -195,7 +194,7 @@ def wrong_base(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/2": "90"},
 )
 def missing_link(chain: Chain) -> Iterator[LinkPose]:
-    """One link transform between the first and the last was left out of the product."""
+    """One link transform is missing in the product."""
     last = len(chain.links)
     poses = chain.from_base[: last - 2] @ chain.to_end[2:]
     for k, pose in enumerate(poses, start=1):
@@ -225,10 +224,8 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     unlike={"1/4": "-(a1*c1 + a2*c12)", "3/3": "-1/2"},
 )
 def premultiplied(chain: Chain) -> Iterator[LinkPose]:
-    """One link transform, or each single turn and shift, was multiplied from the left.
-
-    That is correct for motions about fixed axes, but the axes of the links move.
-    """
+    """One or more transforms were multiplied from the left instead of from the right."""
+    # That is correct for motions about fixed axes, but the axes of the links move.
     order = list(range(len(chain.links)))
     advice = say("Check on which side a motion about a moving axis is multiplied.")
     correction = say("Multiply from the right throughout: {product}.", product=chain.product(order))
@@ -263,10 +260,8 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/2": "2*c123"},
 )
 def row_order(chain: Chain) -> Iterator[LinkPose]:
-    """One row of the table, or its link transform, is at another place in the product.
-
-    Exchanges of two neighbours, and link transforms moved to the front, are not tried here.
-    """
+    """One link transform is at the wrong place in the product."""
+    # Exchanges of two neighbours, and link transforms moved to the front, are not tried here.
     count = len(chain.links)
     orders = [
         [*rest[:place], row, *rest[place:]]
@@ -288,16 +283,17 @@ def row_order(chain: Chain) -> Iterator[LinkPose]:
 
 
 def other_poses(chains: tuple[Chain, ...]) -> list[Explained]:
-    """Return all poses that the misconceptions lead to."""
+    """Return all wrong poses that the misconceptions lead to."""
     return [pose for chain in chains for pose in hypotheses_of(chain)]
 
 
 def named(pose: Explained, told: str, *others: Finding) -> Callable[[], tuple[Finding, ...]]:
-    """Return a function that builds the findings on a pose, after the findings ``others``.
+    """Return a function that builds the findings on a wrong pose.
 
     ``told`` is the template of the hint, such as "This matrix is {pose}. {advice}".
     """
 
+    # The findings others come first.
     def findings() -> Iterator[Finding]:
         yield from others
         for each in pose.findings:

@@ -42,7 +42,6 @@ class Displacements:
 
 
 def _with_sum(sentence: Sentence) -> Finding:
-    """Return a finding with this sentence and the rule for the position."""
     return says(
         say(
             "{sentence} The position is the sum of all displacements, each turned by the turns "
@@ -62,7 +61,7 @@ def _with_sum(sentence: Sentence) -> Finding:
     unlike="[l1, 0, h]",
 )
 def displacement_not_turned(motion: GivenMotion) -> Hypotheses:
-    """The student added a displacement without the turns before it: d1 + d2 for d1 + R1 d2."""
+    """The student left out the turns before a displacement: d1 + d2 for d1 + R1 d2."""
     found = motion.displacements
     if prod(2 ** len(each.angles) for each in found) > MAX_WAYS:
         return
@@ -112,7 +111,7 @@ def _clause(lengths: Sequence[str], angles: Sequence[str]) -> Sentence:
     unlike={"1/1": "0"},
 )
 def missing_displacement(motion: GivenMotion) -> Hypotheses:
-    """The displacement of one motion is missing in the sum."""
+    """One displacement is missing in the sum."""
     found = motion.displacements
     for i in range(len(found)) if len(found) > 1 else ():
         if _are_numbered(found):
@@ -132,7 +131,8 @@ def missing_displacement(motion: GivenMotion) -> Hypotheses:
     unlike="[0, 0, 0]",
 )
 def lone_displacement(motion: GivenMotion) -> Hypotheses:
-    """The answer is the displacement of one motion alone, described in any of the frames."""
+    """The answer is a single displacement instead of the sum."""
+    # It may be described in any of the frames.
     found = motion.displacements
     for i, each in enumerate(found) if len(found) > 1 else ():
         if _are_numbered(found):
@@ -144,10 +144,7 @@ def lone_displacement(motion: GivenMotion) -> Hypotheses:
 
 
 def _are_numbered(found: Sequence[Displacement]) -> bool:
-    """True if displacement k comes after k − 1 turns, for every k.
-
-    Then each displacement belongs to the motion with the same number.
-    """
+    # If displacement k comes after k - 1 turns, it belongs to motion k.
     return [len(each.angles) for each in found] == list(range(len(found)))
 
 
@@ -186,7 +183,7 @@ def turn_left_out(motion: GivenMotion) -> Hypotheses:
     unlike={"2/2": "0"},
 )
 def turn_reversed(motion: GivenMotion) -> Hypotheses:
-    """A turn goes the wrong way."""
+    """A turn has the opposite sense."""
     for angle in motion.angles:
         values = {**motion.values, angle: -motion.values[angle]}
         rotation = replace(motion, values=values).rotation()
@@ -213,7 +210,7 @@ def turn_reversed(motion: GivenMotion) -> Hypotheses:
     unlike={"2/2": "0"},
 )
 def turns_in_another_order(motion: GivenMotion) -> Hypotheses:
-    """The turns were multiplied in another order."""
+    """The turns were multiplied in the wrong order."""
     for order in list(permutations(motion.angles))[1:] if motion.order else ():
         yield Written(motion.turned(order), OTHER_ORDER)
 
@@ -240,7 +237,7 @@ OTHER_ORDER = says(
     unlike={"2/2": "0"},
 )
 def steps_in_reverse(motion: GivenMotion) -> Hypotheses:
-    """The motions were multiplied in reverse order, or all but the last two."""
+    """Some or all motions were multiplied in reverse order."""
     steps = motion.steps
     if steps is not None and len(steps) > 2:
         *moved, last = steps
@@ -253,7 +250,6 @@ def _subsets(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
 
 
 def _in_matrix(case: MatrixCase, of: type, block: Block) -> Hypotheses:
-    """Yield the hypotheses about one block of a matrix, such as its rotation."""
     motion = None if block != ROTATION_BLOCK and not case.is_transform else case.motion
     for hypothesis in hypotheses_of(motion, of) if motion else ():
         answer = hypothesis.answer.reshape(case.expected[block].shape)
@@ -262,17 +258,17 @@ def _in_matrix(case: MatrixCase, of: type, block: Block) -> Hypotheses:
 
 @misconception(of=UpperRows, rank=90)
 def motion_of_rows(case: MatrixCase) -> Hypotheses:
-    """The transform is composed of other motions than the exercise's formulas say."""
+    """A wrong sequence of motions explains the transform."""
     return _in_matrix(case, WholeMotion, UPPER_ROWS)
 
 
 @misconception(of=RotationBlock, rank=90)
 def turns_of_rotation(case: MatrixCase) -> Hypotheses:
-    """The rotation is composed of other turns than the exercise's formulas say."""
+    """Wrong turns explain the rotation."""
     return _in_matrix(case, TurnsOfMotion, ROTATION_BLOCK)
 
 
 @misconception(of=PositionBlock, rank=90)
 def displacements_of_position(case: MatrixCase) -> Hypotheses:
-    """The position is a sum of other displacements than the exercise's formulas say."""
+    """A wrong sum of displacements explains the position."""
     return _in_matrix(case, Displacements, POSITION_BLOCK)

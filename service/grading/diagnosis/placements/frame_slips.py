@@ -15,28 +15,28 @@ from service.translations import say
 
 @dataclass(frozen=True)
 class WrongPlacement:
-    """A wrong cell of a placed frame. ``slack`` is the largest accepted deviation from a rule."""
+    """A wrong value of a frame that the student placed."""
 
     convention: Convention
     place: RightPlace
+    # The largest accepted deviation from a rule.
     slack: float
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Return all hypotheses, because hypotheses on placements are not compared with numbers."""
+        """Return all hypotheses; they are not compared with numbers."""
         return hypotheses
 
     @property
     def is_standard(self) -> bool:
-        """True in the standard convention, where x must cross the z axis of the previous frame.
-
-        In the modified convention, x must cross the z axis of the next frame.
-        """
+        """True for the standard DH convention."""
+        # There, x must cross the z axis of the previous frame; in the modified convention that of
+        # the next frame.
         return self.convention is Convention.STANDARD
 
 
 @dataclass(frozen=True)
 class WrongJointAxis(WrongPlacement):
-    """A wrong joint number of a frame; ``right`` is the number of the correct joint."""
+    """A wrong joint number of a frame; ``right`` is the correct number."""
 
     chosen: int
     right: int
@@ -44,21 +44,21 @@ class WrongJointAxis(WrongPlacement):
 
 @dataclass(frozen=True)
 class WrongFrameZ(WrongPlacement):
-    """A z direction ``(SAMPLES, 3)`` that is not along the joint axis."""
+    """A wrong z direction ``(SAMPLES, 3)`` of a frame."""
 
     z: Numbers
 
 
 @dataclass(frozen=True)
 class WrongFrameOrigin(WrongPlacement):
-    """An origin ``(SAMPLES, 3)`` at a wrong place."""
+    """A wrong origin ``(SAMPLES, 3)`` of a frame."""
 
     origin: Numbers
 
 
 @dataclass(frozen=True)
 class WrongFrameX(WrongPlacement):
-    """A unit vector ``(SAMPLES, 3)`` that is a wrong x direction."""
+    """A wrong x direction ``(SAMPLES, 3)`` of a frame."""
 
     x: Numbers
 

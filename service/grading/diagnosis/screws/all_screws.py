@@ -19,25 +19,23 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True)
 class WrongScrews(WrongNumbers):
-    """The screw axes in the answer and the expected axes, ``(joints, 6, SAMPLES)`` each.
+    """The screw axes in a wrong answer, and the expected axes: ``(joints, 6, SAMPLES)`` each."""
 
-    ``wrong`` ``(joints, 6)`` marks the wrong numbers. ``frame`` is the frame that is asked for,
-    "space" or "body". ``elsewhere`` holds the correct axes in the other frame, or None if they are
-    unknown.
-    """
-
+    # The wrong numbers, (joints, 6).
     wrong: Mask
+    # The correct axes in the other frame, or None if they are unknown.
     elsewhere: Numbers | None
+    # The frame that is asked for: "space" or "body".
     frame: str
 
     @property
     def several(self) -> bool:
-        """True if more than one axis is wrong."""
+        """True if two or more axes are wrong."""
         return int(self.wrong.any(axis=1).sum()) > 1
 
     @property
     def axes(self) -> list[WrongScrew]:
-        """A ``WrongScrew`` for each of the axes."""
+        """A ``WrongScrew`` for each axis."""
         return [self.axis(i) for i in range(len(self.expected))]
 
     def axis(self, i: int) -> WrongScrew:
@@ -112,17 +110,14 @@ def moment_signs(case: WrongScrews) -> Hypotheses:
     unlike={"1/3": "0", "3/5": "0"},
 )
 def other_frame(case: WrongScrews) -> Hypotheses:
-    """Every axis is described in the other frame: body for space, or space for body."""
+    """Every axis is described in the wrong frame: body for space, or space for body."""
     if case.elsewhere is not None:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
 
 def explain_screws(case: WrongScrews) -> Finding | None:
-    """Return the finding that explains all wrong axes, or None.
-
-    Return None also if an axis could not be read. If only one axis is wrong, only the order of ω
-    and v is checked.
-    """
+    """Return the finding that explains all wrong axes, or None."""
+    # If only one axis is wrong, only the order of ω and v is checked.
     if not np.isfinite(case.actual).all():
         return None
     return diagnosed(case)

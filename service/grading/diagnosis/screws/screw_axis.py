@@ -16,18 +16,16 @@ from service.translations import say
 
 @dataclass(frozen=True)
 class WrongScrew(WrongNumbers):
-    """A wrong screw axis and the expected one, each ``(6, SAMPLES)``.
+    """A wrong screw axis and the expected one, each ``(6, SAMPLES)``."""
 
-    ``frame`` is the frame that is asked for, "space" or "body". ``elsewhere`` is the correct axis
-    in the other frame, or None if that axis is unknown.
-    """
-
+    # The correct axis in the other frame, or None if it is unknown.
     elsewhere: Numbers | None
+    # The frame that is asked for: "space" or "body".
     frame: str
 
     @property
     def length_scale(self) -> float:
-        """The typical length that v is compared with."""
+        """The length that errors of v are compared with."""
         return float(np.asarray(self.scale)[-1])
 
     @property
@@ -42,12 +40,12 @@ class WrongScrew(WrongNumbers):
 
     @cached_property
     def pitch(self) -> Numbers:
-        """The advance per radian h = ω · v, ``(SAMPLES,)``."""
+        """The pitch h = ω · v (the advance per radian), ``(SAMPLES,)``."""
         return np.asarray((self.direction * self.expected[3:]).sum(axis=0))
 
     @cached_property
     def moment(self) -> Numbers:
-        """The part −ω × q of v, ``(3, SAMPLES)``. It depends on where the axis is."""
+        """The part −ω × q of v, ``(3, SAMPLES)``; q is a point on the axis."""
         return self.expected[3:] - self.pitch * self.direction
 
     def with_velocity(self, velocity: Numbers) -> Numbers:
@@ -68,7 +66,7 @@ MOMENT_SIGN = says(
 
 
 def seen_from_elsewhere(frame: str) -> Finding:
-    """Return the finding that an axis is described in the wrong frame instead of in ``frame``."""
+    """Return the finding that an axis is described in another frame than ``frame``."""
     if frame == "space":
         return Finding(
             "body_for_space",
@@ -134,7 +132,7 @@ def moment_sign(case: WrongScrew) -> Hypotheses:
     unlike={"1/3": "2"},
 )
 def other_frame(case: WrongScrew) -> Hypotheses:
-    """The axis is described in the other frame: body for space, or space for body."""
+    """The axis is described in the wrong frame: body for space, or space for body."""
     if case.elsewhere is not None:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
@@ -149,7 +147,7 @@ def other_frame(case: WrongScrew) -> Hypotheses:
     unlike={"1/5": "1"},
 )
 def sliding_as_turning(case: WrongScrew) -> Hypotheses:
-    """The axis of a sliding joint was written as that of a turning joint. It should have ω = 0."""
+    """The axis of a sliding joint was written like that of a turning joint."""
     finding = says(
         say("This joint slides and does not turn: check which of ω and v holds its direction."),
         say("ω is 0, and v is the unit vector of the direction."),
@@ -169,7 +167,7 @@ def sliding_as_turning(case: WrongScrew) -> Hypotheses:
     unlike={"1/3": "0", "1/5": "1"},
 )
 def turning_as_sliding(case: WrongScrew) -> Hypotheses:
-    """The direction of a turning joint's axis was written as v, as for a sliding joint."""
+    """The axis of a turning joint was written like that of a sliding joint."""
     finding = says(
         say("This joint turns and does not slide: check which of ω and v holds its direction."),
         say("ω is the unit vector along the axis, and v = −ω × q."),
@@ -202,7 +200,7 @@ def exchanged_halves(case: WrongScrew) -> Hypotheses:
     unlike={"1/4": "0"},
 )
 def not_normalised(case: WrongScrew) -> Hypotheses:
-    """The vector ω does not have length 1. For a sliding joint, v does not have length 1."""
+    """The unit vector (ω, or v of a sliding joint) does not have length 1."""
     letter, unit = ("ω", slice(0, 3)) if case.turns else ("v", slice(3, 6))
     finding = says(
         say(
@@ -226,7 +224,7 @@ def not_normalised(case: WrongScrew) -> Hypotheses:
     unlike={"1/3": "0", "1/5": "1"},
 )
 def point_for_velocity(case: WrongScrew) -> Hypotheses:
-    """A point on the axis was written in place of v."""
+    """The student wrote a point on the axis instead of v."""
     finding = says(say("v holds a point q on the axis. It must be a velocity, v = −ω × q."))
     if case.turns and np.abs(case.moment).max() >= EXACT_VALUE:
         point = case.actual[3:]
@@ -245,7 +243,7 @@ def point_for_velocity(case: WrongScrew) -> Hypotheses:
     unlike={"1/4": "1"},
 )
 def pitch(case: WrongScrew) -> Hypotheses:
-    """The advance along the axis is missing, superfluous or wrong."""
+    """The part of v along ω, which gives the pitch, is wrong."""
     if not case.turns:
         return
     hint = say("The part of v along ω is not right: check the pitch of this joint.")
@@ -265,7 +263,7 @@ def pitch(case: WrongScrew) -> Hypotheses:
     unlike={"1/1": "1"},
 )
 def point_off_axis(case: WrongScrew) -> Hypotheses:
-    """The point q from which v was computed is not on the axis."""
+    """The student computed v from a point that is not on the axis."""
     if case.frame == "space":
         hint = say(
             "ω is right, v is not: v = −ω × q needs a point q on this axis. Check the coordinates "
@@ -306,5 +304,5 @@ def other_direction(case: WrongScrew) -> Hypotheses:
 
 
 def explain_screw(case: WrongScrew) -> Finding | None:
-    """Return the finding that explains a wrong axis as a whole, or None."""
+    """Return the finding that explains a wrong screw axis, or None."""
     return diagnosed(case) if np.isfinite(case.actual).all() else None

@@ -1,4 +1,4 @@
-"""Slips in the joint variables of a single table cell, or in its kind (length or angle)."""
+"""Slips in the joint variables or the quantity (length or angle) of a table cell."""
 
 import re
 from collections.abc import Callable
@@ -32,7 +32,7 @@ CONVERTED = say(
     unlike={"6/d": "0"},
 )
 def unknown_length(case: WrongCell) -> Finding | None:
-    """The cell contains a length that the exercise does not have, such as d1 if joint 1 turns."""
+    """The cell contains a length that the exercise does not have."""
     name, joint = _absent(case)
     if joint is None or joint.prismatic:
         return None
@@ -83,11 +83,7 @@ def joint_variable_absent(case: WrongCell) -> Finding | None:
 
 
 def _absent(case: WrongCell) -> tuple[str, Joint | None]:
-    """Return a variable in the cell that the robot does not have, and the joint with its number.
-
-    Return "" if the robot has all variables in the cell. The joint is None if no joint has the
-    number.
-    """
+    # A variable that the robot does not have ("" if there is none), and the joint with its number.
     absent = sorted(case.samples.absent_names([case.expression]))
     if not absent:
         return "", None
@@ -105,7 +101,7 @@ def _absent(case: WrongCell) -> tuple[str, Joint | None]:
     unlike={"1/theta": "-theta1"},
 )
 def joint_variable_missing(case: WrongCell) -> Finding | None:
-    """The joint variable is missing, as if the joint could not leave the drawn pose."""
+    """The joint variable is missing in the cell."""
     if case.joint is None or not case.required or case.contained != {}:
         return None
     joint = case.joint.index
@@ -243,7 +239,7 @@ def _is_converted(case: WrongCell, convert: Callable[[Numbers], Numbers]) -> boo
     unlike={"6/d": "0"},
 )
 def joint_variable_column(case: WrongCell) -> Finding | None:
-    """The joint variable is in the column that is constant for this kind of joint."""
+    """The joint variable is in a column that must be constant."""
     joint, _ = case.contained_alone
     if joint is None or joint != case.joint or case.required:
         return None
@@ -271,7 +267,7 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     unlike={"2/d": "d6"},
 )
 def joint_variable_extra(case: WrongCell) -> Finding | None:
-    """The cell contains the variable of a joint that must not change the cell."""
+    """The cell contains a joint variable that does not belong in it."""
     extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None

@@ -1,7 +1,6 @@
-"""Tables whose columns are in another order, such as θ, d, a, α or α, a, d, θ.
+"""Tables whose columns are in another order, such as θ, d, a, α."""
 
-The columns have no headers, or the cells were typed one by one under the headers a, α, d, θ.
-"""
+# The columns have no headers, or the cells were typed one by one under the headers a, α, d, θ.
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -50,11 +49,9 @@ _PERMUTED = register(
 
 
 def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
-    """Yield the table in each other order of columns that suits its cells best, likeliest first.
-
-    For example, a column with joint variables must be d or θ, and a column with lengths must be a
-    or d. Yield nothing if the written order suits the cells as well as any other.
-    """
+    """Yield the table in other orders of columns that suit its cells better."""
+    # For example, a column with joint variables must be d or θ, and a column with lengths a or d.
+    # Only the orders that suit the cells best are tried, the likeliest first.
     if table.reread is None or _suits(table, grading):
         return
     other = table.reread([COLUMNS[column] for column in _OTHER_QUANTITY])
@@ -80,7 +77,6 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
 
 
 def _suits(table: StudentTable, grading: Grading) -> bool:
-    """True if all cells obviously suit their own columns. This test is fast."""
     sliding = _sliding(grading.exercise.joints)
     known = grading.exercise.vocabulary.by_name
     return all(
@@ -108,15 +104,12 @@ def _suits_column(
 
 
 def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
-    """Return a map from each joint variable to True if the joint slides, False if it turns."""
     return {joint.variable: joint.prismatic for joint in joints}
 
 
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
-    """Count the cells of each written column that cannot be a, α, d or θ: ``(4, 4)``.
-
-    ``other`` is the same table with lengths read as angles and angles read as lengths.
-    """
+    # Counts the cells of each written column that cannot be a, α, d or θ: (4, 4). The table other
+    # has lengths read as angles and angles read as lengths.
     sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):
@@ -135,10 +128,6 @@ def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) 
 
 
 def _reordered(order: Order, table: StudentTable, other: StudentTable) -> StudentTable:
-    """Return the table with its columns read in this order.
-
-    ``other`` is the same table with lengths read as angles and angles read as lengths.
-    """
     rows = tuple(
         _reordered_row(order, one, two) for one, two in zip(table.rows, other.rows, strict=True)
     )
@@ -163,7 +152,6 @@ def _is_same(one: StudentTable, other: StudentTable) -> bool:
 
 
 def _moved(intended: StudentTable, table: StudentTable) -> frozenset[tuple[int, int]]:
-    """Return the cells that differ between the intended table and the table as read."""
     error = np.abs(difference(intended.values, table.values, IS_ANGLE[:, None])).max(axis=-1)
     return frozenset((i, column) for i, column in np.argwhere(error > INTENDED_CELL).tolist())
 

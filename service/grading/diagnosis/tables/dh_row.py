@@ -20,7 +20,7 @@ from service.translations import say
 
 @dataclass(frozen=True)
 class WrongRow(WrongNumbers):
-    """A wrong DH row ``(4, SAMPLES)`` for a ``transform`` ``(SAMPLES, 4, 4)``."""
+    """A wrong DH row ``(4, SAMPLES)`` of a transform ``(SAMPLES, 4, 4)``."""
 
     transform: Matrices
     convention: Convention
@@ -70,7 +70,7 @@ def exchanged_parameters(case: WrongRow) -> Hypotheses:
     unlike="l, 0, 2*a, pi",
 )
 def other_convention(case: WrongRow) -> Hypotheses:
-    """The row describes the transform in the other convention."""
+    """The row describes the transform in the other DH convention."""
     other = case.convention.other
     hint = say("This is the row of the modified convention; the standard one is asked for.")
     if other is Convention.STANDARD:
@@ -129,12 +129,12 @@ _ROW_EXISTS = register(
 
 
 def axes_named(convention: Convention) -> tuple[str, str]:
-    """Return the names of the two axes in the conditions: an x axis and a z axis."""
+    """Return the names of the x axis and the z axis in the two DH conditions."""
     return ("x1", "z0") if convention is Convention.STANDARD else ("x0", "z1")
 
 
 def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """Return findings on the DH conditions that a transform without a DH row violates."""
+    """Return findings on the DH conditions that the transform violates."""
     x, z = axes_named(convention)
     row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
     perpendicular = _NOT_PERPENDICULAR.finding(
@@ -164,7 +164,7 @@ def violated(transform: Matrices, convention: Convention, length_scale: float) -
 
 
 def has_a_row(convention: Convention) -> Finding:
-    """Return the finding for the answer "none" if the transform has a DH row."""
+    """Return the finding on the wrong answer that a transform has no DH row."""
     x, z = axes_named(convention)
     return _ROW_EXISTS.finding(
         say(

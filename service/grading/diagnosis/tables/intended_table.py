@@ -1,4 +1,4 @@
-"""The table that a student intended, without one systematic slip such as an exchange of a and d."""
+"""A student's table with one systematic mistake corrected."""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -20,23 +20,20 @@ _EXCHANGED = [D, 1, A, 3]
 
 
 class IntendedTable(NamedTuple):
-    """The table that the student intended, without one systematic slip.
-
-    ``finding`` describes the slip; ``cells`` are the cells that have it.
-    """
+    """A student's table with one systematic mistake corrected."""
 
     table: StudentTable
+    # Describes the mistake.
     finding: Finding
+    # The cells that have the mistake.
     cells: frozenset[CellIndex]
 
 
 def with_exchanged_row(
     table: StudentTable, convention: Convention | None, grading: Grading
 ) -> IntendedTable | None:
-    """Return the table with a and d exchanged in one row, if that makes both cells correct.
-
-    Return None unless there is exactly one such row.
-    """
+    """Return the table with a and d exchanged in one row, if that corrects both cells."""
+    # None unless there is exactly one such row.
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)
     if reference is None or len(reference.rows) != len(table.rows):

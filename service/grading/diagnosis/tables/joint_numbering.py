@@ -1,4 +1,4 @@
-"""Tables with other joint numbers: from 0, or separate for turning and sliding joints."""
+"""Tables in which the joints are numbered in another way, for example from 0."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -45,10 +45,8 @@ _NUMBERED_BY_KIND = register(
 
 
 def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable | None:
-    """Return the table with its joint variables renumbered, or None.
-
-    Return None if no other numbering gives each row the variable of its own joint.
-    """
+    """Return the table with its joint variables renumbered, or None."""
+    # None if no other numbering gives each row the variable of its own joint.
     joints = grading.exercise.joints
     vocabulary = with_absent_variables(grading.exercise.vocabulary)
     used = [_joint_variables(row, vocabulary) for row in table.rows]
@@ -75,16 +73,12 @@ def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable |
 
 
 def _joint_variables(row: StudentRow, vocabulary: Vocabulary) -> set[str]:
-    """Return the joint variables in a row, also those that the robot does not have."""
     symbols = set[str]().union(*(each.symbols for each in row.expressions if each is not None))
     return {name for name in symbols if vocabulary.by_name[name].joint is not None}
 
 
 def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joint]) -> bool:
-    """True if this numbering gives each row the variable of its own joint and no other variable.
-
-    ``used`` are the joint variables in each row; ``meanings`` is the numbering.
-    """
+    # used are the joint variables in each row; meanings is the numbering.
     if len(used) < len(joints):
         return False
     own = [joint.variable for joint in joints]
@@ -97,7 +91,7 @@ def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joi
 
 
 def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[Finding, Meanings]]:
-    """Yield each other numbering: a finding on it, and a map from written to correct variables."""
+    # Each numbering is a finding on it, and a map from written to correct variables.
     first = joints[0].index
     by_index = {joint.index: joint for joint in joints}
     for start in {0, 1} - {first}:
@@ -123,7 +117,6 @@ def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[F
 
 
 def _names(index: int, joints: Mapping[int, Joint]) -> tuple[str, str]:
-    """Return the variable names of a turning and of a sliding joint with this index."""
     return _name(index, joints, False), _name(index, joints, True)
 
 

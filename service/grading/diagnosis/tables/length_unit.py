@@ -1,4 +1,4 @@
-"""Tables whose lengths are in another unit than the exercise's, such as millimetres for metres."""
+"""Tables whose lengths are in a wrong unit, such as millimetres instead of metres."""
 
 from dataclasses import replace
 from typing import Final
@@ -45,11 +45,9 @@ _OTHER_UNIT = register(
 def in_other_length_unit(
     table: StudentTable, convention: Convention | None, grading: Grading
 ) -> IntendedTable | None:
-    """Return the table with its lengths in the unit of the exercise, or None.
-
-    The size of the lengths shows in which unit they were written. Joint variables are not
-    converted.
-    """
+    """Return the table with its lengths in the unit of the exercise, or None."""
+    # The size of the lengths shows in which unit they were written. Joint variables are not
+    # converted.
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)
     if reference is None or not np.isfinite(table.values).all():

@@ -1,7 +1,6 @@
-"""Slips in whole rows or columns of the robot's table that lead to a wrong answer.
+"""Slips in whole rows or columns of the robot's table."""
 
-These slips change numbers of the table, but no symbols.
-"""
+# They change numbers of the table, but no symbols.
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -34,19 +33,18 @@ from service.translations import say
 
 @dataclass(frozen=True, slots=True)
 class TableRows:
-    """The rows of a table, with their ``constants`` ``(rows, 4)`` at one sample.
+    """The rows of a DH table, in which mistakes are tried."""
 
-    The constants are the cells with all joint variables 0. The first rows belong to the ``joints``;
-    ``labels`` are the labels of all rows. ``home`` is True if the answer is for the home position,
-    so that no joint moves. ``multiplied`` is True if the answer is the product of the links, False
-    if it is the links themselves.
-    """
-
+    # The cells (rows, 4) at one sample, with all joint variables 0.
     constants: Numbers
+    # The joints of the first rows.
     joints: Sequence[Joint]
+    # The labels of all rows.
     labels: Sequence[str]
     convention: Convention
+    # True if the answer is for the home position, so that no joint moves.
     home: bool = False
+    # True if the answer is the product of the links, False if it is the links themselves.
     multiplied: bool = True
 
     def moves(self, row: int, column: int) -> bool:
@@ -68,11 +66,9 @@ def slips_of_rows(rows: TableRows) -> Iterator[Slip]:
 def exchanged_in_row(
     row: int, label: str, constants: Sequence[float], *, slides: bool
 ) -> Iterator[Slip]:
-    """Yield the slips in which a and d are exchanged in one row.
+    """Yield the slips in which a and d are exchanged in one row."""
 
-    If the joint of the row ``slides``, the last slip also moves the joint variable from d to a.
-    """
-
+    # If the joint slides, the last slip also moves the joint variable from d to a.
     def words(_: Names) -> SlipWords:
         return SlipWords(
             say("the length a and the offset d are exchanged in row {row}", row=label),
@@ -114,10 +110,8 @@ def _exchanged(row: int, *, moving: bool = False) -> tuple[CellChange, ...]:
 
 
 def negated_columns(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips in which one column has the wrong sign in all rows.
-
-    The joint variables in the column have the wrong sign, too, or keep their signs.
-    """
+    """Yield the slips in which all signs of one column are wrong."""
+    # The joint variables in the column have the wrong sign, too, or keep their signs.
     for column in range(len(COLUMNS)):
         cells = rows.constants[:, column]
         sizes = np.sin(cells) if IS_ANGLE[column] else cells
@@ -140,10 +134,8 @@ def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
 
 
 def other_table(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips in which the table was written in the other convention.
-
-    Then a and α are in a neighbouring row.
-    """
+    """Yield the slips in which the table was written in the other DH convention."""
+    # Then a and α are in a neighbouring row.
     last = len(rows.constants) - 1
     cells: list[CellChange] = []
     if rows.convention is Convention.STANDARD:
@@ -160,7 +152,6 @@ def other_table(rows: TableRows) -> Iterator[Slip]:
 
 
 def _of_link(row: int, source: int) -> tuple[CellChange, ...]:
-    """Return the changes that replace a and α of a row by those of the row ``source``."""
     return tuple(CellChange(row, column, source=(source, column)) for column in (A, ALPHA))
 
 
@@ -235,7 +226,8 @@ def _standard_formula(_: Names) -> SlipWords:
 
 
 def exchanged_rows(rows: TableRows) -> Iterator[Slip]:
-    """Yield the exchanges of two rows, with or without their joint variables."""
+    """Yield the slips in which two rows are exchanged."""
+    # With or without their joint variables.
     count = len(rows.constants)
     kinds = [joint.prismatic for joint in rows.joints]
     for i, j in combinations(range(count), 2):
@@ -288,7 +280,8 @@ def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, 
 
 
 def missing_links(rows: TableRows) -> Iterator[Slip]:
-    """Yield the slips in which a row, but not the first or last one, is missing in the product."""
+    """Yield the slips in which a row is missing in the product."""
+    # It is not the first or last row.
     for row in range(1, len(rows.constants) - 1):
         cells = tuple(CellChange(row, column, 0.0, moving=True) for column in range(len(COLUMNS)))
         yield Slip(MISSING_LINK, partial(_missing_link, f"A{rows.labels[row]}"), cells=cells)

@@ -48,7 +48,7 @@ ROUNDED_TURN = ROUNDED_VALUE * np.pi
     unlike={"1/alpha": "0"},
 )
 def sign(case: WrongCell) -> Hypotheses:
-    """The constant in the cell has the right size and the wrong sign."""
+    """The constant in the cell has the wrong sign."""
     hint = say(
         "The sign of {symbol} is wrong: it must be measured along {axis}, positive in the "
         "direction of the axis.",
@@ -103,7 +103,7 @@ def distance_left_out(case: WrongCell) -> Hypotheses:
     unlike={"2/d": "d6"},
 )
 def distance_extra(case: WrongCell) -> Hypotheses:
-    """The cell contains a distance that belongs in another cell or in none."""
+    """The cell contains a distance that does not belong there."""
     hint = say(
         "Check whether the distance in {symbol} belongs there: it may lie along another axis, or "
         "stand in another cell already.",
@@ -213,7 +213,7 @@ def _compare_axes(case: WrongCell) -> Sentence:
     unlike={"6/d": "0"},
 )
 def half_turn(case: WrongCell) -> Hypotheses:
-    """The angle differs by 180° from the correct angle, because an axis points the opposite way."""
+    """The angle differs by 180° from the correct angle."""
     finding = finding_on(
         case,
         _compare_axes(case),
@@ -269,7 +269,6 @@ def _too_large(case: WrongCell) -> str:
 
 
 def _in_symbols(case: WrongCell) -> str:
-    """Return the advice to use symbols if a number was written for a length, else ""."""
     expected = case.constants[1]
     if case.angle or case.expression.symbols:
         return ""
@@ -279,14 +278,14 @@ def _in_symbols(case: WrongCell) -> str:
 
 
 def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:
-    """Return the joints whose variables are in a cell, with the factors of the variables."""
     if counts is None:
         return None
     return {joint: count for joint, count in zip(joints, counts, strict=True) if count}
 
 
 def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, WrongCell]:
-    """Return the wrong readable cells by row and column, as far as the work budget allows."""
+    """Return the wrong readable cells by row and column."""
+    # The work budget limits their number.
     if not judgement.wrong:
         return {}
     written = [
@@ -350,10 +349,8 @@ def diagnose_cells(
 def _of_misplaced_variables(
     slips: dict[CellIndex, Finding], judgement: Judgement
 ) -> dict[CellIndex, Finding]:
-    """Return the findings, with one shared finding for both cells of a misplaced joint variable.
-
-    For example, the variable of a sliding joint is in θ and missing in d.
-    """
+    # For example, the variable of a sliding joint is in θ and missing in d: one finding for both
+    # cells.
     told = dict(slips)
     for (i, column), finding in slips.items():
         joint = judgement.rows[i].joint

@@ -41,16 +41,13 @@ TABLE_SAMPLES = 3
 
 @dataclass(frozen=True, slots=True)
 class _Intended:
-    """The table that the student intended, without the slips that ``findings`` describe.
-
-    ``table`` is ``(rows, 4, SAMPLES)``, or None if it needs other rows than the student wrote.
-    ``changed`` ``(rows, 4)`` marks the cells that differ from the student's table. ``departures``
-    measures how far its frames are from the reference frames.
-    """
-
+    # The slips that are corrected in the table.
     findings: tuple[Finding, ...]
+    # (rows, 4, SAMPLES), or None if it needs other rows than the student wrote.
     table: Table | None
+    # The cells (rows, 4) that differ from the student's table.
     changed: NDArray[np.bool_]
+    # How far its frames are from the reference's frames.
     departures: float
 
 
@@ -65,10 +62,10 @@ def explained(
 ) -> tuple[tuple[Finding, ...], Judgement]:
     """Return the findings that explain a whole wrong table, and a judgement that fits them.
 
-    Misconceptions that would make the whole table correct are compared with the cells that were
-    found wrong. If none of them fits, return no findings and the same ``judgement``. Pairs of
-    misconceptions are tried only if ``combine`` is true.
+    Pairs of misconceptions are tried only if ``combine`` is true.
     """
+    # Misconceptions that would make the whole table correct are compared with the cells that were
+    # found wrong. If none of them fits, there are no findings and the judgement is unchanged.
     values = values_of([role.row for role in roles if role.row is not None])
     if len(values) < len(roles) or not np.isfinite(values).all():
         return (), judgement
@@ -101,7 +98,6 @@ def explained(
 
 
 def _is_other_convention(intended: _Intended, judgement: Judgement) -> bool:
-    """True if the only slip is the other convention, and the frames are near the reference's."""
     codes = [finding.code for finding in intended.findings]
     return codes == ["other_convention"] and intended.departures <= judgement.departures
 
@@ -130,7 +126,7 @@ def _wrong_table(
 def _exchanges(
     judgement: Judgement, roles: Sequence[Role], grading: Grading
 ) -> Iterator[tuple[str, str, Table]]:
-    """Yield pairs of lengths in wrong cells, and how the table changes if the two are exchanged."""
+    # How the table changes if two lengths in wrong cells are exchanged.
     by_name = grading.exercise.vocabulary.by_name
     lengths: set[str] = set()
     for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist():

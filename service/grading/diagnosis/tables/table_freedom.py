@@ -1,9 +1,8 @@
-"""Tables whose joints have fewer degrees of freedom than the robot.
+"""Tables whose joints have fewer degrees of freedom than the robot."""
 
-Two joints that turn about one line, or slide along one direction, move the arm like a single joint.
-More generally, the arm loses a degree of freedom if joint screws are linearly dependent, but
-independent in the reference.
-"""
+# Two joints that turn about one line, or slide along one direction, move the arm like a single
+# joint. More generally, the arm loses a degree of freedom if joint screws are linearly dependent,
+# but independent in the reference.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -42,20 +41,18 @@ _LOST = register(
 
 @dataclass(frozen=True, slots=True)
 class _Arm:
-    """Joints and their screws ``(samples, 6, joints)``, in units of the typical length."""
-
     joints: tuple[Joint, ...]
+    # (samples, 6, joints), in units of the typical length.
     screws: Screws
 
     def directions(self, i: int) -> NDArray[np.float64]:
-        """Return the axis of joint ``i``, ``(samples, 3)``."""
         return self.screws[:, 3:, i] if self.joints[i].prismatic else self.screws[:, :3, i]
 
 
 def freedom_lost(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
-    """Return the findings on joints that share an axis or depend on each other."""
+    """Return findings on joints that share an axis or whose motions depend on each other."""
     present = [role for role in roles if role.row is not None]
     joints = grading.exercise.robot.joints
     where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]
@@ -72,12 +69,13 @@ def lost_freedom(
     exercise: Exercise,
     samples: Samples,
 ) -> tuple[Finding, ...]:
-    """Return the findings on joints that share an axis or depend on each other.
+    """Return findings on joints that share an axis or whose motions depend on each other.
 
-    ``values`` is the student's table ``(rows, 4, SAMPLES)``; NaN is an unreadable cell.
-    ``joint_rows`` gives the row of each joint of the robot; joints with None are left out. The
-    result is empty if a cell is unreadable or extremely large, or if a joint variable is missing.
+    ``values`` is the student's table ``(rows, 4, SAMPLES)``. ``joint_rows`` is the row of each
+    joint of the robot.
     """
+    # NaN is an unreadable cell; joints with the row None are left out. The result is empty if a
+    # cell is unreadable or extremely large, or if a joint variable is missing.
     table = samples.subset_of(values, POSTURES)
     if not np.isfinite(table).all():
         return ()
@@ -107,7 +105,6 @@ def _arm(
 
 
 def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    """Return a finding for each axis that joints share in this table but not in the reference."""
     joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
     findings, done = [], set[int]()
     for i, others in enumerate(joined):
@@ -119,7 +116,6 @@ def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple
 
 
 def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    """Return a finding on joints whose motions are linearly dependent."""
     if rank(written.screws) >= rank(intended.screws):
         return ()
     involved = dependent(written.screws)
@@ -187,7 +183,7 @@ def _lost_degrees(joints: str, rows: str, *, slide: bool) -> Sentence:
 
 
 def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, Sentence]:
-    """Return True if two axes ``(samples, 3)`` are parallel, and a sentence on their directions."""
+    # True if two axes (samples, 3) are parallel, and a sentence on their directions.
     if np.abs(np.cross(one, other)).max() < SAME_SCREW:
         return True, say("The axes of these joints are parallel, but apart.")
     cosines = np.abs(np.sum(one * other, axis=-1))
@@ -200,7 +196,7 @@ def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, Se
 
 
 def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
-    """Return, in words, the rows whose a and α lead from the axis of joint i to that of joint j."""
+    # The rows whose a and α lead from the axis of joint i to that of joint j.
     # In a standard row, a and α come after its joint; in a modified one, before it.
     shift = int(convention is Convention.MODIFIED)
     labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]

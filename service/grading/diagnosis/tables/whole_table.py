@@ -1,7 +1,6 @@
 """Slips in a whole table.
 
-For each misconception, the table is changed as if the student did not have it. If the changed table
-describes the robot, the misconception explains the wrong table.
+A slip explains a wrong table if the table describes the robot once the slip is corrected.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -39,21 +38,19 @@ _OF_LINK = slice(A, ALPHA + 1)
 
 @dataclass(frozen=True, slots=True)
 class WrongTable:
-    """A wrong table at all samples, and at a few samples, which make comparisons fast.
+    """A wrong table."""
 
-    ``valid`` takes tables ``(T, rows, 4, samples)`` at these few samples. It returns a mask
-    ``(T,)`` of the tables that describe the robot.
-    """
-
+    # The table at all samples.
     written: WrittenTable
+    # The table at a few samples, which make comparisons fast.
     subset: WrittenTable
+    # Takes tables (T, rows, 4, samples) at these few samples, and returns a mask (T,) of the tables
+    # that describe the robot.
     valid: Callable[[Table, Convention], NDArray[np.bool_]]
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Return the hypotheses whose changed table describes the robot; all are compared at once.
-
-        The hypotheses must be tables at the few samples.
-        """
+        """Return the hypotheses whose corrected table describes the robot."""
+        # The hypotheses must be tables at the few samples; all are compared at once.
         tried = list(hypotheses)
         explains = np.zeros(len(tried), dtype=np.bool_)
         for convention in Convention:
@@ -77,7 +74,7 @@ class WrongTable:
     unlike={"2/a": "d3", "3/d": "0"},
 )
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The columns a and α, or one of them, are one row too early or too late."""
+    """The columns a and α, or one of them, are shifted by one row."""
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
     for columns in (_OF_LINK, slice(A, A + 1), slice(ALPHA, ALPHA + 1)):
@@ -97,10 +94,7 @@ def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
 
 
 def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
-    """Return the finding on shifted columns.
-
-    ``other`` is the convention in which the columns are in the correct place, or None.
-    """
+    # other is the convention in which the columns are in the correct place, or None.
     in_other = ""
     if other is Convention.STANDARD:
         in_other = say("In the standard convention they stand there.")
@@ -129,7 +123,8 @@ def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     unlike="l2, 0, l1, q1 ↵ l3, 180deg, 0, q2 ↵ q3, l4, 0, 0 ↵ 0, 0, q4, 0",
 )
 def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
-    """One of the columns has the wrong sign in all rows, with or without its joint variables."""
+    """One column has the wrong sign in all rows."""
+    # With or without its joint variables.
     for column in range(len(COLUMNS)):
         constants, motion = table.constants.copy(), table.motion.copy()
         constants[:, column] *= -1
@@ -154,10 +149,8 @@ def _turned_sign(column: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
-    """A parameter of the x axis was exchanged with one of the z axis: a with d, or α with θ.
-
-    The exchange is in all rows or in one, with or without the joint variables.
-    """
+    """Two columns are exchanged: a with d, or α with θ."""
+    # The exchange is in all rows or in one, with or without the joint variables.
     for one, other in ((A, D), (ALPHA, THETA)):
         still = np.abs(table.constants[:, one] - table.constants[:, other]).max(axis=-1) > 0
         moving = np.abs(table.motion[:, one] - table.motion[:, other]).max(axis=-1) > 0
@@ -179,7 +172,8 @@ def _exchanged(cells: Table, rows: slice, one: int, other: int) -> Table:
 
 
 def exchanged_columns(one: int, other: int) -> Finding:
-    """Return the finding that two columns are exchanged, in all rows or in one row."""
+    """Return the finding that two columns are exchanged."""
+    # In all rows or in one row.
     hint = say("a and d are exchanged: a is measured along x, d along z.")
     if one == ALPHA:
         hint = say("α and θ are exchanged: α is measured about x, θ about z.")
@@ -201,7 +195,8 @@ def exchanged_columns(one: int, other: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two rows are exchanged, or all rows are in reverse order, with or without the last row."""
+    """Two rows are exchanged, or the rows are in reverse order."""
+    # The last row may keep its place.
     rows = range(len(table.constants))
     exchanges = [{i: j, j: i} for i, j in combinations(rows, 2)]
     orders = [[exchange.get(row, row) for row in rows] for exchange in exchanges]
@@ -261,7 +256,6 @@ def _exchanged_lengths(one: str, other: str) -> Finding:
 def _with_another(
     basic: Record, others: Sequence[Record], table: WrittenTable
 ) -> Iterator[Explained]:
-    """Yield each pair of the misconception ``basic`` and one of the ``others``."""
     for first in each_hypothesis((basic,), table):
         for second in each_hypothesis(others, first.answer):
             yield Repaired(second.answer, partial(_both, first, second), record=second.record)
@@ -272,11 +266,9 @@ def _both(first: Explained, second: Explained) -> tuple[Finding, ...]:
 
 
 def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
-    """Return all hypotheses that explain the whole table.
-
-    If there are none, and ``combine`` is true, return the first pair of misconceptions that
-    explains the table together.
-    """
+    """Return all misconceptions that explain the whole table."""
+    # If there are none, and combine is true, return the first pair of misconceptions that explains
+    # the table together.
     records = records_of(WrittenTable)
     found = list(_explaining(case, [partial(each_hypothesis, (each,)) for each in records]))
     if found or not combine:
@@ -291,7 +283,6 @@ def explaining(case: WrongTable, *, combine: bool) -> list[Explained]:
 def _explaining(
     case: WrongTable, ways: Sequence[Callable[[WrittenTable], Iterator[Explained]]]
 ) -> Iterator[Explained]:
-    """Yield the hypotheses that explain the table; each of the functions ``ways`` builds some."""
     tried = [(build, list(build(case.subset))) for build in ways]
     every = chain.from_iterable(hypotheses for _, hypotheses in tried)
     explains = set(map(id, case.explained_by(every)))

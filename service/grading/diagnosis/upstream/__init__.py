@@ -1,1 +1,1 @@
-"""Slips in the robot's table or in its joints that lead to a wrong later answer."""
+"""Slips in the robot's table or joints that lead to a wrong later answer."""

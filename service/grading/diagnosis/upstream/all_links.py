@@ -1,4 +1,4 @@
-"""Slips that change all link transforms of an answer: in a column of the table, or in two rows."""
+"""Slips in the table that change all link transforms of an answer."""
 
 from collections.abc import Sequence
 
@@ -39,12 +39,9 @@ def explain_links(
     part: LinkTransformsSpec,
     grading: Grading,
 ) -> Finding | None:
-    """Return the finding that explains all wrong link transforms at once, or None.
-
-    ``written`` are the numbers of the ``matrices`` and ``right`` the correct numbers, ``(rows,
-    SAMPLES, 4, 4)`` each; ``scale`` is ``(4, 4)``. Return None also if the answer is judged by an
-    earlier answer of the student.
-    """
+    """Return the finding that explains all wrong link transforms at once, or None."""
+    # written are the numbers of the matrices and right the correct numbers, (rows, SAMPLES, 4, 4)
+    # each; scale is (4, 4). None also if the answer is judged by an earlier answer of the student.
     wrong = _wrong(written, right, scale)
     if grading.following or not wrong.any() or not grading.affords(LINKS_WORK):
         return None
@@ -85,28 +82,21 @@ def _explained(
 
 
 def _wrong(written: Matrices, right: Matrices, scale: Numbers) -> Mask:
-    """Return a mask ``(rows, 4, 4)`` of the entries that are readable and wrong."""
     actual, expected = _at_subset(written), _at_subset(right)
     is_read = np.isfinite(actual).all(axis=-1)
     return np.asarray(is_read & ~nearly_equal(actual, expected, scale, False))
 
 
 def _at_subset(transforms: Matrices) -> Numbers:
-    """Return the entries ``(rows, 4, 4, L)`` of link transforms at some of the samples."""
     return Samples.subset_of(np.moveaxis(transforms, 1, -1), SUBSET)
 
 
 def _reference(part: LinkTransformsSpec, grading: Grading) -> Matrices:
-    """Return the link transforms ``(rows, SAMPLES, 4, 4)`` of the exercise's own table."""
     table = grading.exercise.robot.tables[part.convention]
     return links(table.values(grading.samples.values, SAMPLES), table.convention)
 
 
 def _slipped_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> SlippedAnswers:
-    """Return the wrong link transforms that mistakes in the table lead to.
-
-    Their shape is ``(K, rows, 4, 4, samples)``.
-    """
     table, samples = grading.exercise.robot.tables[part.convention], grading.samples
     constants, motion = constants_and_motion(right, table.convention, table.joints, samples)
     slips = list(

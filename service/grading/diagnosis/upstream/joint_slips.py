@@ -1,4 +1,4 @@
-"""Slips in the joints and lengths of a robot that is given by a table or by screws."""
+"""Slips in the joint variables of a robot that is given by a table or by screw axes."""
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cache
@@ -43,7 +43,7 @@ def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> 
 
 
 def joint_variable_sign(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
-    """Return the slip that the joint moves in the negative sense of its axis."""
+    """Return the slip in which a joint variable has the wrong sign."""
 
     def words(names: Names) -> SlipWords:
         hint = say(
@@ -60,7 +60,7 @@ def joint_variable_sign(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
 
 
 def joint_variable_missing(joint: Joint, *cells: CellChange) -> Slip:
-    """Return the slip that the joint's variable is left out, as if the joint could not move."""
+    """Return the slip in which a joint variable is missing."""
 
     def words(names: Names) -> SlipWords:
         index, name = joint.index, names.shown(joint.variable)
@@ -85,8 +85,6 @@ def _moves_with(joint: Joint, name: str) -> Sentence:
 
 
 def _joint_variable_index(joint: Joint, other: Joint) -> Slip:
-    """Return the slip that the joint moves by the variable of another joint."""
-
     def words(names: Names) -> SlipWords:
         # The student wrote this variable, so its name gives nothing away.
         index, name = joint.index, names.name(other.variable)
@@ -104,8 +102,6 @@ def _joint_variable_index(joint: Joint, other: Joint) -> Slip:
 
 
 def _joint_variable_doubled(joint: Joint) -> Slip:
-    """Return the slip that the joint variable is counted twice."""
-
     def words(names: Names) -> SlipWords:
         index, name = joint.index, names.shown(joint.variable)
         clause = say("joint {joint} moves twice as far as its variable", joint=index)
@@ -130,7 +126,7 @@ def _joint_variable_doubled(joint: Joint) -> Slip:
 
 
 def _zero_position(joint: Joint) -> Iterator[Slip]:
-    """Yield the slips in which the joint's angle is measured from another zero position."""
+    # The joint's angle is measured from another zero position.
     yield _turned_joint(joint, QUARTER_TURN, np.pi / 2)
     yield _turned_joint(joint, QUARTER_TURN, -np.pi / 2)
     yield _turned_joint(joint, HALF_TURN, np.pi)
@@ -155,7 +151,7 @@ def _turned_joint(joint: Joint, kind: Record, turn: float) -> Slip:
 
 
 def home_slip(joints: Sequence[Joint]) -> Iterator[Slip]:
-    """Yield the slip that the answer describes the home position, with all joint variables 0."""
+    """Yield the slip in which all joint variables are 0."""
     if len(joints) > 1:
         symbols = tuple(SymbolChange(each.variable, each.variable, 0.0) for each in joints)
         yield Slip(HOME_POSITION, _at_home, symbols=symbols)
@@ -169,11 +165,9 @@ def _at_home(_: Names) -> SlipWords:
 
 
 def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
-    """Return a function that says in which direction a joint's axis points in the home position.
+    """Return a function that describes the direction of a joint's axis in the home position."""
 
-    The axes are computed on the first call of the returned function.
-    """
-
+    # The axes are computed on the first call of the returned function.
     @cache
     def screws() -> Numbers:
         assert exercise.reference is not None

@@ -1,4 +1,4 @@
-"""Slips in the lengths of an answer: a wrong sign, a length left out, two exchanged."""
+"""Slips in the lengths of an answer, such as a wrong sign."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from itertools import combinations
@@ -17,11 +17,8 @@ MAX_LENGTHS = 12
 
 
 def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[Slip]:
-    """Yield the slips in these lengths: a wrong sign, a length left out, two lengths exchanged.
-
-    For the lengths ``alone``, each of which is a whole cell of the table, only exchanges are
-    yielded.
-    """
+    """Yield the slips in these lengths: wrong signs, missing lengths and exchanged lengths."""
+    # For the lengths alone, each of which is a whole cell of the table, only exchanges are yielded.
     in_cells = set(alone)
     for length in lengths:
         if length not in in_cells:

@@ -1,4 +1,4 @@
-"""Symbols that an entry lacks or should not contain: a joint variable, or a length."""
+"""Symbols that an entry lacks or should not contain."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -27,30 +27,27 @@ NOT_ZERO = say("This must not be 0: check which lengths have a part here.")
 
 @dataclass(frozen=True, slots=True)
 class Required:
-    """The symbols that the correct entry depends on, and how the entry grows with ``lengths``.
-
-    ``grows`` is 1 if the entry doubles when all ``lengths`` double, 0 if it stays the same, None
-    for anything else. ``lengths`` includes the variables of sliding joints. ``joints`` are the
-    variables of all joints.
-    """
+    """The symbols that a correct entry depends on."""
 
     symbols: frozenset[str]
+    # 1 if the entry doubles when all lengths double, 0 if it stays the same, else None.
     grows: int | None
+    # All lengths, and the variables of sliding joints.
     lengths: frozenset[str]
+    # The variables of all joints.
     joints: tuple[str, ...]
 
 
 @dataclass(frozen=True)
 class Requirements:
-    """Finds the symbols that each correct entry depends on, by changing one symbol after another.
-
-    ``expected`` is ``(..., SAMPLES)``, ``scale`` broadcasts to ``(...)``.
-    """
+    """Finds the symbols that each correct entry depends on, by changing one symbol at a time."""
 
     answers: SlippedAnswers
     exercise: Exercise
     samples: Samples
+    # (..., SAMPLES).
     expected: Numbers
+    # Broadcasts to (...).
     scale: Numbers
 
     def of(self, *place: int) -> Required | None:
@@ -75,11 +72,9 @@ class Requirements:
 
     @cached_property
     def _dependences(self) -> tuple[Mask, Mask]:
-        """The masks of the entries that depend on each symbol, and on all lengths.
-
-        The first mask is ``(symbols, ...)``. The second mask is ``(2, ...)``: it marks the entries
-        that stay the same if all lengths are doubled, and the entries that double.
-        """
+        # The first mask (symbols, ...) marks the entries that depend on each symbol. The second
+        # mask (2, ...) marks the entries that stay the same if all lengths double, and those that
+        # double.
         probes = [
             Change(symbols=(SymbolChange(name, name, 1.0, PROBE),)) for name in self.samples.values
         ]
@@ -94,12 +89,10 @@ class Requirements:
 
 @dataclass(frozen=True)
 class Dependence:
-    """A wrong entry.
-
-    ``required`` are the symbols that the correct entry depends on, or None if they are unknown.
-    """
+    """A wrong entry, and the symbols that the correct entry depends on."""
 
     case: WrongEntry
+    # None if the symbols are unknown.
     required: Required | None
 
     @property
@@ -109,7 +102,7 @@ class Dependence:
 
     @property
     def joints(self) -> list[str]:
-        """The joint variables that the correct entry depends on but the student did not write."""
+        """The joint variables that the student left out."""
         known = self.required
         return (
             [name for name in known.joints if name in known.symbols - self.written] if known else []
@@ -130,7 +123,7 @@ def _is_formula(entry: Dependence) -> bool:
     unlike={"1/1": "theta1"},
 )
 def constant(entry: Dependence) -> Finding | None:
-    """A number was written for a quantity that changes with a joint."""
+    """The student wrote a number, but the correct entry changes with a joint."""
     if entry.written or not entry.joints:
         return None
     hint = say("This is a constant, but it must change with the joints.")
@@ -147,7 +140,7 @@ def constant(entry: Dependence) -> Finding | None:
     unlike={"3/1": "h"},
 )
 def zero(entry: Dependence) -> Finding | None:
-    """A 0 was written for a length."""
+    """The student wrote 0 for a length."""
     case, required = entry.case, entry.required
     if required is None or required.grows != 1 or not required.lengths:
         return None
@@ -165,7 +158,7 @@ def zero(entry: Dependence) -> Finding | None:
     unlike={"1/4": "a1 c1"},
 )
 def quantity(entry: Dependence) -> Finding | None:
-    """A length is expected but the formula has none, or the other way round."""
+    """The formula is a plain number instead of a length, or a length instead of a number."""
     case, required = entry.case, entry.required
     if required is None or required.grows is None or not required.lengths:
         return None
@@ -197,7 +190,7 @@ def quantity(entry: Dependence) -> Finding | None:
     unlike={"1/4": "c1 + c12"},
 )
 def missing_joints(entry: Dependence) -> Finding | None:
-    """The entry does not contain the variables of joints that change the correct entry."""
+    """Joint variables are missing in the entry."""
     case, names = entry.case, entry.joints
     if not names or any(_is_whole(case, name) for name in names):
         return None
@@ -224,7 +217,7 @@ def missing_joints(entry: Dependence) -> Finding | None:
     unlike={"A2.3/4": "1"},
 )
 def extra_joints(entry: Dependence) -> Finding | None:
-    """The entry contains the variables of joints that must not change the entry."""
+    """The entry contains joint variables that do not belong in it."""
     case, required = entry.case, entry.required
     assert required is not None
     few = case.samples.subset(1)
@@ -255,7 +248,8 @@ def extra_joints(entry: Dependence) -> Finding | None:
     unlike={"3/1": "-pi/2"},
 )
 def missing_length(entry: Dependence) -> Finding | None:
-    """A length is missing in the entry. The hint does not name the length: it may be the answer."""
+    """A length is missing in the entry."""
+    # The hint does not name the length: it may be the answer.
     required = entry.required
     assert required is not None
     if not required.symbols & required.lengths - entry.written - set(required.joints):
@@ -280,7 +274,7 @@ def unexplained(entry: Dependence) -> Finding:
 
 
 def _is_whole(case: WrongEntry, name: str) -> bool:
-    """True if the correct entry is just this symbol, so that the name would give the entry away."""
+    # Then the name of the symbol would give the entry away.
     return _same(case, np.abs(case.expected), np.abs(case.samples.values[name]))
 
 

@@ -1,8 +1,6 @@
-"""A slip made before the answer is computed: in the robot's table, joints or lengths.
+"""A slip: a mistake in the robot's table, joints or lengths, which leads to a wrong answer."""
 
-A slip changes the input from which the correct answer is computed, and so leads to a wrong answer.
-Many slips are tried at once: a single computation takes the changed inputs of all slips.
-"""
+# Many slips are tried at once: a single computation takes the changed inputs of all slips.
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -18,7 +16,7 @@ from service.translations import Sentence
 
 @dataclass(frozen=True, slots=True)
 class SymbolChange:
-    """A symbol that takes the value ``factor · source + offset``; ``source`` is a symbol too."""
+    """A changed symbol: its value becomes ``factor`` times the ``source``, plus ``offset``."""
 
     symbol: str
     source: str
@@ -28,42 +26,35 @@ class SymbolChange:
 
 @dataclass(frozen=True, slots=True)
 class CellChange:
-    """A change of the constant part of a cell.
-
-    The new constant part is ``factor`` times the constant part of a source cell, plus ``offset``.
-    ``source`` is the row and column of the source cell; if it is None, the changed cell is the
-    source. With ``moving``, the joint variables in the cells change along with the constants.
-    """
+    """A changed constant of a cell: ``factor`` times the ``source``, plus ``offset``."""
 
     row: int
     column: int
     factor: float = 1.0
     offset: float = 0.0
+    # The row and column of the cell whose constant is multiplied; None for the changed cell itself.
     source: tuple[int, int] | None = None
+    # If True, the joint variables in the cells change along with the constants.
     moving: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Change:
-    """A change to what an answer is computed from: to ``symbols``, or to ``cells`` of the table.
-
-    If ``misread`` is true, the links are computed with the formula of the other convention.
-    """
+    """A change to the symbols or the table cells from which an answer is computed."""
 
     symbols: tuple[SymbolChange, ...] = ()
     cells: tuple[CellChange, ...] = ()
+    # If True, the links are computed with the formula of the other convention.
     misread: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Names:
-    """The names of symbols in a message.
+    """The names of symbols in a message."""
 
-    ``name`` returns the name that the student uses for a symbol. ``gives_away`` is True for a
-    symbol that a message must not name, because its name would reveal the correct entry.
-    """
-
+    # Returns the name that the student uses for a symbol.
     name: Callable[[str], str]
+    # True for a symbol whose name would reveal the correct entry.
     gives_away: Callable[[str], bool]
 
     def shown(self, symbol: str) -> str | None:
@@ -73,30 +64,26 @@ class Names:
 
 @dataclass(frozen=True, slots=True)
 class SlipWords:
-    """The sentences about a slip.
+    """The sentences about a slip."""
 
-    ``clause`` says in a clause what is wrong, so that several slips can be listed. ``hint`` is the
-    message on this slip alone: it says what is wrong and what to check.
-    """
-
+    # What is wrong, in a clause, so that several slips can be listed.
     clause: Sentence
+    # What is wrong and what to check, for this slip alone.
     hint: str
     correction: str = ""
 
 
 @dataclass(frozen=True, slots=True)
 class Slip(Change):
-    """A possible mistake of a student: its kind, and the change that it makes.
-
-    ``words`` returns the sentences about the slip; they contain the names that the student uses.
-    """
+    """A possible mistake of a student: its kind, and the change that it makes."""
 
     kind: Record
+    # Returns the sentences about the slip, with the names that the student uses.
     words: Callable[[Names], SlipWords]
 
     @property
     def code(self) -> str:
-        """The code of the slip's kind, or the name of a kind without a code."""
+        """The code of the kind of slip, or its name if it has no code."""
         return self.kind.name
 
 
@@ -128,11 +115,9 @@ def change_cells(
     constants: Table,
     first_row: int = 0,
 ) -> None:
-    """Apply each of K changes to its own table in ``tables`` ``(rows, 4, K, count)``, in place.
-
-    ``right`` ``(rows, 4, count)`` is the correct table, ``constants`` the same table with all joint
-    variables 0. All three arrays begin with row ``first_row`` of the whole table.
-    """
+    """Apply each change to its own table in ``tables`` ``(rows, 4, K, count)``, in place."""
+    # right (rows, 4, count) is the correct table, constants the same table with all joint variables
+    # 0. All three arrays begin with row first_row of the whole table.
     cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]
     if not cells:
         return

@@ -1,4 +1,4 @@
-"""The search for slips that lead to a wrong answer, and the finding on them."""
+"""The search for slips that explain a wrong answer."""
 
 from collections.abc import Callable, Sequence, Set
 from dataclasses import dataclass
@@ -36,21 +36,23 @@ MAX_LISTED = 4
 class SlipSearch:
     """A student's wrong answer, and the wrong answers that possible slips lead to.
 
-    A slip is a mistake in the table, the joints or the lengths. ``actual`` and ``expected`` are
-    ``(..., L)`` at some of the samples, NaN if unreadable. ``wrong`` ``(...)`` marks the wrong
-    entries. ``scale`` broadcasts to ``(...)``, ``angle`` to ``(..., 1)``. ``name`` returns the name
-    that the student uses for a symbol. ``unwritten`` are the constants that the student did not
-    write.
+    A slip is a mistake in the table, the joints or the lengths.
     """
 
     answers: SlippedAnswers
     samples: Samples
+    # (..., L) at some of the samples, like expected; NaN if unreadable.
     actual: Numbers
     expected: Numbers
+    # The wrong entries, (...).
     wrong: Mask
+    # Broadcasts to (...).
     scale: ArrayLike
+    # Broadcasts to (..., 1).
     angle: ArrayLike = False
+    # Returns the name that the student uses for a symbol.
     name: Callable[[str], str] = str
+    # The constants that the student did not write.
     unwritten: Set[str] = frozenset()
 
     def explanation(self, entries: Mask) -> Explained | None:
@@ -60,7 +62,6 @@ class SlipSearch:
         return None if finding is None else Hypothesis(None, finding, entries, record=slips[0].kind)
 
     def _gives_away(self, symbol: str) -> bool:
-        """True if the name of the symbol would reveal the correct answer."""
         if symbol in self.unwritten:
             return True
         count = self.actual.shape[-1] // 2
@@ -91,14 +92,12 @@ class SlipSearch:
 
     @cached_property
     def _at_two_samples(self) -> tuple[Mask, Mask]:
-        """The entries that each slip explains, and those that it changes: two masks ``(K, ...)``.
-
-        All slips are compared at only two samples, which is a quick first test.
-        """
+        # The entries that each slip explains, and those that it changes: two masks (K, ...). All
+        # slips are compared at only two samples, which is a quick first test.
         return self._compared(self.answers.slips, 1)
 
     def _compared(self, slips: Sequence[Slip], count: int) -> tuple[Mask, Mask]:
-        """Return two masks ``(K, ...)``: the entries that K slips explain, and that they change."""
+        # The entries that K slips explain, and those that they change: two masks (K, ...).
         samples = self.samples if count == HALF else self.samples.subset(count)
         half = self.actual.shape[-1] // 2
         some = [*range(count), *range(half, half + count)]
@@ -109,11 +108,8 @@ class SlipSearch:
 
 
 def _certain(slips: list[Slip]) -> list[Slip]:
-    """Return the slips that may be reported.
-
-    A slip is removed if it includes another slip of the list as a part. A missing link is kept only
-    together with exchanged rows.
-    """
+    # A slip is removed if it includes another slip of the list as a part. A missing link is kept
+    # only together with exchanged rows.
     codes = {slip.code for slip in slips}
     covered = {code for code in codes if PARTS_OF.get(code, set()) & codes}
     if codes != {"row_order", "missing_link"}:
@@ -122,7 +118,6 @@ def _certain(slips: list[Slip]) -> list[Slip]:
 
 
 def _finding(slips: Sequence[Slip], names: Names) -> Finding | None:
-    """Return the finding on slips that all lead to the same answer."""
     # Slips with the same clause are the same to a student.
     plain = Names(names.name, lambda _: False)
     different: dict[str, Slip] = {}

@@ -1,4 +1,4 @@
-"""The answers that slips lead to, computed from a changed table or changed symbols."""
+"""The wrong answers that mistakes in the table or in symbols lead to."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
@@ -28,29 +28,25 @@ AnswersAt = Callable[[Sequence[Change], Samples], Numbers]
 
 @dataclass(frozen=True)
 class SlippedAnswers:
-    """The wrong answers that ``slips`` lead to.
-
-    ``at`` returns the answers ``(K, ..., samples)`` that K changes lead to. ``by_symbols`` is True
-    if every symbol can be changed, False if only joint variables can be changed. ``at_home`` is
-    True if all joint variables are 0 in the answers.
-    """
+    """The wrong answers that ``slips`` lead to."""
 
     slips: tuple[Slip, ...]
+    # Returns the answers (K, ..., samples) that K changes lead to.
     at: AnswersAt
+    # True if every symbol can be changed, False if only joint variables can be changed.
     by_symbols: bool = True
+    # True if all joint variables are 0 in the answers.
     at_home: bool = False
 
     def of(self, entries: Callable[[Numbers], Numbers]) -> "SlippedAnswers":
-        """Return these answers reduced to some entries, for example poses to positions."""
+        """Return these answers with only some of their entries, for example positions."""
         return replace(self, at=lambda changes, samples: entries(self.at(changes, samples)))
 
 
 def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
-    """Return the wrong answers that slips lead to, or None if they cannot be computed.
-
-    If the exercise has formulas for the part, the answers are ``(K, rows, columns, samples)``.
-    Otherwise they are poses ``(K, 4, 4, samples)`` of the robot.
-    """
+    """Return the wrong answers that slips lead to, or None if they cannot be computed."""
+    # With formulas for the part, the answers are (K, rows, columns, samples), otherwise they are
+    # poses (K, 4, 4, samples) of the robot.
     exercise = grading.exercise
     if grading.following:
         return None
@@ -63,7 +59,6 @@ def slipped_answers(part: PartSpec, grading: Grading) -> SlippedAnswers | None:
 
 
 def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
-    """Return the poses ``(K, 4, 4, samples)`` of a robot with a table."""
     robot = exercise.robot
     table = robot.tables[robot.convention]
     start, to, last = *map(robot.frame_number, (part.start, part.to)), len(table.rows)
@@ -88,10 +83,8 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
 def slipped_tables(
     table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
 ) -> Table:
-    """Return one table for each of K changes: ``(rows, 4, K, count)``.
-
-    A change in a row that the table does not have adds rows.
-    """
+    """Return one changed table for each of K changes: ``(rows, 4, K, count)``."""
+    # A change in a row that the table does not have adds rows.
     changed = changed_values(changes, values)
     tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)
     right = table.values(values, count)
@@ -107,7 +100,6 @@ def slipped_tables(
 
 
 def _of_screws(part: PosePartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
-    """Return the poses ``(K, 4, 4, samples)`` of a robot that is given by its screws."""
     robot = exercise.reference
     assert isinstance(robot, ScrewRobot)
 
@@ -122,15 +114,13 @@ def _of_screws(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slip
 
 
 def _of_formulas(part: PartSpec, exercise: Exercise, samples: Samples) -> SlippedAnswers:
-    """Return the values ``(K, rows, columns, samples)`` of a part that is given in formulas."""
     grid = exercise.formulas[part.id]
     at = _stacked(lambda values, count: grid_values(grid, values, count))
     return SlippedAnswers(_general_slips(exercise, samples), at)
 
 
 def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
-    """Return a function that calls ``answer`` once for all changes, and splits the result."""
-
+    # The returned function calls answer once for all changes, and splits the result.
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         values = changed_values(changes, samples.values)
         found = answer(values, len(changes) * samples.count)
@@ -141,7 +131,6 @@ def _stacked(answer: Callable[[SymbolValues, int], Numbers]) -> AnswersAt:
 
 
 def _general_slips(exercise: Exercise, samples: Samples) -> tuple[Slip, ...]:
-    """Return the slips in joints and lengths, or none if the exercise has no joints."""
     joints = exercise.joints
     if not joints:
         return ()

@@ -34,11 +34,9 @@ from service.kinematics.transforms import Matrices, Numbers
 def slipped_link(
     row: int, right: Matrices, convention: Convention, grading: Grading
 ) -> SlippedAnswers | None:
-    """Return the wrong link transforms ``(K, 4, 4, samples)`` that mistakes in one row lead to.
-
-    ``right`` is the correct transform ``(SAMPLES, 4, 4)``. Return None if the answer is judged by
-    an earlier answer of the student.
-    """
+    """Return wrong link transforms that mistakes in one row lead to, or None."""
+    # They are (K, 4, 4, samples); right is the correct transform (SAMPLES, 4, 4). None if the
+    # answer is judged by an earlier answer of the student.
     if grading.following:
         return None
     samples = grading.samples
@@ -64,8 +62,6 @@ def slipped_link(
 
 
 def _in_reference_frames(table: ReferenceTable, row: int) -> AnswersAt:
-    """Return a function that computes the link transform of a row of the reference table."""
-
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         tables = slipped_tables(table, changes, samples.values, samples.count)
         return as_entries(links(tables[row : row + 1], table.convention)[0])
@@ -76,11 +72,7 @@ def _in_reference_frames(table: ReferenceTable, row: int) -> AnswersAt:
 def _in_own_frames(
     row: int, constants: Numbers, senses: Numbers, joint: Joint | None, convention: Convention
 ) -> AnswersAt:
-    """Return a function that computes the link transform of a row with other frames.
-
-    ``constants`` ``(4, SAMPLES)`` are the cells of the row with all joint variables 0.
-    """
-
+    # constants (4, SAMPLES) are the cells of the row with all joint variables 0.
     def at(changes: Sequence[Change], samples: Samples) -> Numbers:
         count = samples.count
         fixed = constants if count == SAMPLES else Samples.subset_of(constants, count // 2)
@@ -99,9 +91,10 @@ def constants_and_motion(
 ) -> tuple[Table, Table]:
     """Return the DH rows of correct link transforms, split into constants and motion.
 
-    ``right`` is ``(rows, SAMPLES, 4, 4)``. Both results are tables ``(rows, 4, SAMPLES)``; their
-    sum is the table. The motion is the part of each cell that changes with the joints.
+    The motion is the part of each cell that changes with the joints.
     """
+    # right is (rows, SAMPLES, 4, 4). Both results are tables (rows, 4, SAMPLES), and the table is
+    # their sum.
     constants, motions = np.empty((2, len(right), len(COLUMNS), samples.count))
     for i, link in enumerate(right):
         joint, cells = joints[i] if i < len(joints) else None, dh_row(link, convention)
@@ -111,12 +104,11 @@ def constants_and_motion(
 
 
 def _motion(senses: Numbers, joint: Joint | None, values: SymbolValues) -> Numbers:
-    """Return the part ``(4, ...)`` of each cell that the joint changes."""
     return np.multiply.outer(senses, values[joint.variable] if joint else np.zeros(1))
 
 
 def _senses(cells: Numbers, joint: Joint | None, samples: Samples) -> Numbers:
-    """Return the factor of the joint's variable, 0, 1 or −1, in each cell of a row."""
+    # The factor of the joint's variable in each cell of a row: 0, 1 or -1.
     senses = np.zeros(len(cells))
     if joint is not None:
         column = variable_column(joint)

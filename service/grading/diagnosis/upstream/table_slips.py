@@ -1,7 +1,6 @@
-"""Slips in the cells of the robot's table that lead to a wrong pose.
+"""Slips in the cells of the robot's table that lead to a wrong pose."""
 
-A slip has the same code here as in a submitted table (``table_cell``).
-"""
+# A slip has the same code here as in a submitted table (table_cell).
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -43,15 +42,12 @@ QUARTER = np.pi / 2
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A cell of a table, and the words about it in messages.
-
-    If ``own_frames`` is true, the student chose other frames, so that the correct value of the cell
-    may differ from ``table``.
-    """
+    """A cell of a table, and the words about it in messages."""
 
     table: ReferenceTable
     row: int
     column: int
+    # True if the student chose other frames: the correct value of the cell may differ from table.
     own_frames: bool
 
     @property
@@ -61,7 +57,7 @@ class Cell:
 
     @property
     def axes(self) -> str:
-        """The two axes that an angle lies between."""
+        """The two axes between which the cell's angle is measured."""
         axis = "z" if self.column == ALPHA else "x"
         return axes_of_row(axis, self.label, self.table.joints[-1].index)
 
@@ -83,7 +79,7 @@ class Cell:
         return _parameter(self.table, self.row, self.column)
 
     def name(self, names: Names) -> str:
-        """Return the name that the student uses for the cell's only constant, or a, α, d or θ."""
+        """Return the student's name for the cell's only constant, or a, α, d or θ."""
         letters = _letters(self.table, self.row, self.column)
         if len(letters) == 1 and not self.own_frames:
             return names.shown(min(letters)) or SYMBOLS[self.column]
@@ -98,12 +94,12 @@ def table_slips(
     home: bool = False,
     whole: bool = True,
 ) -> Iterator[Slip]:
-    """Yield all single slips in a table.
+    """Yield all slips in a table.
 
-    ``constants`` ``(rows, 4, samples)`` is the table with all joint variables 0. If ``home`` is
-    true, the answer is for the home position, so that only constants can be wrong. If ``whole`` is
-    true, slips of whole rows and columns are tried, too.
+    ``constants`` ``(rows, 4, samples)`` is the table with all joint variables 0.
     """
+    # With home, the answer is for the home position, so that only constants can be wrong. With
+    # whole, slips of whole rows and columns are tried, too.
     if not home:
         yield from joint_slips(table.joints, table.joints, axis)
         yield from home_slip(table.joints)
@@ -116,7 +112,7 @@ def table_slips(
 
 
 def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
-    """Return all lengths of the table in order, and those that are the whole of their only cell."""
+    """Return all lengths of the table, and those that occur only alone in a single cell."""
     cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
     names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
     once = [name for name in names if sum(name in cell for cell in cells) == 1]
@@ -134,10 +130,10 @@ def row_slips(
 ) -> Iterator[Slip]:
     """Yield the slips in one row.
 
-    ``constants`` are the cells of the row at one sample, with all joint variables 0. If
-    ``own_frames`` is true, the student chose other frames, so that ``constants`` differ from
-    ``table``. If ``home`` is true, the answer is for the home position, so that no joint moves.
+    ``constants`` are the cells of the row at one sample, with all joint variables 0.
     """
+    # With own_frames, the student chose other frames, so that constants differ from table. With
+    # home, the answer is for the home position, so that no joint moves.
     joint = table.joints[row] if row < len(table.joints) and not home else None
     for column in (A, ALPHA, D, THETA):
         cell, constant = Cell(table, row, column, own_frames), constants[column]
@@ -228,13 +224,11 @@ def _turned(cell: Cell, kind: Record, turn: float) -> Slip:
 
 
 def _letters(table: ReferenceTable, row: int, column: int) -> frozenset[str]:
-    """Return the symbols of a cell except the joint variable."""
     variables = {joint.variable for joint in table.joints}
     return table.rows[row][column].symbols - variables
 
 
 def _parameter(table: ReferenceTable, row: int, column: int) -> Sentence:
-    """Return in words which parameter is in a cell: "the offset along the axis of joint 2"."""
     joints = [joint.index for joint in table.joints]
     if row < len(joints) and column == D:
         return say("the offset along the axis of joint {joint}", joint=joints[row])
