@@ -1,4 +1,4 @@
-"""Grade answers to an exercise: return a report. Pure: no clock, no disk, no network."""
+"""Grade answers to an exercise, without clock, disk or network."""
 
 from service.catalogue import FeedbackLevel
 from service.grading.grade import GradedAnswers, Submission, UnknownPartError, grade, graded_answers

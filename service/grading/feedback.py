@@ -1,4 +1,4 @@
-"""Findings, their messages, and the messages that are visible at each feedback level."""
+"""Findings (hints with corrections), and the messages that each feedback level shows."""
 
 from collections.abc import Callable, Iterable, Sequence, Set
 from dataclasses import dataclass, replace
@@ -26,22 +26,22 @@ EXPECTED = "expected"
 
 @dataclass(frozen=True, slots=True)
 class Finding:
-    """A hint where to look, and the correction. The hint never contains the right value.
+    """A hint where to look, and the correction. The hint never contains the correct value."""
 
-    ``code`` is stable, so that mistakes can be counted by their codes. ``correction`` is a formula,
-    an instruction in words, or empty. ``values`` is a counterexample. ``reading`` is true for a
-    finding on how a text was read; it reveals nothing and is visible at every level. ``suggestion``
-    is the repaired form of an unreadable text. ``rule`` is the rule that a hint explains.
-    """
-
+    # Stable, so that mistakes can be counted by their codes.
     code: str
     hint: str
+    # A formula, an instruction in words, or empty.
     correction: Correction | str = ""
     severity: Severity = Severity.ERROR
     span: tuple[int, int] | None = None
+    # A counterexample.
     values: dict[str, float | str] | None = None
+    # True for a finding on how a text was read; it reveals nothing and is visible at every level.
     reading: bool = False
+    # The repaired form of an unreadable text.
     suggestion: str | None = None
+    # The rule that the hint explains.
     rule: RuleName | None = None
 
     def message(self, places: tuple[Place, ...] = (), *, corrects: bool) -> Feedback:
@@ -99,11 +99,9 @@ _NOTES_ON: Final = {"swapped_atan2": "atan2_order", "degrees_as_radians": "bare_
 def parts_at_level(
     parts: Iterable[PartReport], level: FeedbackLevel, left_out: Feedback | None
 ) -> tuple[PartReport, ...]:
-    """Return the parts with the messages that are visible at the level, without repetitions.
-
-    ``left_out`` is the message that explanations are incomplete, or None. This function does not
-    remove corrections: at lower levels, messages are made without corrections.
-    """
+    """Return the parts with the messages that are visible at the feedback level."""
+    # Without repetitions. left_out is the message that explanations are incomplete, or None.
+    # Corrections are not removed here: at lower levels, messages are made without corrections.
     has_hints = level in _LEVELS_WITH_HINTS
     visible = _with_hints if has_hints else _on_reading
     shown = [with_shared_messages(_filtered(part, visible)) for part in parts]
@@ -115,7 +113,6 @@ def parts_at_level(
 
 
 def _filtered(part: PartReport, visible: Callable[[Messages], Messages]) -> PartReport:
-    """Return the part with only its visible messages."""
     if not part.feedback and not any(map(_has_messages, part.rows)):
         return part
     rows = tuple(_filtered_row(row, visible) if _has_messages(row) else row for row in part.rows)
@@ -141,7 +138,6 @@ def _with_hints(messages: Messages) -> Messages:
 
 
 def _on_reading(messages: Messages) -> Messages:
-    """Return the messages on how texts were read, without hints."""
     return tuple(_unmarked(each) for each in messages if each.reading)
 
 
@@ -150,7 +146,7 @@ def _unmarked(message: Feedback) -> Feedback:
 
 
 def _with_left_out(parts: list[PartReport], left_out: Feedback) -> list[PartReport]:
-    """Return the parts; the first part with an unexplained cell gets the message ``left_out``."""
+    # The first part with an unexplained cell gets the message left_out.
     for i, part in enumerate(parts):
         if _has_unexplained_cells(part):
             told = replace(part, feedback=(*part.feedback, left_out))
@@ -172,11 +168,8 @@ def _has_unexplained_cells(part: PartReport) -> bool:
 
 
 def _without_rows(report: PartReport) -> PartReport:
-    """Return the report on a part without its rows, but with the messages on unreadable cells.
-
-    These messages reveal nothing, and students need them. Instead of the points lost in each row,
-    the report has their sum.
-    """
+    # The messages on unreadable cells stay: they reveal nothing, and students need them. Instead of
+    # the points lost in each row, the report has their sum.
     reading = tuple(
         replace(message, places=(Place(row.label, cell.label),))
         for row in report.rows
@@ -196,11 +189,9 @@ _Said = tuple[str, str, str | None]
 
 
 def with_shared_messages(report: PartReport) -> PartReport:
-    """Replace equal messages on several cells by one message on the part, with all their places.
-
-    Messages are equal if they have the same code, sentence and repaired text. The first
-    counterexample is kept. Most messages on a piece of the text in a cell stay with their cell.
-    """
+    """Replace equal messages on several cells by one message on the part."""
+    # Messages are equal if they have the same code, sentence and repaired text. The first
+    # counterexample is kept. Most messages on a piece of the text in a cell stay with their cell.
     in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
     for row in report.rows:
         for cell in row.cells:
@@ -220,7 +211,6 @@ def with_shared_messages(report: PartReport) -> PartReport:
 
 
 def _is_shareable(message: Feedback) -> bool:
-    """True if the message may be shared by several cells."""
     return message.span is None or message.code in _WORDS_ENOUGH
 
 
@@ -229,7 +219,7 @@ def _said(message: Feedback) -> _Said:
 
 
 def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
-    """Return the first of several equal messages, with the places of all these messages."""
+    # The result has the places of all these messages.
     first = replace(told[0][1], span=None)
     if len({message.correction for _, message in told}) == 1:
         return replace(first, places=tuple(dict.fromkeys(place for place, _ in told)))
@@ -238,13 +228,12 @@ def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
 
 
 def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
-    """Return the cell without its shared messages."""
     own = tuple(m for m in cell.feedback if not _is_shareable(m) or _said(m) not in shared)
     return cell if len(own) == len(cell.feedback) else replace(cell, feedback=own)
 
 
 def _joined(messages: Iterable[Feedback]) -> tuple[Feedback, ...]:
-    """Return the messages on a part; equal messages become one message with all their places."""
+    # Equal messages become one message with all their places.
     found: dict[object, Feedback] = {}
     for i, message in enumerate(messages):
         is_placed = message.places is not None and message.span is None

@@ -1,9 +1,11 @@
-"""Points for an answer that is computed correctly from an earlier wrong answer of the student.
+"""Points for an answer that is computed correctly from an earlier wrong answer.
 
-One early mistake must not make every later part wrong. So if the answer to a part is wrong, it is
-also judged by the student's earlier answer instead of the reference. The earlier answer must be
-good enough, so that a trivial table does not earn easy points later.
+One early mistake must not make every later part wrong.
 """
+
+# So if the answer to a part is wrong, it is also judged by the student's earlier answer instead of
+# the reference. The earlier answer must be good enough, so that a trivial table does not earn easy
+# points later.
 
 from collections.abc import Callable, Sequence
 
@@ -34,10 +36,10 @@ ToolAt = Callable[[Samples], Matrices]
 def can_carry(chain: StudentChain, grading: Grading) -> bool:
     """True if later answers may be judged by this answer instead of by the reference.
 
-    The answer must be a rigid chain. Each joint must turn about, or slide along, one axis by its
-    own variable. The arm must have as many degrees of freedom as the robot. Other arms may make
-    later parts much easier.
+    The answer must be an arm with the joints and the degrees of freedom of the robot.
     """
+    # It must be a rigid chain. Each joint must turn about, or slide along, one axis by its own
+    # variable. Other arms may make later parts much easier.
     robot = grading.exercise.reference
     if robot is None or not is_rigid(chain.frames, NOT_RIGID).all():
         return False
@@ -49,10 +51,8 @@ def can_carry(chain: StudentChain, grading: Grading) -> bool:
 
 
 def _jacobian(tool_at: ToolAt, grading: Grading) -> Numbers | None:
-    """Return the axes of all joints, ``(HALF, 6, joints)``; the unit is the typical length.
-
-    Return None if a joint does not turn about, or slide along, one axis.
-    """
+    # The axes of all joints, (HALF, 6, joints); the unit is the typical length. None if a joint
+    # does not turn about, or slide along, one axis.
     found = []
     for i in range(len(grading.exercise.joints)):
         # An axis depends neither on its own joint's variable nor on those of later joints.
@@ -64,11 +64,8 @@ def _jacobian(tool_at: ToolAt, grading: Grading) -> Numbers | None:
 
 
 def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool) -> Numbers | None:
-    """Return the axis ``(HALF, 6)`` of joint ``i`` in the base frame.
-
-    Return None if a small motion of the joint does not move the tool about or along one axis. If
-    ``later`` is true, the later joints have other values.
-    """
+    # The axis (HALF, 6) of joint i in the base frame. None if a small motion of the joint does not
+    # move the tool about or along one axis. With later, the later joints have other values.
     scale, joints = grading.exercise.length_scale, grading.exercise.joints
     values = {name: np.tile(numbers[:HALF], 2) for name, numbers in grading.samples.values.items()}
     for joint in joints[i + 1 :] if later else ():
@@ -86,11 +83,9 @@ def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool
 
 
 def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> bool:
-    """True if no joint moves any entry ``(rows, columns, SAMPLES)`` of an answer.
-
-    ``quantities`` are the quantities of the columns, or the quantity of all entries. An answer with
-    an unreadable entry (NaN) counts as moving.
-    """
+    """True if no joint changes any entry ``(rows, columns, SAMPLES)`` of an answer."""
+    # quantities are the quantities of the columns, or the quantity of all entries. An answer with
+    # an unreadable entry (NaN) counts as moving.
     scales = np.where(np.array(quantities) == "length", grading.exercise.length_scale, 1.0)
     motion = np.abs(changes(values)).max(axis=-1)
     return bool(np.isfinite(motion).all() and (motion < MOVES * scales).all())
@@ -106,11 +101,9 @@ STANDS_STILL = Finding(
 
 
 def follows_from(earlier: PartSpec, *, is_right: bool) -> Finding:
-    """Return the message that the points were earned by following from an earlier answer.
-
-    The earlier answer ``is_right`` if it differs from the reference only by its choice of frames or
-    by rounding.
-    """
+    """Return the message that an answer was graded by the student's earlier answer."""
+    # The earlier answer is_right if it differs from the reference only by its choice of frames or
+    # by rounding.
     title = repr(earlier.title)
     if is_right:
         hint = say("This was graded by your answer to {part}, which is right.", part=title)

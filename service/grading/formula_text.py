@@ -28,11 +28,9 @@ def spelled(formula: Node, spelling: Spelling) -> Correction:
 def value_formula(
     values: Numbers, angle: bool, exercise: Exercise, samples: Samples, spelling: Spelling
 ) -> Correction | None:
-    """Return ``values`` ``(SAMPLES,)`` as a formula: a constant plus whole multiples of symbols.
-
-    Table cells are such sums: ``theta2 + pi/2``, ``-d2``, ``l1 + l2``. Return None if the values
-    are not such a sum.
-    """
+    """Return ``values`` ``(SAMPLES,)`` as a formula such as ``theta2 + pi/2``, or None."""
+    # The formula is a constant plus whole multiples of symbols, as in table cells. None if the
+    # values are not such a sum.
     (counts,) = coefficients(values[None], exercise.joints, samples, np.array([angle]))
     return sum_formula(values, counts, angle, exercise, samples, spelling)
 
@@ -45,11 +43,11 @@ def sum_formula(
     samples: Samples,
     spelling: Spelling,
 ) -> Correction | None:
-    """Return ``values`` as a formula: the sum of a constant and multiples of letters.
+    """Return ``values`` as a formula, or None if they are no sum of multiples of symbols.
 
-    ``counts`` has the multiple of each joint variable in this sum. Return None if ``counts`` is
-    None, or if the values are not such a sum.
+    ``counts`` has the multiple of each joint variable.
     """
+    # None also if counts is None.
     if counts is None:
         return None
     moving = [joint.variable for joint in exercise.joints]
@@ -71,10 +69,8 @@ def sum_formula(
 def multiples(
     constant: Numbers, angle: bool, exercise: Exercise, samples: Samples
 ) -> tuple[list[tuple[int, str]], float] | None:
-    """Return ``constant`` ``(HALF,)`` as a sum: whole multiples of letters, and a remaining number.
-
-    Return None if there is no such sum. Letters with the multiple 0 are left out.
-    """
+    """Return a constant as a sum: whole multiples of letters, and a number; or None."""
+    # constant is (HALF,). None if there is no such sum. Letters with the multiple 0 are left out.
     first = constant[0]
     if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < CONSTANT:
         return [], float(first)
@@ -98,7 +94,7 @@ def multiples(
 
 
 def number_formula(values: Numbers, figures: int = 4) -> Correction | None:
-    """Return an entry ``(SAMPLES,)`` as a plain number; None if it varies."""
+    """Return ``values`` ``(SAMPLES,)`` as a plain number, or None if they vary."""
     if np.ptp(values) > PRINTED_NUMBER:
         return None
     value = float(values[0])
@@ -107,7 +103,6 @@ def number_formula(values: Numbers, figures: int = 4) -> Correction | None:
 
 
 def _sum(terms: list[_Term]) -> Node:
-    """Return the sum of the terms, 0 if there are none."""
     total: Node | None = None
     for sign, term in terms:
         if total is None:
@@ -118,7 +113,7 @@ def _sum(terms: list[_Term]) -> Node:
 
 
 def _negated(term: Node) -> Node:
-    """Return the term with a minus sign before its first factor: -2*l1, -3*pi/4."""
+    # The minus sign is before the first factor: -2*l1, -3*pi/4.
     if isinstance(term, Binary):
         return Binary(term.operator, _negated(term.left), term.right)
     return Negation(term)
@@ -135,15 +130,12 @@ def _number(value: float, figures: int) -> _Term:
 
 
 def _length(value: float) -> _Term | None:
-    """Return a constant length; None if it is 0."""
     return None if abs(value) < WHOLE_MULTIPLE else _number(value, 6)
 
 
 def _angle(value: float, spelling: Spelling) -> _Term | None:
-    """Return a constant angle in degrees or as a fraction of π; None if it is 0.
-
-    An angle that is not a multiple of π/12 is always in degrees.
-    """
+    # In degrees or as a fraction of π. An angle that is not a multiple of π/12 is always in
+    # degrees.
     turned = float(difference(np.array(value), np.array(0.0), angle=True))
     if abs(turned) < WHOLE_MULTIPLE:
         return None

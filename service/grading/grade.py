@@ -1,4 +1,4 @@
-"""Grade a submission: read and judge each part by its kind, and return a report."""
+"""Grade a submission: read and judge each part, and return a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -23,14 +23,13 @@ from service.version import VERSION
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """The submitted answers: one JSON value for each answered part.
-
-    ``feedback`` is the level of the report. With ``echo``, the report shows how each cell was read.
-    """
+    """The submitted answers: one JSON value for each answered part."""
 
     answers: Mapping[str, object]
     angle_unit: AngleUnit = "radians"
+    # The feedback level of the report.
     feedback: FeedbackLevel = FeedbackLevel.FULL
+    # If True, the report shows how each cell was read.
     echo: bool = False
 
 
@@ -57,23 +56,22 @@ _WORK_LIMIT: Final = Finding(
 
 @dataclass(frozen=True, slots=True)
 class GradedAnswers:
-    """Answers that were graded once, for reports at several levels of feedback.
-
-    ``corrects`` is true if corrections were computed. ``has_left_out`` is true if the work budget
-    did not allow all explanations. ``parts`` have all their messages.
-    """
+    """Answers that were graded once, for reports at several feedback levels."""
 
     exercise: Exercise
+    # With all their messages.
     parts: tuple[PartReport, ...]
+    # True if corrections were computed.
     corrects: bool
+    # True if the work budget did not allow all explanations.
     has_left_out: bool
 
     def can_tell(self, level: FeedbackLevel) -> bool:
-        """True if a report at the level can be made without grading again."""
+        """True if a report at this feedback level can be made without grading again."""
         return self.corrects == (level is FeedbackLevel.FULL)
 
     def report(self, level: FeedbackLevel) -> Report:
-        """Return the report at a level for which ``can_tell`` is true."""
+        """Return the report at a feedback level for which ``can_tell`` is true."""
         assert self.can_tell(level)
         points = rounded_points(sum(part.points for part in self.parts))
         max_points = rounded_points(sum(part.max_points for part in self.parts))
@@ -91,15 +89,16 @@ class GradedAnswers:
 
 
 def grade(exercise: Exercise, submission: Submission) -> Report:
-    """Return the report on a submission. Pure: the same submission gives the same report.
+    """Return the report on a submission.
 
-    Raises UnknownPartError for a part that does not exist. No other submission raises an error.
+    Raises UnknownPartError for a part that does not exist.
     """
+    # Pure: the same submission gives the same report. No other submission raises an error.
     return graded_answers(exercise, submission).report(submission.feedback)
 
 
 def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
-    """Grade the answers of a submission for reports at several levels; see ``grade``."""
+    """Grade a submission once, for reports at several feedback levels."""
     for part_id in submission.answers:
         if exercise.part(part_id) is None:
             raise UnknownPartError(part_id, exercise)
@@ -118,30 +117,24 @@ def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
 
 @dataclass(frozen=True)
 class _Graded:
-    """A part that was graded; ``judged`` is None if there was no readable answer.
-
-    A wrong answer may have been judged by an earlier answer of the student instead of the
-    reference. The answer ``is_right`` if it is correct by the reference, or by an earlier answer
-    that is right.
-    """
-
+    # A wrong answer may have been judged by an earlier answer of the student instead of the
+    # reference.
     part: PartSpec
     report: PartReport
+    # None if there was no readable answer.
     judged: Judged | None
+    # True if the answer is correct by the reference, or by an earlier answer that is right.
     is_right: bool = False
 
     @cached_property
     def chain(self) -> StudentChain | None:
-        """Return the answer as a chain by which later parts may be judged, or None."""
+        # The answer as a chain by which later parts may be judged, or None.
         return None if self.judged is None else self.judged.chain()
 
     def carries(self, share: float, grading: Grading) -> bool:
-        """True if later parts may be judged by this answer instead of by the reference.
-
-        The answer must be an arm with the robot's joints (``can_carry``) and must have earned
-        ``share`` of the points. These are counted as in the marking "content", even if the part has
-        another marking.
-        """
+        # True if later parts may be judged by this answer instead of by the reference. It must be
+        # an arm with the robot's joints (can_carry) and must have earned share of the points. These
+        # are counted as in the marking "content", even if the part has another marking.
         if (
             self.judged is None
             or self.chain is None
@@ -154,7 +147,6 @@ class _Graded:
 def _graded(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded], grading: Grading
 ) -> _Graded:
-    """Judge a part by the reference, or by the student's answer to an earlier part."""
     answer = answers.get(part.id)
     if answer is None:
         return _Graded(part, unjudged_report(part, Verdict.MISSING), None)
@@ -197,7 +189,7 @@ def _graded(
 def _followed(
     part: PartSpec, answers: Mapping[str, object], earlier: Mapping[str, _Graded]
 ) -> _Graded | None:
-    """Return the nearest earlier part that this part depends on and that has an answer."""
+    # The nearest earlier part that this part depends on and that has an answer.
     while part.follows is not None:
         part = earlier[part.follows].part
         if answers.get(part.id) is not None:
@@ -206,6 +198,5 @@ def _followed(
 
 
 def _was_read(part: PartReport) -> bool:
-    """True if any cell of the part could be read."""
     unread = (Verdict.MISSING, Verdict.UNREADABLE)
     return any(cell.verdict not in unread for row in part.rows for cell in row.cells)

@@ -41,17 +41,17 @@ _MOST_OF_ZEROS: Final = 0.125
 
 
 def lost_points(code: str, points: float) -> LostPoints:
-    """Return points that the answer has lost as a whole, not in one row."""
+    """Return the points that an answer lost as a whole, not in one row."""
     return LostPoints(code, rounded_points(points), say(_SENTENCES[code]))
 
 
 def without_places(lost: Sequence[LostPoints]) -> tuple[LostPoints, ...]:
-    """Return lost points as one sum, without their places."""
+    """Return lost points as one sum, without naming rows or cells."""
     return (lost_points(PART, sum(each.points for each in lost)),) if lost else ()
 
 
 def lost_in_row(row: RowReport, points: float) -> LostPoints:
-    """Return the points that a row has lost, and its cells that are not correct."""
+    """Return the points that a row lost, and its cells that are not correct."""
     cells = tuple(cell.label for cell in row.cells if cell.verdict is not Verdict.CORRECT)
     if cells == (row.label,) and row.label in _SINGLE:
         message = say(_SINGLE[row.label])
@@ -63,7 +63,7 @@ def lost_in_row(row: RowReport, points: float) -> LostPoints:
 
 
 def _cells_in_row(labels: Sequence[str], row: str) -> Sentence:
-    """Return the place of cells: ``a and α in row 2`` or ``columns 1, 2 and 4 in row 3``."""
+    # For example "a and α in row 2" or "columns 1, 2 and 4 in row 3".
     cells = listed([_NAMES.get(label, label) for label in labels])
     if not labels[0].isdigit():
         return say("{cells} in row {row}", cells=cells, row=row)
@@ -77,11 +77,9 @@ def _cells_in_row(labels: Sequence[str], row: str) -> Sentence:
 
 
 def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
-    """Return why correct rows of zeros are worth little, or None if there are no such rows.
-
-    ``rows`` are the rows without a cell that needs knowledge. ``most`` is the number of points of
-    the part.
-    """
+    """Return why correct rows of zeros earned few points, or None if there are no such rows."""
+    # rows are the rows without a cell that needs knowledge. most is the number of points of the
+    # part.
     found = [
         row
         for row in rows

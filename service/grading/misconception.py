@@ -1,7 +1,7 @@
-"""The records of all misconceptions, and the engine that finds the one that explains an answer.
+"""The list of all misconceptions, and the search for the one that explains a wrong answer.
 
-A misconception is a function with its record. The function takes a wrong answer and yields
-hypotheses: numbers to compare with the answer, each with the words of its message. ::
+A misconception is a function and its description (record). The function takes a wrong answer and
+yields hypotheses: numbers to compare with the answer, each with its message. ::
 
     @misconception(
         of=WrongPosition,
@@ -15,12 +15,13 @@ hypotheses: numbers to compare with the answer, each with the words of its messa
     def reversed_position(case: WrongPosition) -> Hypotheses:
         yield Written(-case.expected, "Every coordinate has the wrong sign.")
 
-A check is for a slip without numbers to compare, such as a formula without a value or a left-handed
-frame. It has a record, too, and returns a finding or None. If several records explain an answer,
-the record of the lowest rank counts; the order of imports has no effect. The pages of docs that
-list codes are generated from the records. ``tests/grading/diagnosis/test_diagnosis.py`` submits the
-examples.
+A check is a function that returns a finding or None. It has a record, too.
 """
+
+# A check is for a slip without numbers to compare, such as a formula without a value or a
+# left-handed frame. If several records explain an answer, the record of the lowest rank counts; the
+# order of imports has no effect. The pages of docs that list codes are generated from the records.
+# tests/grading/diagnosis/test_diagnosis.py submits the examples.
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field, replace
@@ -46,24 +47,23 @@ Example: TypeAlias = tuple[str, str, Any] | tuple[str, str, Any, str]
 
 @dataclass(frozen=True, slots=True, kw_only=True, eq=False)
 class Record:
-    """A misconception or a check.
+    """A misconception or a check: its function, and the description for docs and tests."""
 
-    The engine tries records in the order of ``rank``. It tries a record on each answer that is an
-    instance of ``of`` and meets ``when``. The findings of a record have the first of ``codes``,
-    unless they name another of the codes. ``rule`` is the rule of DH or of kinematics that the
-    hints explain. ``means`` is the text in docs: one text for all codes, or one for each code.
-    ``example`` is an answer that the record explains, ``unlike`` an answer to the same part that
-    the record does not explain. Both are either what a student sends, or the changed cells of the
-    model answer: ``{"2/alpha": "0"}``. A record without a code passes on the findings of other
-    records.
-    """
-
+    # The record is tried on answers of this class that meet ``when``.
     of: type
+    # Records are tried in the order of their ranks.
     rank: int
+    # Findings have the first code, unless they name another. A record without a code passes on the
+    # findings of other records.
     codes: tuple[str, ...] = ()
+    # The text in the docs: one text for all codes, or one for each code.
     means: str | tuple[str, ...] = ""
+    # The rule of DH or of kinematics that the hints explain.
     rule: RuleName | None = None
+    # An answer that the record explains: what a student sends, or the changed cells of the model
+    # answer, {"2/alpha": "0"}.
     example: Example | None = None
+    # An answer to the same part that the record does not explain, in the same form.
     unlike: Any = None
     when: Callable[[Any], bool] | None = None
     function: Callable[[Any], Any] | None = None
@@ -72,7 +72,7 @@ class Record:
 
     @property
     def code(self) -> str:
-        """The code of the findings that do not name another code."""
+        """The first code, which findings have unless they name another."""
         return self.codes[0]
 
     def meaning(self, code: str) -> str:
@@ -82,11 +82,12 @@ class Record:
     def finding(
         self, hint: str, correction: str = "", severity: Severity = Severity.ERROR
     ) -> Finding:
-        """Return a finding with the code, for a record without a function."""
+        """Return a finding with the code of the record."""
+        # For a record without a function.
         return Finding(self.code, hint, correction, severity, rule=self.rule)
 
     def hypotheses(self, source: object) -> Iterable["Hypothesis[Any]"]:
-        """Return the hypotheses about a wrong answer; each is built on demand."""
+        """Return the hypotheses about a wrong answer."""
         if self.function is None or self.is_check or (self.when and not self.when(source)):
             return ()
         found: Iterable[Hypothesis[Any]] = self.function(source)
@@ -113,9 +114,10 @@ def register(
 ) -> Record:
     """Add a record to the list of all records, and return it.
 
-    ``code`` may be several codes. ``known`` has values for other fields of Record. Without a
-    ``function``, the record only documents a code; other functions make findings with this code.
+    ``known`` has values for other fields of Record.
     """
+    # Without a function, the record only documents a code; other functions make findings with this
+    # code.
     codes = (code,) if isinstance(code, str) else code
     record = Record(of=of, rank=rank, codes=codes, name=name or codes[0], **known)
     _RECORDS.append(record)
@@ -126,7 +128,8 @@ def register(
 def misconception(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Decorate a function that yields hypotheses; the arguments are the fields of its Record."""
+    """Decorate a function that yields hypotheses, and register it as a misconception."""
+    # The arguments are the fields of its Record.
     add = partial(register, of=of, rank=rank, code=code, **known)
 
     def registered(function: AnyFunction) -> AnyFunction:
@@ -140,7 +143,8 @@ def misconception(
 def check(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Decorate a function that returns a finding or None, with the fields of its Record."""
+    """Decorate a function that returns a finding or None, and register it as a check."""
+    # The arguments are the fields of its Record.
     return misconception(of=of, rank=rank, code=code, is_check=True, **known)
 
 
@@ -152,27 +156,26 @@ def records_of(kind: type) -> tuple[Record, ...]:
 
 
 def all_records() -> tuple[Record, ...]:
-    """Return the records of all imported files."""
+    """Return all registered records."""
     return tuple(_RECORDS)
 
 
 def says(hint: str, correction: str = "") -> Finding:
-    """Return a message as a finding; the engine adds the code of the misconception."""
+    """Return a finding with this hint."""
+    # The engine adds the code of the misconception.
     return Finding("", hint, correction)
 
 
 @dataclass(slots=True)
 class Hypothesis(Generic[Answer]):
-    """An answer that a misconception leads to, with the message on the misconception.
-
-    ``finding`` is a function if it is slow to build or names two misconceptions at once.
-    ``entries`` are the entries of the answer that the hypothesis explains. The engine sets
-    ``record`` to the record of the misconception.
-    """
+    """A possible mistake: the answer that it leads to, and the message about it."""
 
     answer: Answer
+    # A function if it is slow to build or names two misconceptions at once.
     finding: str | Finding | Callable[[], Finding | tuple[Finding, ...]]
+    # The entries of the answer that the hypothesis explains.
     entries: Index = ...
+    # The engine sets it to the record of the misconception.
     record: Record | None = field(default=None, kw_only=True)
 
     @property
@@ -191,12 +194,12 @@ class Hypothesis(Generic[Answer]):
 
 @dataclass(slots=True)
 class Written(Hypothesis[Answer]):
-    """The answer of a student with the misconception.
+    """The answer that a student with the misconception writes.
 
-    The hypothesis explains every submitted answer that equals this answer. ``tolerance`` replaces
-    the usual tolerance of the comparison.
+    The hypothesis explains every submitted answer that equals this answer.
     """
 
+    # Replaces the usual tolerance of the comparison.
     tolerance: float | None = None
 
 
@@ -216,21 +219,19 @@ class WrongAnswer(Protocol):
     """A wrong answer, with the data for its diagnosis."""
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Return the hypotheses that explain the answer, in their order.
-
-        A ``Written`` hypothesis that is equal to the correct answer explains nothing. Nor does a
-        ``Repaired`` hypothesis that is equal to the student's answer.
-        """
+        """Return the hypotheses that explain the answer, in their order."""
+        # A Written hypothesis that is equal to the correct answer explains nothing. Nor does a
+        # Repaired hypothesis that is equal to the student's answer.
         ...
 
 
 def hypotheses_of(source: object, of: type | None = None) -> Iterator[Explained]:
-    """Yield the hypotheses of all misconceptions about ``source``; each is built on demand."""
+    """Yield the hypotheses of all misconceptions about ``source``."""
     return each_hypothesis(records_of(of or type(source)), source)
 
 
 def each_hypothesis(records: Iterable[Record], source: object) -> Iterator[Explained]:
-    """Yield the hypotheses of these records; each is built on demand."""
+    """Yield the hypotheses of these records."""
     for record in records:
         for hypothesis in record.hypotheses(source):
             hypothesis.record = hypothesis.record or record
@@ -242,10 +243,10 @@ def explanation(
 ) -> Explained | None:
     """Return the hypothesis of the lowest rank that explains ``case``, or None.
 
-    The misconceptions get ``source``, for example the links whose product a matrix is; by default
-    they get ``case``. Only misconceptions about the class ``of`` are tried, by default the class of
-    ``source``.
+    The misconceptions get ``source``, by default ``case``.
     """
+    # For example, source are the links whose product a matrix is. Only misconceptions about the
+    # class of are tried, by default the class of source.
     start = case if source is None else source
     for record in records_of(of or type(start)):
         checkpoint()
@@ -255,7 +256,7 @@ def explanation(
 
 
 def explained_by_one(record: Record, case: WrongAnswer, source: object) -> Explained | None:
-    """Return the hypothesis of this record that explains ``case``, or None."""
+    """Return the hypothesis of this misconception that explains ``case``, or None."""
     found: Explained | None
     if record.is_check:
         found = record.verdict(source)

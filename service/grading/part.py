@@ -1,7 +1,6 @@
-"""The interface of an answer kind, which reads and judges answers.
+"""The interface for reading and judging one kind of answer."""
 
-Each kind is a file in ``kinds``.
-"""
+# Each kind is a file in kinds.
 
 import math
 from collections.abc import Callable, Iterable
@@ -27,16 +26,14 @@ _CELL = 40
 
 @dataclass(frozen=True, slots=True)
 class StudentChain:
-    """An answer as a chain of links, by which later parts may be judged.
+    """A student's answer as a chain of links, by which later parts may be judged."""
 
-    ``frames`` ``(k + 1, SAMPLES, 4, 4)`` are the frames of the chain in the base frame, from the
-    base to the tool. ``frames_at`` returns the frames at other samples, NaN where a frame is
-    undefined. ``nearest_links`` ``(k, SAMPLES, 4, 4)`` are the link transforms of the valid table
-    nearest to the answer, or None if the answer consists of matrices.
-    """
-
+    # (k + 1, SAMPLES, 4, 4), from the base to the tool, in the base frame.
     frames: Matrices
+    # Returns the frames at other samples, NaN where a frame is undefined.
     frames_at: Callable[[Samples], Matrices]
+    # The link transforms (k, SAMPLES, 4, 4) of the correct table nearest to the answer, or None if
+    # the answer consists of matrices.
     nearest_links: Matrices | None = None
 
     def tool_at(self, samples: Samples) -> Matrices:
@@ -46,40 +43,37 @@ class StudentChain:
 
     @property
     def links(self) -> Matrices:
-        """The student's link transforms, ``(k, SAMPLES, 4, 4)``."""
+        """The link transforms of the student's answer, ``(k, SAMPLES, 4, 4)``."""
         return inverse(self.frames[:-1]) @ self.frames[1:]
 
 
 @dataclass(frozen=True, slots=True)
 class Grading:
-    """The state of grading one submission, for use by answer kinds.
-
-    ``corrects`` is true if the report shows corrections, which then must be computed; ``explains``
-    if wrong cells are explained, not only judged. With ``echo`` the report shows how each cell was
-    read. ``student_chain`` is the earlier answer that the part follows from, if there is one. With
-    ``following`` the part is judged by that answer instead of the reference.
-    """
+    """The state of grading one submission."""
 
     exercise: Exercise
     samples: Samples
     reader: Reader
+    # True if the report shows corrections, which then must be computed.
     corrects: bool = False
+    # True if the report shows how each cell was read.
     echo: bool = False
+    # The earlier answer that the part follows from, if there is one.
     student_chain: StudentChain | None = None
+    # True if the part is judged by student_chain instead of the reference.
     following: bool = False
+    # True if wrong cells are explained, not only judged.
     explains: bool = True
 
     def affords(self, work: float) -> bool:
-        """Take ``work`` for an explanation from the budget; return True if enough was left."""
+        """Charge ``work`` for an explanation; return True if enough of the budget was left."""
         return self.explains and self.reader.budget.affords(work)
 
     def messages(
         self, findings: tuple[Finding, ...], places: tuple[Place, ...] = ()
     ) -> tuple[Feedback, ...]:
-        """Return the findings as messages; the feedback level later decides which are visible.
-
-        ``places`` are the places that messages on the part are about.
-        """
+        """Return the findings as messages about ``places`` (rows and cells)."""
+        # The feedback level later decides which messages are visible.
         return tuple(finding.message(places, corrects=self.corrects) for finding in findings)
 
     def spelling(self, entries: Iterable[Entry]) -> Spelling:
@@ -95,12 +89,10 @@ class Grading:
         return spelling_of(habits, vocabulary, degrees=self.reader.angle_unit == "degrees")
 
     def symbol_names(self, entries: Iterable[Entry]) -> Callable[[str], str]:
-        """Return a function from symbols to their names in the entries of a part.
+        """Return a function that gives the student's name for each symbol."""
 
-        On its first call, the returned function reads the shortest entries: they show the names
-        with the least work.
-        """
-
+        # On its first call, the returned function reads the shortest entries: they show the names
+        # with the least work.
         @cache
         def spelling() -> Spelling:
             read = [each for each in entries if each.expression and each.expression.symbols]
@@ -109,10 +101,8 @@ class Grading:
         return lambda symbol: spelling().names.get(symbol, symbol)
 
     def unwritten(self, entries: Iterable[Entry]) -> frozenset[str]:
-        """Return the constants of the exercise that no entry contains.
-
-        A hint must not name these constants, because a missing constant may be the whole answer.
-        """
+        """Return the constants of the exercise that no entry contains."""
+        # A hint must not name them, because a missing constant may be the whole answer.
         read = (each.expression.symbols for each in entries if each.expression is not None)
         joints = (joint.variable for joint in self.exercise.joints)
         names = {variable.name for variable in self.exercise.variables}
@@ -141,25 +131,23 @@ def _no_chain() -> StudentChain | None:
 
 @dataclass(frozen=True, slots=True)
 class Content:
-    """The content cells of a correct answer: the cells that need knowledge and so earn points.
+    """The cells of a correct answer that need knowledge and so earn points."""
 
-    ``known`` and ``groups`` are ``(rows, cells)``, like the rows of the report. ``known`` marks the
-    content cells. ``groups`` has the number of each cell's group; a group cannot lose more than it
-    is worth. With ``besides``, each group has a small worth besides its content cells. With
-    ``equal``, all groups are worth the same. ``most`` is the largest number of cells that count,
-    because a student's own choices may add content cells. ``bottom`` are the rows that are the same
-    in every correct answer: the last rows of homogeneous matrices. ``usual`` are the numbers of
-    rows and content cells of the reference, if an answer may have other numbers. ``given`` marks
-    the rows that the exercise gives, which earn nothing; it is empty if the exercise gives no rows.
-    """
-
+    # The cells that need knowledge, (rows, cells) like the rows of the report.
     known: tuple[tuple[bool, ...], ...]
+    # The number of each cell's group, (rows, cells); a group cannot lose more than it is worth.
     groups: tuple[tuple[int, ...], ...]
+    # True if each group is worth something even without these cells.
     besides: bool = False
+    # True if all groups are worth the same.
     equal: bool = False
+    # The largest number of cells that count, because a student's own choices may add such cells.
     most: int | None = None
+    # The rows that are the same in every correct answer: the last rows of homogeneous matrices.
     bottom: tuple[int, ...] = ()
+    # The numbers of rows and of these cells of the reference, if an answer may have other numbers.
     usual: tuple[int, int] | None = None
+    # True for the rows that the exercise gives, which earn nothing; empty if it gives no rows.
     given: tuple[bool, ...] = ()
 
     @property
@@ -169,39 +157,41 @@ class Content:
 
     @property
     def count(self) -> int:
-        """The number of content cells."""
+        """The number of cells that need knowledge."""
         return sum(map(sum, self.known))
 
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """The judgement of an answer: its rows, and the messages on the part as a whole.
+    """The judgement of an answer: its rows, and the messages on the part as a whole."""
 
-    The rows have no points yet; ``content`` determines the worth of the cells. ``slips`` is the
-    number of slips that no cell shows, such as an extra row. ``whole_cost`` is the share of the
-    points that a slip of the whole answer costs, if such a slip explains all wrong cells. Cells
-    that are also wrong in ``beside``, the answer without that slip, cost extra. ``stands_still`` is
-    true if no joint moves an answer that must move. The points of ``at_most`` are an upper limit
-    for this judgement, the points of ``at_least`` a lower limit. With ``needs_all``, the answer
-    needs more rows than ``at_most`` has: because of the upper limit, the wrong cells of the answer
-    lose at most a unit each. ``lost`` is an upper limit of the lost units of content. ``written``
-    is the number of cells that the student wrote and that are not lazy, or None if unknown; a wrong
-    answer earns at most a unit for each of these cells. ``chain`` returns the answer as a chain, or
-    None; this function is called only if another part follows this part.
-    """
-
+    # The rows have no points yet.
     rows: tuple[RowReport, ...]
+    # Determines the worth of the cells.
     content: Content
     feedback: tuple[Feedback, ...] = ()
+    # The number of slips that no cell shows, such as an extra row.
     slips: int = 0
+    # The share of the points that a slip of the whole answer costs, if such a slip explains all
+    # wrong cells.
     whole_cost: float | None = None
+    # The answer without that slip; cells that are wrong here, too, cost extra.
     beside: "Judged | None" = None
+    # True if no joint moves an answer that must move.
     stands_still: bool = False
+    # Its points are an upper limit.
     at_most: "Judged | None" = None
+    # Its points are a lower limit.
     at_least: "Judged | None" = None
+    # True if the answer needs more rows than at_most has: because of the upper limit, the wrong
+    # cells of the answer lose at most a unit each.
     needs_all: bool = False
+    # An upper limit of the lost units of content.
     lost: float = math.inf
+    # The number of cells that the student wrote and that are not lazy, or None if unknown; a wrong
+    # answer earns at most a unit for each of these cells.
     written: int | None = None
+    # Returns the answer as a chain, or None; called only if another part follows this part.
     chain: Callable[[], StudentChain | None] = _no_chain
 
     @property
@@ -222,18 +212,17 @@ class Judged:
 
 
 class AnswerKind(Protocol):
-    """The functions that read and judge the answers of one kind.
+    """The functions that read and judge the answers of one kind."""
 
-    Pure: the result depends only on part, answer and samples.
-    """
+    # Pure: the result depends only on part, answer and samples.
 
     def read(self, part: Any, answer: object, grading: Grading) -> Any:
-        """Convert any JSON value except None to the form that ``judge`` expects.
+        """Convert a JSON value to the form that ``judge`` expects; None for an empty answer.
 
-        Return None for an empty answer. Raises UnreadableAnswerError if nothing can be read.
+        Raises UnreadableAnswerError if nothing can be read.
         """
         ...
 
     def judge(self, part: Any, answer: Any, grading: Grading) -> Judged:
-        """Judge an answer that was read."""
+        """Judge an answer that ``read`` has returned."""
         ...

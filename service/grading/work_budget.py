@@ -1,6 +1,6 @@
-"""Limit the work for one submission by counting it; time is never measured.
+"""Limit the work for grading one submission.
 
-Counted work is the same on every machine, so that the same submission gives the same report.
+Work is counted instead of timed, so that the same submission gives the same report.
 """
 
 import math
@@ -47,40 +47,39 @@ SYMBOLS_PER_PRINTED_NODE = 2.5
 
 @dataclass(slots=True)
 class WorkBudget:
-    """The remaining work for a submission, shared by all its parts, pasted texts and angle units.
+    """The work that is still allowed for one submission."""
 
-    ``symbols`` is the number of names, numbers and signs that may still be read. ``repairs`` is the
-    number of unreadable texts for which a repair may still be searched. ``pasted`` is the number of
-    characters that may still be cut into cells. ``explanations`` is the work left for explaining
-    mistakes, on which no verdict depends. ``searches`` is the work left for finding the intended
-    table: values of unread cells, other column orders. ``printed`` is the number of characters of
-    formulas that a preview may still print. ``answers`` is the whole submission; the work for
-    reading its later parts is reserved. ``has_left_out`` is true if an explanation was too
-    expensive. ``unreadable`` are the texts that could not be read.
-    """
+    # All its parts, pasted texts and angle units share it.
 
+    # The names, numbers and signs that may still be read.
     symbols: int = MAX_SYMBOLS
+    # The unreadable texts for which a repair may still be searched.
     repairs: int = MAX_REPAIRS
+    # The characters that may still be cut into cells.
     pasted: int = MAX_PASTED
+    # The work left for explaining mistakes, on which no verdict depends.
     explanations: float = MAX_EXPLANATIONS
+    # The work left for finding the intended table: values of unread cells, other column orders.
     searches: float = MAX_SEARCHES
+    # The characters of formulas that a preview may still print.
     printed: int = MAX_PRINTED
+    # True if an explanation was too expensive.
     has_left_out: bool = False
+    # The texts that could not be read.
     unreadable: set[object] = field(default_factory=set)
+    # The whole submission; the work for reading its later parts is reserved.
     answers: object = None
     _expected: int = -1
 
     @classmethod
     def of_drawing(cls, *, with_figure: bool) -> Self:
-        """Return the budget of a request for the frames, formulas and figure of a table."""
+        """Return the budget for drawing the frames, formulas and figure of a table."""
         return cls(MAX_SYMBOLS_DRAWN - (SYMBOLS_PER_FIGURE if with_figure else 0))
 
     @property
     def left(self) -> float:
-        """The work left for explanations: the total work minus that of searches and of reading.
-
-        Reading includes the later parts of the submission.
-        """
+        """The work left for explanations."""
+        # The total work minus that of searches and of reading, including the later parts.
         if self._expected < 0:
             self._expected = _symbols_of(self.answers)
         read = (
@@ -91,10 +90,8 @@ class WorkBudget:
         return MAX_WORK - read - (MAX_SEARCHES - self.searches)
 
     def affords(self, work: float) -> bool:
-        """Take ``work`` for an explanation; return True if enough work was left.
-
-        The work is also taken if too little is left.
-        """
+        """Charge ``work`` for an explanation; return True if enough work was left."""
+        # The work is also taken if too little is left.
         checkpoint()
         self.explanations -= work
         left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))
@@ -102,38 +99,36 @@ class WorkBudget:
         return left >= 0
 
     def affords_search(self, work: float) -> bool:
-        """Take ``work`` for a search if enough is left; return True if the work was taken.
-
-        The result does not depend on earlier explanations.
-        """
+        """Charge ``work`` for a search if enough is left; return True if it was charged."""
+        # The result does not depend on earlier explanations.
         is_afforded = work <= min(self.searches, self.left)
         if is_afforded:
             self.charge_search(work)
         return is_afforded
 
     def charge_search(self, work: float) -> None:
-        """Take the work of a necessary search, even if not enough is left."""
+        """Charge the work of a necessary search, even if not enough is left."""
         checkpoint()
         self.searches -= work
 
     def charge_reading(self, symbols: int) -> bool:
-        """Count a text before reading it; return True if it may be read."""
+        """Charge the reading of a text; return True if it may be read."""
         self.symbols -= symbols
         return self.symbols >= 0
 
     def charge_printing(self, nodes: int) -> bool:
-        """Count a formula of ``nodes`` before printing it; return True if it may be printed."""
+        """Charge the printing of a formula of ``nodes``; return True if it may be printed."""
         return self.charge_reading(math.ceil(SYMBOLS_PER_PRINTED_NODE * nodes))
 
     def charge_repair(self, text: object, tried: int) -> None:
-        """Count the repair of an unreadable text, once; ``tried`` symbols were read for it."""
+        """Charge the repair of an unreadable text, only once for each text."""
+        # tried symbols were read for the repair.
         if text not in self.unreadable:
             self.unreadable.add(text)
             self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR
 
 
 def _symbols_of(answer: object) -> int:
-    """Return the number of symbols in all texts of a JSON value, at most MAX_SYMBOLS."""
     found, waiting = 0, [answer]
     # No recursion, because lists may be nested deeper than Python's call stack.
     while waiting and found < MAX_SYMBOLS:

@@ -1,1 +1,1 @@
-"""Rigid transforms and Denavit-Hartenberg chains, batched. Independent of students' answers."""
+"""Rigid transforms and Denavit-Hartenberg chains, computed for whole arrays at once."""

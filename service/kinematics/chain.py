@@ -1,12 +1,13 @@
 """A serial chain as the alternating product X_0 Z_1 X_1 Z_2 X_2 … Z_m X_m.
 
-Z_i = Rot_z(θ_i) Trans_z(d_i) and X_i = Trans_x(a_i) Rot_x(α_i); the factors of each commute. The
-standard table groups the product as (Z_1 X_1)(Z_2 X_2)…, the modified table as (X_0 Z_1)(X_1 Z_2)….
-So converting a table means moving (a, α) by one row, without solving any equation.
-
-A numeric table is an array ``(rows, 4, ...)``: the columns are a, α, d, θ in this order, and the
-axes after them are the batch; angles in radians. Numbers and formulas are regrouped the same way.
+Here Z_i = Rot_z(θ_i) Trans_z(d_i) and X_i = Trans_x(a_i) Rot_x(α_i). A table is an array ``(rows,
+4, ...)`` with the columns a, α, d, θ; angles are in radians.
 """
+
+# The two factors of each Z_i and X_i commute. The standard table groups the product as (Z_1
+# X_1)(Z_2 X_2)…, the modified table as (X_0 Z_1)(X_1 Z_2)…. So converting a table means moving (a,
+# α) by one row, without solving any equation. Numbers and formulas are regrouped the same way. The
+# axes of an array after its rows and columns are the batch.
 
 from collections.abc import Sequence
 from functools import reduce
@@ -28,21 +29,24 @@ _IDENTITY = identity()
 
 
 def modified_rows(standard: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
-    """Regroup (Z_1 X_1)…(Z_m X_m) as (X_0 Z_1)…(X_{m-1} Z_m)(X_m), with X_0 the identity.
+    """Convert the rows of a standard table to rows of a modified table.
 
-    The last of the ``m + 1`` rows is the fixed end-effector row "e" of the modified convention.
+    The last of the ``m + 1`` rows is the fixed row of the end effector.
     """
+    # Regroups (Z_1 X_1)…(Z_m X_m) as (X_0 Z_1)…(X_{m-1} Z_m)(X_m), with X_0 the identity. The last
+    # row has the label "e".
     none = (zero, zero, zero, zero)
     pairs = zip([none, *standard], [*standard, none], strict=True)
     return [(*before[:2], *row[2:]) for before, row in pairs]
 
 
 def standard_rows(modified: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
-    """Regroup (X_0 Z_1)…(X_{m-1} Z_m) as (Z_1 X_1)…(Z_m): ``m`` rows, the last one without X.
+    """Convert the rows of a modified table to rows of a standard table.
 
-    X_0 is dropped, because a standard table begins on the axis of joint 1. The caller must ensure
-    that X_0 is the identity.
+    The first row must have a = 0 and α = 0.
     """
+    # Regroups (X_0 Z_1)…(X_{m-1} Z_m) as (Z_1 X_1)…(Z_m). X_0, the identity, is dropped: a standard
+    # table begins on the axis of joint 1.
     pairs = zip(modified, [*modified[1:], (zero, zero, zero, zero)], strict=True)
     return [(*after[:2], *row[2:]) for row, after in pairs]
 
@@ -88,10 +92,10 @@ def z_links(rows: Table) -> Matrices:
 def axis_frames(table: Table, convention: Convention, wanted: Convention) -> Matrices:
     """Return the frames on the joint axes and the last frame: ``(rows + 1, ..., 4, 4)``.
 
-    The frame of a joint is placed by the convention ``wanted``: before Rot_z(θ) Trans_z(d) of its
-    row in the standard convention, after it in the modified one. The table may be in either
-    convention.
+    The frames are placed by the convention ``wanted``; the table may be in either convention.
     """
+    # The frame of a joint is before Rot_z(θ) Trans_z(d) of its row in the standard convention,
+    # after it in the modified one.
     reached = frames(table, convention)
     if wanted is convention is Convention.STANDARD:
         return reached

@@ -1,7 +1,7 @@
-"""Link transforms of the two Denavit-Hartenberg conventions, in closed form and batched.
+"""Link transforms of the two Denavit-Hartenberg conventions, for whole arrays at once.
 
-Parameters are link length a, link twist α, link offset d and joint angle θ: scalars or arrays
-that broadcast to one batch shape ``(...)``; angles in radians. Results are ``(..., 4, 4)``.
+Parameters are scalars or arrays that broadcast to one shape ``(...)``, with angles in radians.
+Results are ``(..., 4, 4)``.
 """
 
 from enum import StrEnum
@@ -50,9 +50,9 @@ def standard_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike
 def modified_link(a: ArrayLike, alpha: ArrayLike, d: ArrayLike, theta: ArrayLike) -> Matrices:
     """Return Rot_x(α_{i-1}) Trans_x(a_{i-1}) Rot_z(θ_i) Trans_z(d_i), the modified convention.
 
-    Source: Craig, *Introduction to Robotics*, eq. 3.6; here ``a`` and ``alpha`` are the entries
-    of row i, which have the index i−1.
+    Source: Craig, *Introduction to Robotics*, eq. 3.6.
     """
+    # a and alpha are the entries of row i of the table, which have the index i-1.
     cos_theta, sin_theta = np.cos(theta), np.sin(theta)
     cos_alpha, sin_alpha = np.cos(alpha), np.sin(alpha)
     link = np.zeros((*np.broadcast(a, alpha, d, theta).shape, 4, 4))

@@ -1,10 +1,13 @@
 """Check the two DH conditions of a transform, and find its DH row.
 
-A transform has a DH row only if two conditions hold (Spong, Hutchinson, Vidyasagar, *Robot Modeling
-and Control*, §3.2.1; *Direct Kinematics (Part 2)*, §2.3). Standard: DH1, x_1 is perpendicular to
-z_0; DH2, x_1 meets z_0. Modified: the same conditions for z_1 and x_0. The inverse of a modified
-link transform is a standard one with all four numbers negated, so one formula serves both.
+A transform has a DH row only if two axes are perpendicular (condition DH1) and meet (condition
+DH2). The axes are x_1 and z_0 in the standard convention, x_0 and z_1 in the modified one.
+
+Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §3.2.1.
 """
+
+# Also *Direct Kinematics (Part 2)*, §2.3. The inverse of a modified link transform is a standard
+# one with all four numbers negated, so one formula serves both.
 
 import numpy as np
 from numpy.typing import NDArray
@@ -56,7 +59,7 @@ def row(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def is_unreachable(transform: Matrices, length_scale: float) -> NDArray[np.bool_]:
-    """Return a mask ``(H,)`` of the transforms ``(H, L, 4, 4)`` that no standard row describes."""
+    """Return a mask ``(H,)`` of the transforms ``(H, L, 4, 4)`` that have no standard DH row."""
     tilt = np.abs(dh1_residual(transform, Convention.STANDARD)).max(axis=-1)
     distance = np.abs(dh2_residual(transform, Convention.STANDARD)).max(axis=-1)
     return np.asarray((tilt > PARALLEL) | (distance > PARALLEL * length_scale))

@@ -1,12 +1,14 @@
 """A table as a product of factors: alternating screw motions about x and z.
 
-X = Trans_x(a) Rot_x(α) and Z = Rot_z(θ) Trans_z(d) are screw motions: a shift along an axis and a
-turn about it, which commute. A standard table is Z_1 X_1 Z_2 X_2 …, a modified table X_0 Z_1 X_1
-Z_2 ….
+A screw motion is a shift along an axis and a turn about it. The factors are X = Trans_x(a) Rot_x(α)
+and Z = Rot_z(θ) Trans_z(d).
 
-Shapes: L samples, K factors; a table is ``(rows, 4, L)`` in the column order a, α, d, θ, including
-the joint variables; angles in radians. Axes are numbered: 0 is x, 2 is z.
+Shapes: L samples, K factors; a table is ``(rows, 4, L)`` with the columns a, α, d, θ.
 """
+
+# Shift and turn of a factor commute. A standard table is Z_1 X_1 Z_2 X_2 …, a modified table X_0
+# Z_1 X_1 Z_2 …. The cells include the joint variables; angles are in radians. Axes are numbered: 0
+# is x, 2 is z.
 
 from dataclasses import dataclass
 from functools import cached_property, reduce
@@ -30,13 +32,12 @@ CellIndex = tuple[int, int]
 
 @dataclass(frozen=True)
 class Factors:
-    """The factors of a table, in the order of the product.
-
-    ``sizes`` ``(K, 2, L)`` are the SHIFT and the TURN of each factor, ``axes`` ``(K,)`` the axes.
-    """
+    """The factors of a table, in the order of the product."""
 
     convention: Convention
+    # (K, 2, L): the SHIFT and the TURN of each factor.
     sizes: Numbers
+    # (K,): 0 for x, 2 for z.
     axes: Integers
 
     @property
@@ -59,7 +60,7 @@ class Factors:
 
     @cached_property
     def after(self) -> Matrices:
-        """The product of the factors from the k-th on for k = 0..K: ``(K + 1, L, 4, 4)``."""
+        """The product of the factors k, k + 1, … for k = 0..K: ``(K + 1, L, 4, 4)``."""
         reached = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
         reached[-1] = np.eye(4)
         for k in reversed(range(len(self.axes))):
@@ -68,12 +69,12 @@ class Factors:
 
     @cached_property
     def inverse_before(self) -> Matrices:
-        """The inverses of ``before``."""
+        """The inverses of the matrices ``before``: ``(K + 1, L, 4, 4)``."""
         return inverse(self.before)
 
     @cached_property
     def inverse_after(self) -> Matrices:
-        """The inverses of the products of the factors from the k-th on: ``(K + 1, L, 4, 4)``."""
+        """The inverses of the matrices ``after``: ``(K + 1, L, 4, 4)``."""
         return inverse(self.after)
 
     def around(self, factor: int) -> tuple[Matrices, Matrices]:
@@ -86,7 +87,7 @@ class Factors:
         return factor // 2, (A if self.axes[factor] == X else D) + kind
 
     def position(self, cell: CellIndex) -> tuple[int, int]:
-        """Return the factor to which a table cell belongs, and SHIFT or TURN."""
+        """Return the factor of a table cell, and whether the cell is its SHIFT or its TURN."""
         row, column = cell
         in_z = column >= D
         z_first = self.convention is Convention.STANDARD
@@ -121,11 +122,12 @@ def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
 
 
 def read_screws(transforms: Matrices, axes: Integers) -> tuple[Numbers, Numbers]:
-    """Return each transform's SHIFT and TURN about its axis, and its deviation from a screw.
+    """Return each transform's shift and turn about its axis, and its deviation from a screw.
 
-    For transforms ``(K, L, 4, 4)`` and axes ``(K,)``, the results are the sizes ``(K, 2, L)`` and
-    the deviations ``(K, L)``: the tilt of the axis plus the distance of the origin from the axis.
+    For transforms ``(K, L, 4, 4)``, the results are ``(K, 2, L)`` and ``(K, L)``.
     """
+    # The axes are (K,). The deviation is the tilt of the axis plus the distance of the origin from
+    # it.
     k = np.arange(len(axes))
     one, other = (axes + 1) % 3, (axes + 2) % 3
     sizes = np.empty((len(axes), 2, transforms.shape[1]))

@@ -1,10 +1,11 @@
-"""Rotations about coordinate axes: Euler angle sequences, and sequences of any steps. Batched.
+"""Rotations about coordinate axes, and Euler angles.
 
-A sequence names three axes, such as "ZYZ". With moving axes, each turn is about an axis of the
-frame that the earlier turns have reached, R = R_1(a_1) R_2(a_2) R_3(a_3). With fixed axes, all
-turns are about axes of the original frame, R = R_3(a_3) R_2(a_2) R_1(a_1). Rotations are
-``(..., 3, 3)``, triples of angles ``(..., 3)`` in the order of the sequence, in radians.
+A sequence names three axes, such as "ZYZ". Moving axes turn with the earlier turns, fixed axes do
+not. Rotations are ``(..., 3, 3)``; angles are in radians.
 """
+
+# With moving axes, R = R_1(a_1) R_2(a_2) R_3(a_3). With fixed axes, R = R_3(a_3) R_2(a_2) R_1(a_1).
+# Triples of angles are (..., 3), in the order of the sequence.
 
 from collections.abc import Sequence
 from typing import Final
@@ -33,8 +34,7 @@ def about(axis: str, angle: ArrayLike) -> Matrices:
 def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
     """Return the composite of rotations ``(..., 3, 3)``; each flag is True for a fixed axis.
 
-    A turn about an axis of the fixed frame is multiplied from the left, a turn about an axis of the
-    moving frame from the right. Source: *Direct Kinematics (Part 2)*, §1.5.
+    Source: *Direct Kinematics (Part 2)*, §1.5.
 
     >>> quarter = np.pi / 2
     >>> fixed = composed([(about("Z", quarter), True), (about("X", quarter), True)])
@@ -50,8 +50,7 @@ def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
 def from_angles(sequence: str, angles: Numbers, *, fixed: bool = False) -> Matrices:
     """Return the rotation ``(..., 3, 3)`` that a triple of angles ``(..., 3)`` describes.
 
-    Source: Craig, *Introduction to Robotics*, §2.8 and appendix B (twelve sequences for
-    moving axes, twelve for fixed axes).
+    Source: Craig, *Introduction to Robotics*, §2.8 and appendix B.
 
     >>> np.round(from_angles("ZYX", np.array([np.pi / 2, 0.0, np.pi / 2]))) + 0.0
     array([[0., 0., 1.],
@@ -65,17 +64,16 @@ def from_angles(sequence: str, angles: Numbers, *, fixed: bool = False) -> Matri
 
 
 def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numbers:
-    """Return one of the two triples ``(..., 3)`` that describe ``rotation`` (see ``other_triple``).
-
-    The middle angle is in [−π/2, π/2] for three different axes, and in [0, π] if the first axis
-    occurs twice. If only the sum or difference of the outer angles is determined, the last angle is
-    0 (for fixed axes, the first angle is 0).
+    """Return one of the two triples of angles ``(..., 3)`` that describe ``rotation``.
 
     Source: Shoemake, *Euler Angle Conversion*, Graphics Gems IV; for "ZYX" this is Craig, eq. 2.66.
 
     >>> to_angles("ZYX", from_angles("ZYX", np.array([0.3, -0.9, 1.2])))
     array([ 0.3, -0.9,  1.2])
     """
+    # The middle angle is in [−π/2, π/2] for three different axes, and in [0, π] if the first axis
+    # occurs twice. If only the sum or difference of the outer angles is determined, the last angle
+    # is 0 (for fixed axes, the first angle is 0).
     if fixed:
         return to_angles(sequence[::-1], rotation)[..., ::-1]
     i, j = (ord(axis) - ord("X") for axis in sequence[:2])
@@ -98,28 +96,27 @@ def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numb
 
 
 def other_triple(sequence: str, angles: Numbers) -> Numbers:
-    """Return the other triple ``(..., 3)`` that describes the same rotation, also for fixed axes.
+    """Return the other triple ``(..., 3)`` that describes the same rotation.
 
-    Source: Craig, *Introduction to Robotics*, §2.8: the square root for the middle angle may have
-    either sign.
+    Source: Craig, *Introduction to Robotics*, §2.8.
     """
+    # The square root for the middle angle may have either sign. This holds for fixed axes, too.
     first, middle, last = np.moveaxis(angles, -1, 0)
     turned = -middle if sequence[2] == sequence[0] else np.pi - middle
     return np.stack([first + np.pi, turned, last + np.pi], axis=-1)
 
 
 def is_singular(sequence: str, rotation: Matrices, *, fixed: bool = False) -> NDArray[np.bool_]:
-    """True where only the sum or difference of the outer angles is determined, ``(...)``."""
+    """True where only the sum or difference of the first and last angle is determined."""
+    # The result is (...).
     middle = to_angles(sequence, rotation, fixed=fixed)[..., 1]
     outer = np.sin(middle) if sequence[2] == sequence[0] else np.cos(middle)
     return np.asarray(np.abs(outer) < OUTER_AXES_ALIGNED)
 
 
 def last_angle(sequence: str, first_two: Numbers, rotation: Matrices) -> Numbers:
-    """Return the third angle ``(...)``, given the first two ``(..., 2)``, for moving axes.
-
-    The first angle may be chosen freely only if the outer axes coincide.
-    """
+    """Return the third angle ``(...)``, given the first two ``(..., 2)``, for moving axes."""
+    # The first angle may be chosen freely only if the outer axes coincide.
     turned = about(sequence[0], first_two[..., 0]) @ about(sequence[1], first_two[..., 1])
     rest = np.swapaxes(turned, -1, -2) @ rotation
     axis = ord(sequence[2]) - ord("X")

@@ -1,10 +1,13 @@
-"""Screw axes, their exponentials and the product of exponentials. Batched.
+"""Screw axes, their exponentials and the product of exponentials.
 
-A screw axis is a six-vector (ω; v) ``(..., 6)``: ω is a unit vector along the axis and
-v = −ω × q + h ω with a point q on the axis and the pitch h. For a prismatic joint (infinite pitch),
-ω is 0 and v is the unit vector of its direction. Angles are in radians, lengths in any one unit.
-The source is Lynch and Park, *Modern Robotics*, chapters 3 and 4, which also uses the order (ω; v).
+A screw axis is a six-vector (ω; v) with a unit vector ω along the axis and v = −ω × q + h ω, where
+q is a point on the axis and h the pitch. For a prismatic joint, ω is 0 and v is a unit vector.
+
+Source: Lynch and Park, *Modern Robotics*, chapters 3 and 4.
 """
+
+# All functions are batched: screw axes are (..., 6). A prismatic joint has infinite pitch. Angles
+# are in radians, lengths in any one unit. The source also uses the order (ω; v).
 
 from functools import reduce
 
@@ -30,13 +33,13 @@ def skew(vector: Numbers) -> Matrices:
 def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
     """Return the motion e^{[S]θ} ``(..., 4, 4)`` along ``screw`` ``(..., 6)`` by ``amount``.
 
-    ``amount`` is ``(...)``. ω need not have unit length. Source: *Modern Robotics*, proposition
-    3.25.
+    Source: *Modern Robotics*, proposition 3.25.
 
     >>> motion = exponential(np.array([0.0, 0, 1, 0, -2, 0]), np.pi)
     >>> np.round(motion @ [0, 0, 0, 1]) + 0.0
     array([4., 0., 0., 1.])
     """
+    # The amount is (...). ω need not have unit length.
     amount = np.asarray(amount, dtype=np.float64)
     shape = np.broadcast_shapes(screw.shape[:-1], amount.shape)
     screw, amount = np.broadcast_to(screw, (*shape, 6)), np.broadcast_to(amount, shape)
@@ -55,12 +58,12 @@ def exponential(screw: Numbers, amount: ArrayLike) -> Matrices:
 
 
 def turning_axis(displacement: Matrices, angle: float) -> Numbers:
-    """Return the screw axis ``(..., 6)`` without pitch of a turn by ``angle``.
+    """Return the screw axis ``(..., 6)`` of a turn ``displacement`` by ``angle``.
 
-    ``displacement`` is ``(..., 4, 4)``, and ``angle`` must not be a multiple of π. If the
-    displacement is not such a turn, the exponential of the result is another motion. Source:
-    *Modern Robotics*, algorithm in 3.3.3.2.
+    ``angle`` must not be a multiple of π. Source: *Modern Robotics*, algorithm in 3.3.3.2.
     """
+    # The axis has no pitch. If the displacement (..., 4, 4) is not such a turn, the exponential of
+    # the result is another motion.
     rotation = displacement[..., :3, :3]
     twice = rotation - np.swapaxes(rotation, -1, -2)
     omega = np.stack([twice[..., 2, 1], twice[..., 0, 2], twice[..., 1, 0]], axis=-1)
@@ -81,12 +84,11 @@ def sliding_axis(displacement: Matrices, distance: float) -> Numbers:
 
 
 def adjoint(transform: Matrices) -> Matrices:
-    """Return the matrix ``(..., 6, 6)`` that converts screw axes between two frames.
+    """Return the matrix ``(..., 6, 6)`` that converts screw axes from frame b to frame a.
 
-    It takes a screw axis from the second frame of ``transform`` to the first frame.
-
-    Source: *Modern Robotics*, definition 3.20: [R, 0; [p] R, R].
+    ``transform`` is the pose of b in a. Source: *Modern Robotics*, definition 3.20.
     """
+    # [R, 0; [p] R, R].
     rotation = transform[..., :3, :3]
     matrix = np.zeros((*transform.shape[:-2], 6, 6))
     matrix[..., :3, :3] = matrix[..., 3:, 3:] = rotation
@@ -95,7 +97,10 @@ def adjoint(transform: Matrices) -> Matrices:
 
 
 def moved(transform: Matrices, screws: Numbers) -> Numbers:
-    """Convert screw axes ``(..., 6)`` from the second frame of ``transform`` to the first frame."""
+    """Convert screw axes ``(..., 6)`` from frame b to frame a.
+
+    ``transform`` is the pose of b in a.
+    """
     return np.asarray((adjoint(transform) @ screws[..., None])[..., 0])
 
 

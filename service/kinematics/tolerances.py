@@ -1,9 +1,11 @@
 """Every tolerance of the kinematics, each with its reason.
 
-Poses are compared in a unit of length that suits the robot, so that lengths and direction cosines
-have the same tolerance. A product of twenty matrices in double precision has an error of about
-1e-15; different choices of a student differ by at least about 1e-4.
+Poses are compared in a unit of length that suits the robot, so that one tolerance serves lengths
+and direction cosines.
 """
+
+# A product of twenty matrices in double precision has an error of about 1e-15; different choices of
+# a student differ by at least about 1e-4.
 
 from typing import Final
 

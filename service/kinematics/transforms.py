@@ -1,8 +1,10 @@
-"""Homogeneous transforms, batched.
+"""Homogeneous transforms, for whole arrays at once.
 
-Every function takes scalars or arrays that broadcast to one batch shape ``(...)`` and returns
-float64 matrices of shape ``(..., 4, 4)``. Angles are in radians, lengths in any one unit.
+Arguments are scalars or arrays that broadcast to one shape ``(...)``; results are ``(..., 4, 4)``.
+Angles are in radians.
 """
+
+# Lengths are in any one unit. Results are float64.
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -35,7 +37,7 @@ def rot_z(angle: ArrayLike) -> Matrices:
 
 
 def _rotation(angle: ArrayLike, first: int, second: int) -> Matrices:
-    """Return the rotation in a coordinate plane that turns axis ``first`` towards ``second``."""
+    """Return the rotation by ``angle`` that turns axis ``first`` towards axis ``second``."""
     angle = np.asarray(angle, dtype=np.float64)
     cosine, sine = np.cos(angle), np.sin(angle)
     matrices = identity(angle.shape)
@@ -47,7 +49,8 @@ def _rotation(angle: ArrayLike, first: int, second: int) -> Matrices:
 
 
 def cross(one: Numbers, other: Numbers) -> Numbers:
-    """Return the cross products of vectors ``(..., 3)``, several times as fast as ``np.cross``."""
+    """Return the cross products of vectors ``(..., 3)``."""
+    # Several times as fast as np.cross.
     a, b, c = (one[..., i] for i in range(3))
     d, e, f = (other[..., i] for i in range(3))
     return np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=-1)
@@ -67,7 +70,8 @@ def inverse(transform: Matrices) -> Matrices:
 
 
 def is_rigid(transform: Matrices, tolerance: float) -> NDArray[np.bool_]:
-    """True for rigid matrices ``(..., 4, 4)``: a right-handed rotation, last row (0, 0, 0, 1)."""
+    """True for matrices ``(..., 4, 4)`` that are rigid transforms within the tolerance."""
+    # The rotation must be right-handed, the last row (0, 0, 0, 1).
     rotation = transform[..., :3, :3]
     product = rotation @ np.swapaxes(rotation, -1, -2)
     error = np.abs(product - np.eye(3)).max(axis=(-1, -2))

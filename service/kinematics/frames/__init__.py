@@ -1,1 +1,1 @@
-"""Find which tables, in frames that the student chooses, describe the same robot."""
+"""Find which tables describe the same robot if students choose the frames."""

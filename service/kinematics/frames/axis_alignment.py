@@ -1,10 +1,12 @@
-"""Find the place of a free base frame that makes the joint axes of two chains coincide.
+"""Move a chain of links so that its joint axes coincide with those of another chain.
 
-Each chain is given by frames whose z axes are its joint axes, ``(joints, L, 4, 4)``, at the same
-joint values. The rotation follows from the directions of the axes, then the translation from their
-positions. If the axes do not determine the transform (all are parallel, for example), one of the
-possible transforms is returned.
+The joint axes are the z axes of frames ``(joints, L, 4, 4)``.
 """
+
+# The base frame of a chain is free. Both chains have the same joint values. The rotation follows
+# from the directions of the axes, then the translation from their positions. If the axes do not
+# determine the transform (all are parallel, for example), one of the possible transforms is
+# returned.
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,14 +27,14 @@ def align_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -
 
 
 def align_first_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
-    """Apply ``align_axes`` to the first axis, the first two, and so on: ``(n, L, 4, 4)``."""
+    """Return the transforms that align the first 1, 2, … n axes: ``(n, L, 4, 4)``."""
     return _aligned(source, target, sliding, _EACH)
 
 
 def _aligned(
     source: Matrices, target: Matrices, sliding: NDArray[np.bool_], numbers: slice
 ) -> Matrices:
-    """Apply ``align_axes`` to the first 1, 2 … n axes, or to a slice of these: ``(m, L, 4, 4)``."""
+    # Aligns the first 1, 2, … n axes, or only a slice of these numbers: (m, L, 4, 4).
     known = _known_to_first(len(source))[numbers]
     rotation = _bases(target, sliding, known) @ np.swapaxes(_bases(source, sliding, known), -1, -2)
     transform = identity(rotation.shape[:2])
@@ -42,11 +44,9 @@ def _aligned(
 
 
 def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_]) -> Matrices:
-    """Return right-handed bases ``(m, L, 3, 3)`` that are fixed to the ``known`` axes.
-
-    z is along the first axis. x points in the direction of the first axis that is not parallel
-    to z, or else to the first parallel axis at another place.
-    """
+    # Right-handed bases (m, L, 3, 3) that are fixed to the known axes. z is along the first axis. x
+    # points in the direction of the first axis that is not parallel to z, or else to the first
+    # parallel axis at another place.
     z = axes[0, :, :3, 2]
     directions = axes[:, :, :3, 2]
     # Points are relative to the first revolute axis.
@@ -67,10 +67,8 @@ def _bases(axes: Matrices, sliding: NDArray[np.bool_], known: NDArray[np.bool_])
 
 
 def _known_to_first(joints: int) -> NDArray[np.bool_]:
-    """Return a mask ``(n, 2 n + 1)``; row k is True for what the first k + 1 axes determine.
-
-    The columns are the n directions, the n points, and an arbitrary x, which is always True.
-    """
+    # A mask (n, 2 n + 1); row k is True for what the first k + 1 axes determine. The columns are
+    # the n directions, the n points, and an arbitrary x, which is always True.
     first = np.tri(joints, dtype=np.bool_)
     return np.concatenate([first, first, np.ones((joints, 1), np.bool_)], axis=1)
 
@@ -82,11 +80,9 @@ def _translations(
     sliding: NDArray[np.bool_],
     numbers: slice,
 ) -> Numbers:
-    """Return the shifts ``(m, L, 3)`` that best move the revolute source axes to the target axes.
-
-    With u along an axis and p from a point of the rotated source axis to one of the target axis,
-    the shift minimises Σ |(1 − u uᵀ)(p − shift)|².
-    """
+    # The shifts (m, L, 3) that best move the revolute source axes to the target axes. With u along
+    # an axis and p from a point of the rotated source axis to one of the target axis, the shift
+    # minimises Σ |(1 − u uᵀ)(p − shift)|².
     u = target[..., :3, 2]
     projection = np.eye(3) - u[..., :, None] * u[..., None, :]
     projection[sliding] = 0.0

@@ -1,12 +1,14 @@
-"""Track, from row to row, how freely a base frame that the student chooses may still be moved.
+"""How freely a base frame that the student chooses may still be moved, row by row.
 
-If the base is free, frame 0 may be turned about the axis of joint 1 and moved along it (and moved
-anywhere, if that joint is prismatic). The choice has an effect only where the chain first leaves
-that axis. So the search keeps the freedom from row to row until a row depends on it; this row uses
-it up.
+Frame 0 may be turned about the axis of joint 1 and moved along it. The first row that depends on
+this choice determines it.
 
-Shapes: N candidate rows, L samples; rows are ``(N, 4, L)`` in the column order a, α, d, θ.
+Shapes: N candidate rows, L samples; rows are ``(N, 4, L)`` with the columns a, α, d, θ.
 """
+
+# If joint 1 is prismatic, frame 0 may be moved anywhere. The choice has an effect only where the
+# chain first leaves the axis of joint 1. So the search keeps the freedom from row to row until a
+# row depends on it; this row uses it up.
 
 from dataclasses import dataclass
 from typing import Self
@@ -26,28 +28,28 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class BaseFreedom:
-    """The ways to move the student's frame, given in the reference's frame on the same axis.
+    """The ways in which a frame that the student chose may be moved."""
 
-    With ``turn``, the student's frame may be turned about z. With ``anywhere``, it may be moved in
-    all directions; else only along ``slide`` ``(L, 3)``, or not at all if ``slide`` is None.
-    """
-
+    # True if the frame may be turned about z.
     turn: bool = False
+    # The frame may be moved along this vector (L, 3), given in the reference's frame on the same
+    # axis.
     slide: Numbers | None = None
+    # True if the frame may be moved in all directions.
     anywhere: bool = False
 
     @classmethod
     def on_first_axis(cls, prismatic: bool, samples: int) -> Self:
-        """Return the freedom of a frame on the axis of joint 1 if the base is free."""
+        """Return how a frame on the axis of joint 1 may be moved if the base is free."""
         return cls(turn=True, slide=None if prismatic else _along_z(samples), anywhere=prismatic)
 
     @property
     def is_used_up(self) -> bool:
-        """True if no freedom is left."""
+        """True if the frame may not be moved."""
         return not (self.turn or self.anywhere) and self.slide is None
 
     def at_next(self, reference: Matrices, kind: TargetKind, length_scale: float) -> Self:
-        """Return the freedom left at the next target, whose pose ``(L, 4, 4)`` is ``reference``."""
+        """Return the freedom left at the next axis or frame, ``reference`` ``(L, 4, 4)``."""
         relation = axis_relations(reference[None], length_scale)[0]
         parallel = relation != AxisRelation.SKEW
         sliding = kind is TargetKind.PRISMATIC
@@ -65,12 +67,12 @@ class BaseFreedom:
     def use_up(
         self, rows: Numbers, rows_beyond: Numbers, written: Numbers
     ) -> list[tuple[Numbers, Numbers]]:
-        """Return rows that use up the freedom, each with the distance ``(N, L)`` along ``slide``.
+        """Return rows of moved frames, each with the distance ``(N, L)`` along ``slide``.
 
-        ``rows_beyond`` is ``rows`` for a frame one unit further along ``slide``; lengths depend
-        linearly on the distance. The distance is chosen so that one length equals the ``written``
-        length.
+        Each distance makes one length in the row equal to the ``written`` length.
         """
+        # rows_beyond is rows for a frame one unit further along slide; lengths depend linearly on
+        # the distance.
         unmoved = np.zeros(rows.shape[::2])
         if self.anywhere:
             moved = rows.copy()
@@ -88,7 +90,7 @@ class BaseFreedom:
         return options or [(rows, unmoved)]
 
     def with_written_angle(self, rows: Numbers, written: Numbers) -> Numbers:
-        """Return the rows with the written θ if the freedom allows every angle; else unchanged."""
+        """Return the rows with the written θ if every angle is allowed; else unchanged."""
         if not self.turn:
             return rows
         turned = rows.copy()

@@ -1,15 +1,16 @@
-"""Find all DH rows that lead from a frame to the next axis.
-
-A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). The next target is a transform relative to
-the frame before the row. Its kind decides what the row must match: the line of a revolute axis, the
-direction of a prismatic axis, or the whole frame of the tool. A value is called open if the
-geometry does not determine it. Then the written value is as good as the reference's value, so both
-are tried.
+"""Find all DH rows that lead from a frame to the next joint axis, or to the tool.
 
 Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``; rows are
-``(..., 4, L)`` in the column order a, α, d, θ. The written row is ``(4, L)``, with NaN for cells
-without a usable number. Angles are in radians.
+``(..., 4, L)`` with the columns a, α, d, θ.
 """
+
+# A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). The next target is a transform relative to
+# the frame before the row. Its kind decides what the row must match: the line of a revolute axis,
+# the direction of a prismatic axis, or the whole frame of the tool. A value is called open if the
+# geometry does not determine it. Then the written value is as good as the reference's value, so
+# both are tried.
+#
+# The written row is (4, L), with NaN for cells without a usable number. Angles are in radians.
 
 from enum import Enum, IntEnum
 
@@ -35,7 +36,7 @@ class AxisRelation(IntEnum):
 
 
 class TargetKind(Enum):
-    """The target of a row, which decides how much of the frame after the row is determined."""
+    """What a row of the table leads to, for example a revolute axis or the tool frame."""
 
     REVOLUTE = "a line that the next z axis lies on"
     PRISMATIC = "a direction of the next z axis"
@@ -47,9 +48,9 @@ class TargetKind(Enum):
 def candidate_rows(
     target: Matrices, written: Numbers, kind: TargetKind, length_scale: float
 ) -> Numbers:
-    """Return every row that leads to the target: ``(H, K, 4, L)``.
+    """Return all DH rows that lead to the targets: ``(H, K, 4, L)``.
 
-    The z axes of all H targets must have the same AxisRelation to the z axis before the row.
+    All targets must have the same ``AxisRelation`` to the previous z axis.
     """
     if kind is TargetKind.TOOL:
         return row(target, Convention.STANDARD)[:, None]
@@ -70,7 +71,7 @@ def candidate_rows(
 
 
 def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
-    """Return how each target's z axis lies to the z axis of the previous frame: ``(H,)``."""
+    """Return the relation of each target's z axis to the previous z axis: ``(H,)``."""
     sine = np.hypot(target[..., 0, 2], target[..., 1, 2])
     offset = np.hypot(target[..., 0, 3], target[..., 1, 3])
     parallel = np.all(sine < PARALLEL, axis=-1)
@@ -80,15 +81,12 @@ def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
 
 
 def written_or(written: Numbers, other: Numbers) -> Numbers:
-    """Return the written values; where they are NaN, the other values."""
+    """Return ``written`` with each NaN replaced by the value in ``other``."""
     return np.where(np.isnan(written), other, written)
 
 
 def _to_skew(target: Matrices, written: Numbers) -> Numbers:
-    """Return the rows that lead to a skew axis.
-
-    x is along the common normal. Both x and z may be reversed.
-    """
+    # x is along the common normal. Both x and z may be reversed.
     ux, uy, uz = (target[..., i, 2] for i in range(3))
     px, py, pz = (target[..., i, 3] for i in range(3))
     sine = np.hypot(ux, uy)
@@ -101,10 +99,7 @@ def _to_skew(target: Matrices, written: Numbers) -> Numbers:
 
 
 def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
-    """Return the rows that lead to a parallel axis.
-
-    x points from one axis to the other. d is open: the written and the reference's d are tried.
-    """
+    # x points from one axis to the other. d is open: the written and the reference's d are tried.
     px, py, pz = (target[..., i, 3] for i in range(3))
     theta, a = np.arctan2(py, px), np.hypot(px, py)
     x_sign, z_sign = _signs(target, theta, a, written)
@@ -119,10 +114,7 @@ def _to_parallel(target: Matrices, written: Numbers) -> Numbers:
 
 
 def _to_coincident(target: Matrices, written: Numbers) -> Numbers:
-    """Return the rows that lead to a coincident axis.
-
-    θ and d are open: the written and the reference's values are tried.
-    """
+    # θ and d are open: the written and the reference's values are tried.
     pz = target[..., 2, 3]
     x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     alpha = _parallel_twist(target, _Z_SIGNS)
@@ -145,11 +137,8 @@ _TO_LINE = {
 
 
 def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
-    """Return the rows that turn z to a given direction that is not parallel to z.
-
-    a and d are open, because only the direction is given. Each of them is taken as written or from
-    ``rows``, in all combinations.
-    """
+    # The rows turn z to a given direction that is not parallel to z. a and d are open, because only
+    # the direction is given. Each of them is taken as written or from rows, in all combinations.
     options = []
     for columns in ((A, D), (A,), (D,), ()):
         moved = rows.copy()
@@ -160,10 +149,7 @@ def _with_open_lengths(rows: Numbers, written: Numbers) -> Numbers:
 
 
 def _to_parallel_direction(target: Matrices, written: Numbers, relation: AxisRelation) -> Numbers:
-    """Return the rows that turn z to a given direction that is parallel to z.
-
-    a, d and θ are open, because only the direction is given.
-    """
+    # a, d and θ are open, because only the direction is given.
     on_line = _TO_LINE[relation](target, written)
     as_written = np.empty((len(target), 2, 4, target.shape[1]))
     as_written[:] = written_or(written, on_line[:, :1])
@@ -178,13 +164,11 @@ def _to_parallel_direction(target: Matrices, written: Numbers, relation: AxisRel
 def _signs(
     target: Matrices, theta: Numbers, a: Numbers, written: Numbers
 ) -> tuple[Numbers, Numbers]:
-    """Return the possible signs of x and z: two arrays that broadcast to ``(H, K, L)``.
-
-    x is along a normal at the angle ``theta`` ``(H, L)``, where the link length is ``a``, or points
-    the opposite way. If ``a`` is a difference of lengths, its sign may change between samples, but
-    the direction of x does not. So the first x that is tried points the same way as the
-    reference's x. If the axis was moved, the directions of the written θ and a are tried, too.
-    """
+    # The possible signs of x and z: two arrays that broadcast to (H, K, L). x is along a normal at
+    # the angle theta (H, L), where the link length is a, or points the opposite way. If a is a
+    # difference of lengths, its sign may change between samples, but the direction of x does not.
+    # So the first x that is tried points the same way as the reference's x. If the axis was moved,
+    # the directions of the written θ and a are tried, too.
     x_angle = np.arctan2(target[..., 1, 0], target[..., 0, 0])
     along = np.cos(theta - x_angle)
     is_along = np.abs(np.abs(along) - 1).max(axis=-1, keepdims=True) < ALONG_NORMAL
@@ -200,15 +184,15 @@ def _signs(
 
 
 def _half_turned(theta: Numbers, x_sign: Numbers) -> Numbers:
-    """Return ``theta`` ``(H, L)``, plus π where the sign of x ``(H, K, L)`` is negative."""
+    # theta (H, L), plus π where the sign of x (H, K, L) is negative.
     return theta[:, None] + np.where(x_sign < 0, np.pi, 0.0)
 
 
 def _parallel_twist(target: Matrices, z_sign: Numbers) -> Numbers:
-    """Return α between parallel axes, 0 or π, for each sign ``(K, 1)``: ``(H, K, L)``."""
+    # α between parallel axes, 0 or π, for each sign (K, 1): (H, K, L).
     return np.where(target[:, None, :, 2, 2] * z_sign > 0, 0.0, np.pi)
 
 
 def _rows(a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers) -> Numbers:
-    """Stack columns that broadcast to ``(H, K, L)`` into rows ``(H, K, 4, L)``."""
+    # (H, K, 4, L).
     return np.stack(np.broadcast_arrays(a, alpha, d, theta), axis=2)

@@ -1,14 +1,17 @@
-"""Match a written chain with a reference chain, link by link.
+"""Compare a written chain of links with the reference's chain, link by link.
 
-A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with constant links C_i. Two tables describe one
-mechanism if and only if constant transforms g_i exist with C_i(written) = g_i⁻¹ C_i(reference)
-g_{i+1}, where g_i keeps joint axis i (docs/frame-choice.md). So g_{i+1} follows from g_i and the
-written link, and must keep its axis. In the code g_i is the *relative pose*: the pose of the
-writer's frame on an axis as seen from the reference's frame there.
+The *relative pose* at a joint axis is the pose of the writer's frame in the reference's frame. It
+must leave the axis unchanged.
 
-Shapes: L samples; a row is ``(4, L)`` in the column order a, α, d, θ and stands for the product
-Z X that leads from one target to the next; angles in radians.
+Shapes: L samples; a row is ``(4, L)`` with the columns a, α, d, θ.
 """
+
+# A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with constant links C_i. Two tables describe one
+# mechanism if and only if constant transforms g_i exist with C_i(written) = g_i⁻¹ C_i(reference)
+# g_{i+1}, where g_i keeps joint axis i (docs/frame-choice.md). So g_{i+1} follows from g_i and the
+# written link, and must keep its axis. In the code g_i is the relative pose.
+#
+# A row stands for the product Z X that leads from one target to the next; angles in radians.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -24,13 +27,11 @@ from service.kinematics.transforms import Matrices, Numbers, identity, inverse
 
 @dataclass(frozen=True, slots=True)
 class Target:
-    """The target of a row.
-
-    ``reference`` is the reference's transform ``(L, 4, 4)`` from the previous joint's frame to the
-    target's frame; None for a fixed frame that the reference does not have.
-    """
+    """The axis or frame to which a row of the table leads."""
 
     kind: TargetKind
+    # The reference's transform (L, 4, 4) from the previous joint's frame to the target's frame;
+    # None for a fixed frame that the reference does not have.
     reference: Matrices | None
 
     @property
@@ -41,42 +42,40 @@ class Target:
 
 @dataclass(frozen=True, slots=True)
 class RowConstants:
-    """The constants of a row as written.
+    """The constants in a row of the student's table, with facts about each cell."""
 
-    ``written`` has the numbers ``(4, L)``, NaN in a cell without a usable number. The next four
-    fields have a value for each cell, ``(4,)``. ``is_gradable`` is True for cells that can be right
-    or wrong, ``wrong_regardless`` for cells that are wrong whatever frames are chosen, and
-    ``absent`` for cells that the table does not have (they are 0). ``slack`` is the rounding error.
-    ``variable`` is the column of the row's joint variable, or None. ``joint_sign`` is the sign of
-    that variable: +1, −1, or 0 if unknown.
-    """
-
+    # (4, L), NaN in a cell without a usable number.
     written: Numbers
+    # (4,), as the next three: True for cells that can be right or wrong.
     is_gradable: NDArray[np.bool_]
+    # True for cells that are wrong whatever frames are chosen.
     wrong_regardless: NDArray[np.bool_]
+    # True for cells that the table does not have (they are 0).
     absent: NDArray[np.bool_]
+    # The rounding error of each cell.
     slack: Numbers
+    # The column of the row's joint variable, or None.
     variable: int | None
+    # The sign of the joint variable: +1, -1, or 0 if unknown.
     joint_sign: int
 
 
 @dataclass(frozen=True, slots=True)
 class ChainMatch:
-    """A valid table, and its frames relative to the reference's frames.
+    """A correct table, and its frames relative to the reference's frames."""
 
-    ``rows`` ``(rows, 4, L)`` are the right rows. ``relative_poses`` ``(rows, L, 4, 4)`` are the
-    relative poses at each target. ``cost`` is the distance of the written table from the valid
-    table, ``lost`` the units of marks that the written table loses (``frame_choice``).
-    """
-
+    # (rows, 4, L).
     rows: Numbers
+    # The relative pose at each target, (rows, L, 4, 4).
     relative_poses: Matrices
+    # The distance of the written table from this table.
     cost: float
+    # The units of marks that the written table loses (frame_choice).
     lost: float = 0.0
 
     @property
     def joint_signs(self) -> list[int]:
-        """The right sign of the joint variable of each target."""
+        """The correct sign of the joint variable in each row."""
         signs: list[int] = joint_signs_of(self.relative_poses).tolist()
         return signs
 
@@ -89,11 +88,9 @@ def match_as_written(
     directions_given: bool = True,
     start: Matrices | None = None,
 ) -> ChainMatch | None:
-    """Return the written table if nothing in it is wrong, else None.
-
-    ``directions_given`` is true if each joint's positive direction is given. ``start`` is the
-    relative pose of frame 0, None for the identity.
-    """
+    """Return the written table if nothing in it is wrong, else None."""
+    # directions_given is true if each joint's positive direction is given. start is the relative
+    # pose of frame 0, None for the identity.
     if any(row.wrong_regardless.any() for row in rows):
         return None
     written = np.array([row.written for row in rows])
@@ -110,13 +107,14 @@ def match_tables(
     tolerance: float = SAME_POSE,
     start: Matrices | None = None,
 ) -> tuple[NDArray[np.bool_], Matrices]:
-    """Test which of many tables are valid as written, without any search.
+    """Test which of many tables are correct as written.
 
-    ``written`` is ``(tables, rows, 4, L)``. ``joint_signs`` ``(tables, rows)`` are +1 or −1, or 0
-    where the sign is unknown or the direction is free. ``start`` ``(L, 4, 4)``, or one for each
-    table, is the relative pose of frame 0, None for the identity. Return a mask ``(tables,)`` and
-    the relative poses at the targets, ``(rows, tables, L, 4, 4)``. A table with NaN is invalid.
+    Return a mask ``(tables,)`` and the poses of their frames in the reference's frames, ``(rows,
+    tables, L, 4, 4)``.
     """
+    # written is (tables, rows, 4, L). joint_signs (tables, rows) are +1 or -1, or 0 where the sign
+    # is unknown or the direction is free. start (L, 4, 4), or one for each table, is the relative
+    # pose of frame 0, None for the identity. A table with NaN is not correct.
     count = written.shape[-1]
     links = standard_link(*np.moveaxis(written, 2, 0))
     pose = identity((len(written), count))
@@ -137,11 +135,9 @@ def match_tables(
 
 
 def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
-    """Return all errors of relative poses at the targets, ``(tables, n, L)``; 0 for a valid table.
-
-    ``poses`` ``(rows, tables, L, 4, 4)`` are the relative poses that ``match_tables`` returns. The
-    directions of the axes are ignored.
-    """
+    """Return all errors of the frames of tables, ``(tables, n, L)``: 0 for a correct table."""
+    # poses (rows, tables, L, 4, 4) are the relative poses that match_tables returns. The directions
+    # of the axes are ignored.
     unit = np.array([1.0, 1.0, 1.0, length_scale])
     missed: list[Numbers] = []
     for pose, target in zip(poses, targets, strict=True):
@@ -157,7 +153,6 @@ def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> 
 
 
 def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
-    """Return the error of relative poses ``(T, L, 4, 4)`` at a target: ``(T,)``."""
     error: Numbers = np.abs(pose[:, :, :2, 2]).max(axis=(1, 2))
     if kind in (TargetKind.FIXED, TargetKind.OPEN):
         return np.where(np.isnan(error), np.nan, 0.0)
@@ -169,8 +164,5 @@ def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
 
 
 def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
-    """Return +1 if the writer's z has the direction of the reference's z, −1 if it is reversed.
-
-    The result is ``(N,)`` for relative poses ``(N, L, 4, 4)``.
-    """
+    """Return +1 if z has the direction of the reference's z, −1 if it is reversed: ``(N,)``."""
     return np.where(pose[:, 0, 2, 2] > 0, 1, -1)

@@ -1,15 +1,19 @@
-"""Find the valid table nearest to a written one.
+"""Find the correct table that is nearest to the student's table.
 
-Denavit-Hartenberg tables are not unique (``chain_match`` explains when two describe one mechanism).
-So the search proceeds from the base to the tool. It compares each written row with all rows that
-are valid for the frames chosen so far. A wrong cell costs 1. Each further wrong cell in the same
-row costs less, so that one wrong row is cheaper than errors in several rows. A frame other than
-the reference's frame has a small cost, so that an uncompensated shift is found in the row where it
-was made. Only the cheapest hypotheses are kept (a beam search).
+The student may choose other frames than the reference. The search goes from the base to the tool,
+and keeps only the cheapest hypotheses.
 
-Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` in the column order
-a, α, d, θ; angles in radians. A relative pose is the pose of the writer's frame in the reference's.
+Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` with the columns a, α,
+d, θ.
 """
+
+# chain_match explains when two tables describe one mechanism. Each written row is compared with all
+# rows that are valid for the frames chosen so far. A wrong cell costs 1. Each further wrong cell in
+# the same row costs less, so that one wrong row is cheaper than errors in several rows. A frame
+# other than the reference's frame has a small cost, so that an uncompensated shift is found in the
+# row where it was made. The search is a beam search.
+#
+# Angles are in radians. A relative pose is the pose of the writer's frame in the reference's.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -60,24 +64,20 @@ _Path = tuple[tuple[Numbers, Matrices], ...]
 
 @dataclass(frozen=True, slots=True)
 class _Beam:
-    """The H hypotheses of the search: relative poses ``(H, L, 4, 4)``, costs and paths.
-
-    ``lost`` ``(H,)`` are the marks that the student loses: 1 for each wrong or unread cell, with a
-    limit for each row. If only a and α of a table row have been compared yet, ``begun`` counts the
-    wrong, unread and nonzero cells among these two.
-    """
-
+    # The relative poses of the H hypotheses, (H, L, 4, 4).
     pose: Matrices
     cost: Numbers
+    # The marks (H,) that the student loses: 1 for each wrong or unread cell, with a limit for each
+    # row.
     lost: Numbers
     paths: list[_Path]
+    # The cells among a and α, if only these two of a table row have been compared yet.
     begun: "_RowCounts"
 
 
 @dataclass(frozen=True, slots=True)
 class _RowCounts:
-    """The numbers ``(N,)`` of wrong, unread and nonzero cells in a row of the table."""
-
+    # The numbers (N,) of wrong, unread and nonzero cells in a row of the table.
     wrong: NDArray[np.int_]
     unread: NDArray[np.int_]
     known: NDArray[np.int_]
@@ -115,15 +115,11 @@ def nearest_table(
     start: Matrices | None = None,
     z_ends_rows: bool = False,
 ) -> ChainMatch:
-    """Return the valid table nearest to ``rows``. Row i leads to target i.
-
-    ``z_ends_rows`` is true if a and α come before d and θ in each row of the table.
-
-    ``base_given`` is true if frame 0 is known. Its pose in the reference's frame 0 is ``start``
-    ``(L, 4, 4)``, or the identity if ``start`` is None. ``directions_given`` is true if each
-    joint's positive direction is given, so that a reversed z axis needs a variable with the
-    opposite sign.
-    """
+    """Return the correct table nearest to ``rows``, of which row i leads to target i."""
+    # z_ends_rows is true if a and α come before d and θ in each row of the table. base_given is
+    # true if frame 0 is known. Its pose in the reference's frame 0 is start (L, 4, 4), or the
+    # identity if start is None. directions_given is true if each joint's positive direction is
+    # given, so that a reversed z axis needs a variable with the opposite sign.
     samples = rows[0].written.shape[-1]
     if base_given:
         pose = identity((samples,)) if start is None else start
@@ -143,10 +139,7 @@ def nearest_table(
 
 
 def _from_free_base(first: RowConstants, target: Target) -> tuple[_Beam, BaseFreedom]:
-    """Return the hypotheses on the first axis, z in either direction, for a free base.
-
-    The row from a free base to the first axis is always right.
-    """
+    # The row from a free base to the first axis is always right; z has either direction.
     samples = first.written.shape[-1]
     poses = np.stack([identity((samples,)), rot_x(np.full(samples, np.pi))])
     row = np.nan_to_num(first.written)
@@ -164,7 +157,6 @@ def _next_beam(
     freedom: BaseFreedom,
     z_ends_rows: bool,
 ) -> _Beam:
-    """Return the cheapest hypotheses after one more row."""
     parents, rows, distance, unreachable = _continuations(beam, row, target, length_scale, freedom)
     expected = freedom.with_written_angle(rows, row.written)
     wrong = _wrong_cells(row, expected, length_scale)
@@ -205,7 +197,6 @@ def _next_beam(
 
 
 def _with_others(chosen: NDArray[np.int_], others: NDArray[np.int_]) -> NDArray[np.int_]:
-    """Return the chosen numbers, then the others that are not among them."""
     is_new = (others[:, None] != chosen).all(axis=1)
     return np.concatenate([chosen, others[is_new]])
 
@@ -218,7 +209,7 @@ def _counts(
     *,
     free_angle: bool,
 ) -> tuple[_RowCounts, _RowCounts]:
-    """Count wrong, unread and nonzero cells in N rows: first among a and α, then among d and θ."""
+    # Counts wrong, unread and nonzero cells: first among a and α, then among d and θ.
     of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
     of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
     # A constant beside a wrong joint variable does not count.
@@ -236,12 +227,9 @@ def _counts(
 def _continuations(
     beam: _Beam, row: RowConstants, target: Target, length_scale: float, freedom: BaseFreedom
 ) -> tuple[NDArray[np.int_], Numbers, Numbers, NDArray[np.bool_]]:
-    """Return all N ways to continue the hypotheses by a row.
-
-    For each way, return the index of its hypothesis ``(N,)``, its row ``(N, 4, L)``, the distance
-    ``(N, L)`` to slide the frame along the remaining freedom of the base, and a mask ``(N,)`` of
-    the ways in which no row leads to the target.
-    """
+    # For each of the N ways, returns the index of its hypothesis (N,), its row (N, 4, L), the
+    # distance (N, L) to slide the frame along the remaining freedom of the base, and a mask (N,) of
+    # the ways in which no row leads to the target.
     reference = target.reference
     if reference is None:
         rows = np.broadcast_to(np.nan_to_num(row.written), (len(beam.pose), *row.written.shape))
@@ -275,7 +263,6 @@ def _continuations(
 
 
 def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
-    """Return poses ``(N, L, 4, 4)`` slid by ``distance`` ``(N, L)`` along the base's freedom."""
     if freedom.slide is None:
         return pose
     moved = pose.copy()
@@ -284,7 +271,6 @@ def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
 
 
 def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArray[np.bool_]:
-    """Return a mask ``(N, 4)`` of the cells in which the written row differs from ``rows``."""
     error = np.abs(row.written - rows)
     turns = error[:, [ALPHA, THETA]] / (2 * np.pi)
     error[:, [ALPHA, THETA]] = 2 * np.pi * np.abs(turns - np.round(turns))
@@ -297,10 +283,8 @@ def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArr
 
 
 def departure(pose: Matrices, length_scale: float) -> Numbers:
-    """Return the cost ``(N,)`` of frames other than the reference's frames: small, but not 0.
-
-    ``pose`` ``(N, L, 4, 4)`` are the relative poses of the frames.
-    """
+    """Return the small cost ``(N,)`` of frames that differ from the reference's frames."""
+    # pose (N, L, 4, 4) are the relative poses of the frames. The cost is not 0.
     # An axis at a right angle is not reversed, whatever the rounding error of its cosine is.
     cost = np.where(pose[:, 0, 2, 2] < -SAME_POSE, TURNED_OVER, 0.0)
     cost += np.where(pose[:, 0, 0, 0] < -SAME_POSE, TURNED_ABOUT, 0.0)
@@ -310,7 +294,6 @@ def departure(pose: Matrices, length_scale: float) -> Numbers:
 
 
 def _distinct(pose: Matrices, cost: Numbers, length_scale: float) -> NDArray[np.int_]:
-    """Return the cheapest BEAM_WIDTH hypotheses with different frames."""
     order = np.argsort(cost, kind="stable")
     frames = pose[order, 0, :3].reshape(len(order), -1)
     difference = np.abs(frames[:, None] - frames[None]).max(axis=-1)

@@ -1,12 +1,15 @@
-"""The rules by which frames are placed on joint axes, and the DH rows that follow.
+"""The rules for placing frames on joint axes, and the DH rows between the frames.
 
-A frame has its z axis along its joint's axis. Its x axis crosses the neighbouring axis at a right
-angle. The neighbouring axis is the z axis of the previous frame in the standard convention, and of
-the next frame in the modified convention. So the origin is at the foot of the common normal;
-parallel axes leave the origin free.
+The z axis of a frame is along its joint's axis. The x axis crosses the neighbouring axis at a right
+angle.
+
 Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §3.2.2; Craig, *Introduction to
-Robotics*, §3.4. All arrays are batched: directions and points are ``(L, 3)``.
+Robotics*, §3.4.
 """
+
+# The neighbouring axis is the z axis of the previous frame in the standard convention, and of the
+# next frame in the modified convention. So the origin is at the foot of the common normal; parallel
+# axes leave the origin free. All arrays are batched: directions and points are (L, 3).
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -22,7 +25,9 @@ from service.kinematics.transforms import Matrices, Numbers, cross, identity, in
 
 
 class AxisPosition(StrEnum):
-    """The position of two axes. Skew or crossing axes have one common normal, others many."""
+    """The relative position of two axes."""
+
+    # Skew or crossing axes have one common normal, others many.
 
     SKEW = "skew"
     CROSSING = "crossing"
@@ -67,7 +72,8 @@ def x_line(frame: Matrices) -> AxisLine:
 
 
 def axis_relation(neighbour: AxisLine, own: AxisLine, length_scale: float) -> AxisPosition:
-    """Return the relative position of two axes. Distances are compared with ``length_scale``."""
+    """Return the relative position of two axes."""
+    # Distances are compared with length_scale.
     normal = cross(neighbour.direction, own.direction)
     if largest(normal) > PARALLEL:
         gap = _dot(own.point - neighbour.point, _unit(normal))
@@ -87,7 +93,8 @@ def normal_direction(neighbour: AxisLine, own: AxisLine, relation: AxisPosition)
 
 
 def normal_foot(neighbour: AxisLine, own: AxisLine) -> Numbers:
-    """Return the foot, on ``own``, of the common normal of two axes that are not parallel."""
+    """Return the point where the common normal of two axes meets ``own``."""
+    # The axes must not be parallel.
     normal = cross(neighbour.direction, own.direction)
     between = cross(own.point - neighbour.point, neighbour.direction)
     along = _dot(between, normal) / _dot(normal, normal)
@@ -96,19 +103,18 @@ def normal_foot(neighbour: AxisLine, own: AxisLine) -> Numbers:
 
 @dataclass(frozen=True, slots=True)
 class AskedFrame:
-    """A frame that is to be placed, and the axes that its place depends on.
+    """A frame that is to be placed, and the axes that its place depends on."""
 
-    ``own`` is the frame's z axis, ``joint`` the index of the joint with this axis. The frame's x
-    axis must cross ``neighbour``: the axis of the asked frame ``neighbour_frame``, or of a given
-    frame if ``neighbour_frame`` is None. The axis of a joint that slides may lie anywhere, as long
-    as it meets the lines ``must_meet``.
-    """
-
+    # The index of the joint whose axis is the frame's z axis.
     joint: int
+    # The frame's z axis.
     own: AxisLine
+    # The axis that the frame's x axis must cross.
     neighbour: AxisLine
+    # The asked frame whose z axis is neighbour; None for the axis of a given frame.
     neighbour_frame: int | None
     slides: bool
+    # The axis of a joint that slides may lie anywhere, as long as it meets these lines.
     must_meet: tuple[AxisLine, ...] = ()
 
 
@@ -121,11 +127,9 @@ def asked_frames(
     *,
     has_tool_row: bool,
 ) -> tuple[AskedFrame, ...]:
-    """Return the frames between the base frame and the tool frame, which both are given.
-
-    ``axes`` are the joint axes. ``has_tool_row`` is true if a fixed row leads to the tool, so that
-    the last joint's frame of a modified table is not the tool frame.
-    """
+    """Return the frames to be placed between the given base frame and tool frame."""
+    # axes are the joint axes. has_tool_row is true if a fixed row leads to the tool, so that the
+    # last joint's frame of a modified table is not the tool frame.
     n = len(axes)
     if convention is Convention.STANDARD:
         return tuple(
@@ -155,16 +159,17 @@ def asked_frames(
 
 @dataclass(frozen=True, slots=True)
 class RightPlace:
-    """The correct places of a frame, for the chosen position of the neighbouring axis.
+    """The correct origin and x direction of a frame."""
 
-    ``origin`` is the correct origin nearest to the chosen origin. ``x`` is a correct x direction;
-    its opposite is correct, too. If every direction perpendicular to z is correct, ``x`` is None.
-    """
+    # The neighbouring axis is as the student chose it.
 
     own: AxisLine
     neighbour: AxisLine
     relation: AxisPosition
+    # The correct origin nearest to the chosen origin.
     origin: Numbers
+    # A correct x direction; its opposite is correct, too. None if every direction perpendicular to
+    # z is correct.
     x: Numbers | None
 
 
@@ -177,13 +182,11 @@ def right_places(
     may_move: Sequence[bool] | None = None,
     axes: Mapping[int, AxisLine] | None = None,
 ) -> list[RightPlace]:
-    """Return the correct places of each frame, given its chosen origin ``(L, 3)`` or None.
-
-    ``may_move`` is false for sliding joints whose axis must be taken as drawn; ``axes`` maps
-    indices of frames to axes that are known. The axis of a sliding joint moves to the chosen origin
-    if the origin is farther from the axis than the frame's tolerance, and if the rules hold for the
-    moved axis.
-    """
+    """Return the correct places of each frame, given its chosen origin ``(L, 3)`` or None."""
+    # may_move is false for sliding joints whose axis must be taken as drawn; axes maps indices of
+    # frames to axes that are known. The axis of a sliding joint moves to the chosen origin if the
+    # origin is farther from the axis than the frame's tolerance, and if the rules hold for the
+    # moved axis.
     found: list[RightPlace | None] = [None] * len(frames)
     # The neighbour's axis must be known first.
     standard = convention is Convention.STANDARD
@@ -214,10 +217,8 @@ def right_places(
 
 
 def axis_across(axis: AxisLine, lines: Sequence[AxisLine], near: Numbers) -> AxisLine:
-    """Return the parallel of ``axis`` that meets all ``lines``, as near to ``near`` as possible.
-
-    If no parallel meets all lines, return the parallel with the least distances from the lines.
-    """
+    """Return the parallel of ``axis`` that meets all ``lines``, as near to ``near`` as possible."""
+    # If no parallel meets all lines, return the parallel with the least distances from the lines.
     across = np.stack([_unit(cross(axis.direction, line.direction)) for line in lines], axis=1)
     apart = np.stack([line.point - near for line in lines], axis=1)
     across = np.nan_to_num(across)
@@ -232,7 +233,6 @@ def _may_lie(
     tolerance: float,
     length_scale: float,
 ) -> bool:
-    """True if ``moved`` may be a sliding joint's axis with the origin at ``moved.point``."""
     relation = axis_relation(neighbour, moved, length_scale)
     if relation.has_one_normal and largest(normal_foot(neighbour, moved) - moved.point) > tolerance:
         return False
@@ -244,10 +244,8 @@ def _may_lie(
 
 
 def frame_of(z: Numbers, origin: Numbers, x: Numbers) -> Matrices:
-    """Return the frame ``(L, 4, 4)`` with these axes and origin. z and x need no unit length.
-
-    If x is rounded, the frame's x is made perpendicular to z.
-    """
+    """Return the frame ``(L, 4, 4)`` with these z and x axes and this origin."""
+    # z and x need no unit length. If x is rounded, the frame's x is made perpendicular to z.
     frame = identity((len(z),))
     z = _unit(z)
     x = _unit(x - _dot(x, z)[:, None] * z)
@@ -264,7 +262,8 @@ def home_rows(frames: Sequence[Matrices], convention: Convention) -> Numbers:
 
 
 def largest(vectors: Numbers) -> float:
-    """Return the length of the longest of the vectors ``(L, 3)``; NaN counts as infinite."""
+    """Return the length of the longest of the vectors ``(L, 3)``."""
+    # NaN counts as infinite.
     return float(np.nan_to_num(np.linalg.norm(vectors, axis=-1), nan=np.inf).max())
 
 

@@ -1,13 +1,12 @@
-"""The inverse of a chain, which begins at the tool, so that a given tool is treated like a base.
+"""The inverse of a chain of links, in which a given tool frame replaces a given base.
 
-The inverse of X_0 Z_1 X_1 … Z_m X_m is X_m⁻¹ Z_m⁻¹ … X_1⁻¹ Z_1⁻¹ X_0⁻¹, again an alternating
-product of screw motions about x and z. Its row j is the product Z X of Z_{m+1−j}⁻¹ and X_{m−j}⁻¹;
-the first row has no Z. Row j leads to the frame after Z_{m−j}, which is on the same axis as the
-frame before Z_{m−j}.
-
-Shapes: L samples; cells are ``(rows, 4, ...)`` in the column order a, α, d, θ, as in
-``chain_match``.
+Shapes: L samples; cells are ``(rows, 4, ...)`` with the columns a, α, d, θ.
 """
+
+# The inverse of X_0 Z_1 X_1 … Z_m X_m is X_m⁻¹ Z_m⁻¹ … X_1⁻¹ Z_1⁻¹ X_0⁻¹, again an alternating
+# product of screw motions about x and z. Its row j is the product Z X of Z_{m+1−j}⁻¹ and X_{m−j}⁻¹;
+# the first row has no Z. Row j leads to the frame after Z_{m−j}, which is on the same axis as the
+# frame before Z_{m−j}.
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -25,13 +24,14 @@ _Cell = TypeVar("_Cell", bound=np.generic)
 
 
 def reversed_cells(cells: NDArray[_Cell]) -> NDArray[_Cell]:
-    """Return the cells in the order of the inverse product, with unchanged signs. Self-inverse."""
+    """Return the cells of a table in the order of the inverse product."""
+    # The signs are unchanged; the function is its own inverse.
     x, z = cells[::-1, :D], np.roll(cells[::-1, D:], 1, axis=0)
     return np.concatenate([x, z], axis=1)
 
 
 def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
-    """Return the rows of the inverse product."""
+    """Return the rows of the inverse chain."""
     of_joints = [rows[0], *rows[:0:-1]]
     cells = zip(
         -reversed_cells(np.array([row.written for row in rows])),
@@ -48,9 +48,9 @@ def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
 
 
 def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Target]:
-    """Return the targets of the inverse product, from a given tool to a base that is free.
+    """Return the targets of the inverse chain, from a given tool to a free base.
 
-    ``offsets`` ``(n, L, 4, 4)`` has, for each joint axis, Rot_z(θ) Trans_z(d) of the reference's
+    ``offsets`` ``(n, L, 4, 4)`` are Rot_z(θ) Trans_z(d) of each joint, from the reference's
     constants.
     """
     here = identity((offsets.shape[1],))

@@ -1,22 +1,22 @@
-"""Repair the joint axes of a table by changing one cell, if base or tool is free.
+"""Repair the joint axes of a table by changing one cell.
 
-If one cell is wrong, the factors before and after that cell's factor form two rigid bodies with
-fixed joint axes. The pose of the first body is known from a given frame 0, or from its own axes,
-which lie on the reference's axes. Then each axis of the second body must lie on the reference's
-axis, as seen from the frame before the wrong factor. So one axis that the cell moves determines the
-value of the cell. Other axes may contradict this value, so the caller must test it on the whole
-table.
-
-A turn t about the axis e takes a direction u to v if t = atan2(e·(u × v), u·v − (e·u)(e·v)). A
-shift along e brings a point p as near as possible to a line through r with the direction v if it is
-e·(1 − v vᵀ)(r − p) / (1 − (e·v)²).
-
-All joints are at 0. Seen from the other end, the table is the inverse product, so a given last
-frame can replace a given first one (``reversed_factors``).
-
-Shapes: L samples, K factors, n joints. Lengths are in a unit that suits the robot; angles in
-radians.
+Shapes: L samples, K factors (``factors``), n joints. Lengths are in a unit that suits the robot;
+angles are in radians.
 """
+
+# The base or the tool is free. If one cell is wrong, the factors before and after that cell's
+# factor form two rigid bodies with fixed joint axes. The pose of the first body is known from a
+# given frame 0, or from its own axes, which lie on the reference's axes. Then each axis of the
+# second body must lie on the reference's axis, as seen from the frame before the wrong factor. So
+# one axis that the cell moves determines the value of the cell. Other axes may contradict this
+# value, so the caller must test it on the whole table.
+#
+# A turn t about the axis e takes a direction u to v if t = atan2(e·(u × v), u·v − (e·u)(e·v)). A
+# shift along e brings a point p as near as possible to a line through r with the direction v if it
+# is e·(1 − v vᵀ)(r − p) / (1 − (e·v)²).
+#
+# All joints are at 0. Seen from the other end, the table is the inverse product, so a given last
+# frame can replace a given first one (reversed_factors).
 
 from collections.abc import Iterator
 
@@ -32,7 +32,7 @@ FactorRepair = tuple[int, int, Numbers]
 
 
 def reversed_factors(factors: Factors) -> Factors:
-    """Return the factors of the inverse product: inverses in the opposite order."""
+    """Return the factors of the inverse product."""
     return Factors(factors.convention, -factors.sizes[::-1], factors.axes[::-1])
 
 
@@ -43,12 +43,13 @@ def repairs_by_axes(
     axes: Matrices,
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield values of single cells that bring one later joint axis onto the reference's axis.
+    """Yield values of single cells that move one later joint axis to its correct place.
 
-    ``starts`` ``(K, L, 4, 4)`` are the poses of the frames before each factor, ``joints`` ``(n,)``
-    the indices of the joints' factors, ``axes`` ``(n, L, 4, 4)`` the right poses of the axes.
-    For a ``sliding`` axis, only the direction counts. Axes may be reversed.
+    ``starts`` ``(K, L, 4, 4)`` are the frames before each factor, ``axes`` ``(n, L, 4, 4)`` the
+    correct axes.
     """
+    # joints (n,) are the indices of the joints' factors. For a sliding axis, only the direction
+    # counts. Axes may be reversed.
     behind = joints > np.arange(len(factors.axes))[:, None]
     wanted = inverse(starts)[:, None] @ axes
     seen = inverse(factors.before[1:])[:, None] @ factors.before[joints]
@@ -66,10 +67,8 @@ def _shifts(
     behind: NDArray[np.bool_],
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield the shift of each factor that brings one later axis onto the wanted axis.
-
-    This is the next revolute axis that is not parallel to the factor's axis.
-    """
+    # The shift of each factor that brings one later axis onto the wanted axis. This is the next
+    # revolute axis that is not parallel to the factor's axis.
     k = np.arange(len(axes))
     v = wanted[..., :3, 2]
     cosine = v[k, :, :, axes]
@@ -89,11 +88,9 @@ def _turns(
     behind: NDArray[np.bool_],
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield the turns of each factor that bring one later axis onto the wanted axis.
-
-    This is the next axis that is not parallel to the factor's axis. If all are parallel, it is the
-    next revolute axis that the turn moves.
-    """
+    # The turns of each factor that bring one later axis onto the wanted axis. This is the next axis
+    # that is not parallel to the factor's axis. If all are parallel, it is the next revolute axis
+    # that the turn moves.
     by_direction, turned = _turn(seen[..., :3, 2], wanted[..., :3, 2], axes)
     by_point, carried = _turn(seen[..., :3, 3], wanted[..., :3, 3], axes)
     turned &= behind
@@ -108,7 +105,7 @@ def _turns(
 
 
 def _turn(u: Numbers, v: Numbers, axes: Integers) -> tuple[Numbers, NDArray[np.bool_]]:
-    """Return the turns ``(K, n, L)`` from ``u`` to ``v``, and a mask of the turns that exist."""
+    # The turns (K, n, L) from u to v, and a mask of the turns that exist.
     k = np.arange(len(axes))
     one, two = (axes + 1) % 3, (axes + 2) % 3
     u1, u2, v1, v2 = (w[k, :, :, across] for w in (u, v) for across in (one, two))

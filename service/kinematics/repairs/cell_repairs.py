@@ -1,20 +1,22 @@
 """Repair the pose of a table by changing one or two cells.
 
-The pose is a product of factors, screws about x and z in turn (``factors``). If one factor alone is
-wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S the product after it and T
-the true pose. If F is a screw about that factor's axis, the shift and the turn of F are the right
-values of the two cells. If one of these values is as written, the other cell alone repairs the
-table.
-
-If one cell is wrong in each of two factors, A(x) M B(y) = N, where N = P⁻¹ T S⁻¹ as before and M is
-the product between the wrong cells, including the right cells of the two factors. A is a turn or
-a shift, and B is a turn or a shift. A turn leaves the points and the direction of its axis
-unchanged, a shift leaves all directions unchanged. So A(x) takes the points or directions that B
-leaves unchanged from M to N, which determines x. The remaining motion must then be a B(y).
-
-Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``; angles in radians. Lengths should be
-measured in a unit that suits the robot, so that one tolerance serves them and angles.
+Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``. Lengths are in a unit that suits the
+robot; angles are in radians.
 """
+
+# The pose is a product of factors, screws about x and z in turn (factors). If one factor alone is
+# wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S the product after it and T
+# the true pose. If F is a screw about that factor's axis, the shift and the turn of F are the right
+# values of the two cells. If one of these values is as written, the other cell alone repairs the
+# table.
+#
+# If one cell is wrong in each of two factors, A(x) M B(y) = N, where N = P⁻¹ T S⁻¹ as before and M
+# is the product between the wrong cells, including the right cells of the two factors. A is a turn
+# or a shift, and B is a turn or a shift. A turn leaves the points and the direction of its axis
+# unchanged, a shift leaves all directions unchanged. So A(x) takes the points or directions that B
+# leaves unchanged from M to N, which determines x. The remaining motion must then be a B(y).
+#
+# The unit of length lets one tolerance serve lengths and angles.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -37,17 +39,17 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 
 @dataclass(frozen=True, slots=True)
 class CellRepair:
-    """Values ``(k, L)`` for k cells that make the pose right.
+    """Values ``(k, L)`` of k table cells that correct the pose of the table."""
 
-    The values need not be valid in their cells (a constant, or the joint variable plus a constant).
-    """
+    # The values need not be valid in their cells (a constant, or the joint variable plus a
+    # constant).
 
     cells: tuple[CellIndex, ...]
     values: Numbers
 
 
 def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
-    """Return the repairs of one factor: first those that change one cell, then both cells."""
+    """Return the repairs of one or both cells of a single factor, single cells first."""
     needed = factors.inverse_before[:-1] @ pose @ factors.inverse_after[1:]
     sizes, error = read_screws(needed, factors.axes)
     changed = ~_equal(sizes, factors.sizes)
@@ -59,10 +61,8 @@ def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
 
 
 def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]:
-    """Yield the repairs that change one cell in each of two factors.
-
-    Most pairs of cells fail at the first sample; only the others are solved at all samples.
-    """
+    """Yield the repairs that change one cell in each of two factors."""
+    # Most pairs of cells fail at the first sample; only the others are solved at all samples.
     a, b = np.triu_indices(len(factors.axes), 1)
     kinds = np.repeat([[SHIFT, SHIFT, TURN, TURN], [SHIFT, TURN, SHIFT, TURN]], len(a), axis=1)
     pairs = np.concatenate([np.tile([a, b], 4), kinds])
@@ -78,10 +78,8 @@ def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]
 
 
 def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]) -> Numbers | None:
-    """Return the values ``(k, L)`` of one or two cells that make the pose right, or None.
-
-    Use this for the values of a CellRepair at other samples.
-    """
+    """Return the values ``(k, L)`` of one or two cells that correct the pose, or None."""
+    # For the values of a CellRepair at other samples.
     positions = [factors.position(cell) for cell in cells]
     (a, kind_a), (b, kind_b) = min(positions), max(positions)
     if a != b:
@@ -97,7 +95,6 @@ def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]
 
 
 def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
-    """Return a mask ``(K, 2)`` of the shifts and turns ``(K, 2, L)`` that are as written."""
     error = sizes - written
     error[:, TURN] -= 2 * np.pi * np.round(error[:, TURN] / (2 * np.pi))
     return np.asarray(np.abs(error).max(axis=-1) < SAME_POSE)
@@ -106,11 +103,9 @@ def _equal(sizes: Numbers, written: Numbers) -> NDArray[np.bool_]:
 def _solved(
     factors: Factors, pose: Matrices, pairs: Integers, samples: slice = slice(None)
 ) -> tuple[Numbers, NDArray[np.bool_]]:
-    """Solve A(x) M B(y) = N for C pairs of wrong cells: return x and y, ``(2, C, L)``, and a mask.
-
-    The mask ``(C,)`` is True for pairs that are solved at all L samples. ``pairs`` ``(4, C)`` has
-    the factors A and B, then the wrong cell of A and the wrong cell of B, each SHIFT or TURN.
-    """
+    # Solves A(x) M B(y) = N for C pairs of wrong cells: returns x and y, (2, C, L), and a mask (C,)
+    # of the pairs that are solved at all L samples. pairs (4, C) has the factors A and B, then the
+    # wrong cell of A and the wrong cell of B, each SHIFT or TURN.
     a, b, kind_a, kind_b = pairs
     a_turns, b_turns = (kind_a == TURN)[:, None], (kind_b == TURN)[:, None]
     axis_a, axis_b = factors.axes[a], factors.axes[b]
@@ -134,7 +129,7 @@ def _solved(
 def _right_part(
     factors: Factors, which: Integers, turn_is_wrong: NDArray[np.bool_], samples: slice
 ) -> Matrices:
-    """Return factors with the wrong cell 0 and the other cell as written: ``(C, L, 4, 4)``."""
+    # Factors with the wrong cell 0 and the other cell as written: (C, L, 4, 4).
     sizes = factors.sizes[which, :, samples]
     shifts, turns = sizes[:, SHIFT], sizes[:, TURN]
     return screws(
@@ -147,11 +142,9 @@ def _right_part(
 def _turn_of_a(
     m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """Return the turn ``(C, L)`` about A's axis, from directions and points that B does not change.
-
-    The turn about a from u (in M) to v (in N) is atan2(a·(u×v), u·v − (a·u)(a·v)); the arguments of
-    several pairs (u, v) are summed.
-    """
+    # The turn (C, L) about A's axis, from directions and points that B does not change. The turn
+    # about a from u (in M) to v (in N) is atan2(a·(u×v), u·v − (a·u)(a·v)); the arguments of
+    # several pairs (u, v) are summed.
     c = np.arange(len(axis_a))
     unchanged = np.where(b_turns, 0.0, [[1.0, 1.0, 1.0, 0.0]])
     unchanged[c, axis_b] = 1.0
@@ -168,10 +161,8 @@ def _turn_of_a(
 def _shift_of_a(
     m: Matrices, n: Matrices, axis_a: Integers, axis_b: Integers, b_turns: NDArray[np.bool_]
 ) -> Numbers:
-    """Return the shift along A's axis that takes M's origin to N's origin: ``(C, L)``.
-
-    If B also shifts, least squares separate the two shifts; along parallel axes this is impossible.
-    """
+    # The shift (C, L) along A's axis that takes M's origin to N's origin. If B also shifts, least
+    # squares separate the two shifts; along parallel axes this is impossible.
     c = np.arange(len(axis_a))
     way = n[..., :3, 3] - m[..., :3, 3]
     along_b = m[c, :, :3, axis_b]

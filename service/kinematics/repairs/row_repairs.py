@@ -1,12 +1,13 @@
 """Repair the pose of a table by changing one row.
 
-The pose is a product of link transforms. If one row alone is wrong, it has to be A = P⁻¹ T S⁻¹,
-where P is the product before it, S the product after it and T the true pose. If A is a link
-transform, its four numbers are the right row.
-
-Shapes: L samples; a pose is ``(L, 4, 4)``; angles in radians. Lengths should be measured in a unit
-that suits the robot, so that one tolerance serves them and angles.
+Shapes: L samples; a pose is ``(L, 4, 4)``. Lengths are in a unit that suits the robot; angles are
+in radians.
 """
+
+# The pose is a product of link transforms. If one row alone is wrong, it has to be A = P⁻¹ T S⁻¹,
+# where P is the product before it, S the product after it and T the true pose. If A is a link
+# transform, its four numbers are the right row. The unit of length lets one tolerance serve lengths
+# and angles.
 
 from collections.abc import Set
 
@@ -24,10 +25,8 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 def one_row_repairs(
     factors: Factors, pose: Matrices, wrong: Set[CellIndex] = frozenset()
 ) -> list[CellRepair]:
-    """Return the repairs of single rows: the cells that must be changed, and their values.
-
-    The cells of a repair always include the ``wrong`` cells of its row.
-    """
+    """Return the repairs that change the cells of a single row."""
+    # The cells of a repair always include the wrong cells of its row.
     needed = factors.inverse_before[:-1:2] @ pose @ factors.inverse_after[2::2]
     numbers = np.flatnonzero(_misfit(needed, factors).max(axis=-1) < SAME_POSE)
     values = row(needed[numbers], factors.convention)
@@ -41,7 +40,7 @@ def one_row_repairs(
 
 
 def repaired_row(factors: Factors, pose: Matrices, number: int) -> Numbers | None:
-    """Return the row ``(4, L)`` that makes the pose right; None if there is none."""
+    """Return the row ``(4, L)`` that corrects the pose, or None."""
     before, after = factors.before[2 * number], factors.after[2 * number + 2]
     needed = inverse(before) @ pose @ inverse(after)
     if _misfit(needed, factors).max() >= SAME_POSE:
@@ -50,13 +49,12 @@ def repaired_row(factors: Factors, pose: Matrices, number: int) -> Numbers | Non
 
 
 def _misfit(needed: Matrices, factors: Factors) -> Numbers:
-    """Return how far transforms ``(..., L, 4, 4)`` are from link transforms: ``(..., L)``."""
+    # How far transforms (..., L, 4, 4) are from link transforms: (..., L).
     tilt = np.abs(dh1_residual(needed, factors.convention))
     return np.maximum(tilt, np.abs(dh2_residual(needed, factors.convention)))
 
 
 def _changed(values: Numbers, written: Numbers) -> NDArray[np.bool_]:
-    """Return a mask ``(rows, 4)`` of the cells in which two tables ``(rows, 4, L)`` differ."""
     error = values - written
     angles = error[:, [ALPHA, THETA]]
     error[:, [ALPHA, THETA]] = angles - 2 * np.pi * np.round(angles / (2 * np.pi))
