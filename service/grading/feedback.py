@@ -65,12 +65,12 @@ class Finding:
 
 
 def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
-    """Return the finding that something cannot be read."""
+    """Return the finding that a text cannot be read."""
     return Finding(code, message, span=span, reading=True)
 
 
 def reading_note(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
-    """Return a finding on how something was read."""
+    """Return a finding on how a text was read."""
     return Finding(code, message, severity=Severity.INFO, span=span, reading=True)
 
 
@@ -99,7 +99,7 @@ _NOTES_ON: Final = {"swapped_atan2": "atan2_order", "degrees_as_radians": "bare_
 def parts_at_level(
     parts: Iterable[PartReport], level: FeedbackLevel, left_out: Feedback | None
 ) -> tuple[PartReport, ...]:
-    """Return the parts with the messages that are visible at the feedback level."""
+    """Return the reports on all answers with the messages that this feedback level shows."""
     # Without repetitions. left_out is the message that explanations are incomplete, or None.
     # Corrections are not removed here: at lower levels, messages are made without corrections.
     has_hints = level in _LEVELS_WITH_HINTS
@@ -189,7 +189,7 @@ _Said = tuple[str, str, str | None]
 
 
 def with_shared_messages(report: PartReport) -> PartReport:
-    """Replace equal messages on several cells by one message on the part."""
+    """Replace equal messages on several cells by one message on the whole answer."""
     # Messages are equal if they have the same code, sentence and repaired text. The first
     # counterexample is kept. Most messages on a piece of the text in a cell stay with their cell.
     in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}

@@ -1,6 +1,6 @@
 """Points for an answer that is computed correctly from an earlier wrong answer.
 
-One early mistake must not make every later part wrong.
+One early mistake must not make every later answer wrong.
 """
 
 # So if the answer to a part is wrong, it is also judged by the student's earlier answer instead of

@@ -43,9 +43,9 @@ def sum_formula(
     samples: Samples,
     spelling: Spelling,
 ) -> Correction | None:
-    """Return ``values`` as a formula, or None if they are no sum of multiples of symbols.
+    """Return ``values`` as a formula with joint variables, or None if there is no such formula.
 
-    ``counts`` has the multiple of each joint variable.
+    ``counts`` has the factor of each joint variable.
     """
     # None also if counts is None.
     if counts is None:
@@ -69,7 +69,7 @@ def sum_formula(
 def multiples(
     constant: Numbers, angle: bool, exercise: Exercise, samples: Samples
 ) -> tuple[list[tuple[int, str]], float] | None:
-    """Return a constant as a sum: whole multiples of letters, and a number; or None."""
+    """Split a constant into whole multiples of letters and a remaining number."""
     # constant is (HALF,). None if there is no such sum. Letters with the multiple 0 are left out.
     first = constant[0]
     if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < CONSTANT:

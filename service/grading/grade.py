@@ -1,4 +1,4 @@
-"""Grade a submission: read and judge each part, and return a report."""
+"""Grade a submission: read and judge each answer, and return a report."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
@@ -23,7 +23,7 @@ from service.version import VERSION
 
 @dataclass(frozen=True, slots=True)
 class Submission:
-    """The submitted answers: one JSON value for each answered part."""
+    """The submitted answers to an exercise: a JSON value for each answered question."""
 
     answers: Mapping[str, object]
     angle_unit: AngleUnit = "radians"
@@ -34,7 +34,7 @@ class Submission:
 
 
 class UnknownPartError(ValueError):
-    """The submission answers a part that the exercise does not have."""
+    """The submission answers a question that the exercise does not have."""
 
     def __init__(self, unknown: str, exercise: Exercise) -> None:
         self.unknown = unknown

@@ -72,22 +72,22 @@ class Record:
 
     @property
     def code(self) -> str:
-        """The first code, which findings have unless they name another."""
+        """The first of the codes."""
         return self.codes[0]
 
     def meaning(self, code: str) -> str:
-        """Return the meaning of one of the codes."""
+        """Return the description of a code for the docs."""
         return self.means if isinstance(self.means, str) else self.means[self.codes.index(code)]
 
     def finding(
         self, hint: str, correction: str = "", severity: Severity = Severity.ERROR
     ) -> Finding:
-        """Return a finding with the code of the record."""
+        """Return a finding with the code of this misconception."""
         # For a record without a function.
         return Finding(self.code, hint, correction, severity, rule=self.rule)
 
     def hypotheses(self, source: object) -> Iterable["Hypothesis[Any]"]:
-        """Return the hypotheses about a wrong answer."""
+        """Return the hypotheses (possible mistakes) about a wrong answer."""
         if self.function is None or self.is_check or (self.when and not self.when(source)):
             return ()
         found: Iterable[Hypothesis[Any]] = self.function(source)
@@ -112,9 +112,9 @@ def register(
     name: str = "",
     **known: Any,
 ) -> Record:
-    """Add a record to the list of all records, and return it.
+    """Add a misconception or a check to the list of all, and return its record.
 
-    ``known`` has values for other fields of Record.
+    ``known`` has values for other fields of the record.
     """
     # Without a function, the record only documents a code; other functions make findings with this
     # code.
@@ -150,13 +150,13 @@ def check(
 
 @cache
 def records_of(kind: type) -> tuple[Record, ...]:
-    """Return the records for a class of wrong answers and its base classes, by rank."""
+    """Return the misconceptions about a class of wrong answers, sorted by rank."""
     found = (each for each in _RECORDS if each.function and each.of in kind.__mro__)
     return tuple(sorted(found, key=lambda record: (record.rank, record.name)))
 
 
 def all_records() -> tuple[Record, ...]:
-    """Return all registered records."""
+    """Return all registered misconceptions and checks."""
     return tuple(_RECORDS)
 
 
@@ -194,9 +194,9 @@ class Hypothesis(Generic[Answer]):
 
 @dataclass(slots=True)
 class Written(Hypothesis[Answer]):
-    """The answer that a student with the misconception writes.
+    """The answer that a misconception leads to.
 
-    The hypothesis explains every submitted answer that equals this answer.
+    The misconception explains every submitted answer that is equal to this answer.
     """
 
     # Replaces the usual tolerance of the comparison.
@@ -205,9 +205,9 @@ class Written(Hypothesis[Answer]):
 
 @dataclass(slots=True)
 class Repaired(Hypothesis[Answer]):
-    """The student's answer without the misconception.
+    """The student's answer with a possible mistake corrected.
 
-    The hypothesis explains the student's answer if the repaired answer is correct.
+    The mistake explains the answer if the corrected answer is right.
     """
 
 
@@ -219,19 +219,19 @@ class WrongAnswer(Protocol):
     """A wrong answer, with the data for its diagnosis."""
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Return the hypotheses that explain the answer, in their order."""
+        """Return the hypotheses (possible mistakes) that explain the answer."""
         # A Written hypothesis that is equal to the correct answer explains nothing. Nor does a
         # Repaired hypothesis that is equal to the student's answer.
         ...
 
 
 def hypotheses_of(source: object, of: type | None = None) -> Iterator[Explained]:
-    """Yield the hypotheses of all misconceptions about ``source``."""
+    """Yield the hypotheses (possible mistakes) of all misconceptions about ``source``."""
     return each_hypothesis(records_of(of or type(source)), source)
 
 
 def each_hypothesis(records: Iterable[Record], source: object) -> Iterator[Explained]:
-    """Yield the hypotheses of these records."""
+    """Yield the hypotheses (possible mistakes) of these misconceptions."""
     for record in records:
         for hypothesis in record.hypotheses(source):
             hypothesis.record = hypothesis.record or record
@@ -241,9 +241,9 @@ def each_hypothesis(records: Iterable[Record], source: object) -> Iterator[Expla
 def explanation(
     case: WrongAnswer, source: object = None, of: type | None = None
 ) -> Explained | None:
-    """Return the hypothesis of the lowest rank that explains ``case``, or None.
+    """Return the first hypothesis (possible mistake) that explains ``case``, or None.
 
-    The misconceptions get ``source``, by default ``case``.
+    The functions of misconceptions get ``source``, by default ``case``.
     """
     # For example, source are the links whose product a matrix is. Only misconceptions about the
     # class of are tried, by default the class of source.
@@ -256,7 +256,7 @@ def explanation(
 
 
 def explained_by_one(record: Record, case: WrongAnswer, source: object) -> Explained | None:
-    """Return the hypothesis of this misconception that explains ``case``, or None."""
+    """Return the hypothesis (possible mistake) of this misconception that explains ``case``."""
     found: Explained | None
     if record.is_check:
         found = record.verdict(source)
@@ -268,6 +268,6 @@ def explained_by_one(record: Record, case: WrongAnswer, source: object) -> Expla
 
 
 def diagnosed(case: WrongAnswer, source: object = None, of: type | None = None) -> Finding | None:
-    """Return the finding of the record of the lowest rank that explains ``case``, or None."""
+    """Return the finding of the first misconception that explains ``case``, or None."""
     found = explanation(case, source, of)
     return found.findings[0] if found else None

@@ -1,4 +1,4 @@
-"""The interface for reading and judging one kind of answer."""
+"""The interface for reading and judging a kind of answer."""
 
 # Each kind is a file in kinds.
 
@@ -26,7 +26,7 @@ _CELL = 40
 
 @dataclass(frozen=True, slots=True)
 class StudentChain:
-    """A student's answer as a chain of links, by which later parts may be judged."""
+    """A student's answer as a chain of links, for judging later answers by it."""
 
     # (k + 1, SAMPLES, 4, 4), from the base to the tool, in the base frame.
     frames: Matrices
@@ -163,7 +163,7 @@ class Content:
 
 @dataclass(frozen=True, slots=True)
 class Judged:
-    """The judgement of an answer: its rows, and the messages on the part as a whole."""
+    """The judgement of an answer: its rows, and the messages on the whole answer."""
 
     # The rows have no points yet.
     rows: tuple[RowReport, ...]
@@ -212,7 +212,7 @@ class Judged:
 
 
 class AnswerKind(Protocol):
-    """The functions that read and judge the answers of one kind."""
+    """The functions that read and judge a kind of answer."""
 
     # Pure: the result depends only on part, answer and samples.
 

@@ -1,7 +1,6 @@
 """Rotations about coordinate axes, and Euler angles.
 
-A sequence names three axes, such as "ZYZ". Moving axes turn with the earlier turns, fixed axes do
-not. Rotations are ``(..., 3, 3)``; angles are in radians.
+A sequence names three axes, such as "ZYZ". Rotations are ``(..., 3, 3)``; angles are in radians.
 """
 
 # With moving axes, R = R_1(a_1) R_2(a_2) R_3(a_3). With fixed axes, R = R_3(a_3) R_2(a_2) R_1(a_1).

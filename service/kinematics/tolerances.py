@@ -1,7 +1,6 @@
 """Every tolerance of the kinematics, each with its reason.
 
-Poses are compared in a unit of length that suits the robot, so that one tolerance serves lengths
-and direction cosines.
+Poses are compared in a unit of length that suits the robot.
 """
 
 # A product of twenty matrices in double precision has an error of about 1e-15; different choices of

@@ -1,7 +1,6 @@
-"""How freely a base frame that the student chooses may still be moved, row by row.
+"""Keep track of the positions that a freely chosen frame 0 may still have.
 
-Frame 0 may be turned about the axis of joint 1 and moved along it. The first row that depends on
-this choice determines it.
+Frame 0 may be turned about the axis of joint 1 and moved along this axis.
 
 Shapes: N candidate rows, L samples; rows are ``(N, 4, L)`` with the columns a, α, d, θ.
 """
@@ -40,7 +39,7 @@ class BaseFreedom:
 
     @classmethod
     def on_first_axis(cls, prismatic: bool, samples: int) -> Self:
-        """Return how a frame on the axis of joint 1 may be moved if the base is free."""
+        """Return how a freely chosen frame on the axis of joint 1 may be moved."""
         return cls(turn=True, slide=None if prismatic else _along_z(samples), anywhere=prismatic)
 
     @property
@@ -49,7 +48,7 @@ class BaseFreedom:
         return not (self.turn or self.anywhere) and self.slide is None
 
     def at_next(self, reference: Matrices, kind: TargetKind, length_scale: float) -> Self:
-        """Return the freedom left at the next axis or frame, ``reference`` ``(L, 4, 4)``."""
+        """Return how the student's frame on the next axis may be moved."""
         relation = axis_relations(reference[None], length_scale)[0]
         parallel = relation != AxisRelation.SKEW
         sliding = kind is TargetKind.PRISMATIC

@@ -1,7 +1,7 @@
 """Find all DH rows that lead from a frame to the next joint axis, or to the tool.
 
-Shapes: H hypotheses, K candidates for each, L samples. Targets are ``(H, L, 4, 4)``; rows are
-``(..., 4, L)`` with the columns a, α, d, θ.
+Shapes: H hypotheses, K candidates for each, L samples; rows are ``(..., 4, L)`` with the columns a,
+α, d, θ.
 """
 
 # A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). The next target is a transform relative to
@@ -48,9 +48,9 @@ class TargetKind(Enum):
 def candidate_rows(
     target: Matrices, written: Numbers, kind: TargetKind, length_scale: float
 ) -> Numbers:
-    """Return all DH rows that lead to the targets: ``(H, K, 4, L)``.
+    """Return all DH rows that lead to the next axes ``target``: ``(H, K, 4, L)``.
 
-    All targets must have the same ``AxisRelation`` to the previous z axis.
+    All these axes must have the same ``AxisRelation`` to the previous z axis.
     """
     if kind is TargetKind.TOOL:
         return row(target, Convention.STANDARD)[:, None]
@@ -71,7 +71,7 @@ def candidate_rows(
 
 
 def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
-    """Return the relation of each target's z axis to the previous z axis: ``(H,)``."""
+    """Return the relation of each next z axis to the previous z axis: ``(H,)``."""
     sine = np.hypot(target[..., 0, 2], target[..., 1, 2])
     offset = np.hypot(target[..., 0, 3], target[..., 1, 3])
     parallel = np.all(sine < PARALLEL, axis=-1)

@@ -1,7 +1,6 @@
-"""Compare a written chain of links with the reference's chain, link by link.
+"""Compare a student's chain of links with the reference solution, link by link.
 
-The *relative pose* at a joint axis is the pose of the writer's frame in the reference's frame. It
-must leave the axis unchanged.
+The *relative pose* at a joint is the pose of the student's frame in the reference's frame there.
 
 Shapes: L samples; a row is ``(4, L)`` with the columns a, α, d, θ.
 """
@@ -36,7 +35,7 @@ class Target:
 
     @property
     def rebases(self) -> bool:
-        """True if the next target's ``reference`` starts from the frame at this target."""
+        """True if the transform to the next target starts from the frame at this target."""
         return self.reference is not None and self.kind is not TargetKind.FIXED
 
 
@@ -62,7 +61,7 @@ class RowConstants:
 
 @dataclass(frozen=True, slots=True)
 class ChainMatch:
-    """A correct table, and its frames relative to the reference's frames."""
+    """A correct table, and its frames relative to those of the reference solution."""
 
     # (rows, 4, L).
     rows: Numbers
@@ -88,7 +87,7 @@ def match_as_written(
     directions_given: bool = True,
     start: Matrices | None = None,
 ) -> ChainMatch | None:
-    """Return the written table if nothing in it is wrong, else None."""
+    """Return the student's table if nothing in it is wrong, else None."""
     # directions_given is true if each joint's positive direction is given. start is the relative
     # pose of frame 0, None for the identity.
     if any(row.wrong_regardless.any() for row in rows):
@@ -107,7 +106,7 @@ def match_tables(
     tolerance: float = SAME_POSE,
     start: Matrices | None = None,
 ) -> tuple[NDArray[np.bool_], Matrices]:
-    """Test which of many tables are correct as written.
+    """Test which of many tables are correct.
 
     Return a mask ``(tables,)`` and the poses of their frames in the reference's frames, ``(rows,
     tables, L, 4, 4)``.
@@ -135,7 +134,7 @@ def match_tables(
 
 
 def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
-    """Return all errors of the frames of tables, ``(tables, n, L)``: 0 for a correct table."""
+    """Return the errors of the frames of each table, ``(tables, n, L)``."""
     # poses (rows, tables, L, 4, 4) are the relative poses that match_tables returns. The directions
     # of the axes are ignored.
     unit = np.array([1.0, 1.0, 1.0, length_scale])
@@ -164,5 +163,5 @@ def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
 
 
 def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
-    """Return +1 if z has the direction of the reference's z, −1 if it is reversed: ``(N,)``."""
+    """Return +1 for each frame with the reference's z direction, −1 for the opposite direction."""
     return np.where(pose[:, 0, 2, 2] > 0, 1, -1)

@@ -1,9 +1,9 @@
 """Find the correct table that is nearest to the student's table.
 
-The student may choose other frames than the reference. The search goes from the base to the tool,
-and keeps only the cheapest hypotheses.
+Students may choose their own frames. The search goes from the base to the tool, and keeps only the
+best candidates.
 
-Shapes: H hypotheses, N ways to continue them, L samples; a row is ``(4, L)`` with the columns a, α,
+Shapes: H candidates, N ways to continue them, L samples; a row is ``(4, L)`` with the columns a, α,
 d, θ.
 """
 
@@ -115,7 +115,7 @@ def nearest_table(
     start: Matrices | None = None,
     z_ends_rows: bool = False,
 ) -> ChainMatch:
-    """Return the correct table nearest to ``rows``, of which row i leads to target i."""
+    """Return the correct table that is nearest to the written ``rows``."""
     # z_ends_rows is true if a and α come before d and θ in each row of the table. base_given is
     # true if frame 0 is known. Its pose in the reference's frame 0 is start (L, 4, 4), or the
     # identity if start is None. directions_given is true if each joint's positive direction is
@@ -283,7 +283,7 @@ def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArr
 
 
 def departure(pose: Matrices, length_scale: float) -> Numbers:
-    """Return the small cost ``(N,)`` of frames that differ from the reference's frames."""
+    """Return the small cost ``(N,)`` of choosing other frames than the reference solution."""
     # pose (N, L, 4, 4) are the relative poses of the frames. The cost is not 0.
     # An axis at a right angle is not reversed, whatever the rounding error of its cosine is.
     cost = np.where(pose[:, 0, 2, 2] < -SAME_POSE, TURNED_OVER, 0.0)

@@ -103,7 +103,7 @@ def normal_foot(neighbour: AxisLine, own: AxisLine) -> Numbers:
 
 @dataclass(frozen=True, slots=True)
 class AskedFrame:
-    """A frame that is to be placed, and the axes that its place depends on."""
+    """A frame that the student must place, and the axes that its place depends on."""
 
     # The index of the joint whose axis is the frame's z axis.
     joint: int
@@ -127,7 +127,7 @@ def asked_frames(
     *,
     has_tool_row: bool,
 ) -> tuple[AskedFrame, ...]:
-    """Return the frames to be placed between the given base frame and tool frame."""
+    """Return the frames that the student must place, between the base and the tool frame."""
     # axes are the joint axes. has_tool_row is true if a fixed row leads to the tool, so that the
     # last joint's frame of a modified table is not the tool frame.
     n = len(axes)
@@ -182,7 +182,7 @@ def right_places(
     may_move: Sequence[bool] | None = None,
     axes: Mapping[int, AxisLine] | None = None,
 ) -> list[RightPlace]:
-    """Return the correct places of each frame, given its chosen origin ``(L, 3)`` or None."""
+    """Return the correct origin and x direction of each frame, given its chosen origin."""
     # may_move is false for sliding joints whose axis must be taken as drawn; axes maps indices of
     # frames to axes that are known. The axis of a sliding joint moves to the chosen origin if the
     # origin is farther from the axis than the frame's tolerance, and if the rules hold for the
@@ -217,7 +217,7 @@ def right_places(
 
 
 def axis_across(axis: AxisLine, lines: Sequence[AxisLine], near: Numbers) -> AxisLine:
-    """Return the parallel of ``axis`` that meets all ``lines``, as near to ``near`` as possible."""
+    """Return the parallel to ``axis`` that meets all ``lines`` and is nearest to ``near``."""
     # If no parallel meets all lines, return the parallel with the least distances from the lines.
     across = np.stack([_unit(cross(axis.direction, line.direction)) for line in lines], axis=1)
     apart = np.stack([line.point - near for line in lines], axis=1)

@@ -1,4 +1,4 @@
-"""The inverse of a chain of links, in which a given tool frame replaces a given base.
+"""The inverse of a chain of links, which leads from the tool to the base.
 
 Shapes: L samples; cells are ``(rows, 4, ...)`` with the columns a, α, d, θ.
 """
@@ -48,7 +48,7 @@ def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
 
 
 def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Target]:
-    """Return the targets of the inverse chain, from a given tool to a free base.
+    """Return what each row of the inverse chain leads to, from the tool to the base.
 
     ``offsets`` ``(n, L, 4, 4)`` are Rot_z(θ) Trans_z(d) of each joint, from the reference's
     constants.

@@ -1,4 +1,4 @@
-"""Slips in an angle that is a sum of angles, such as the direction of a planar arm's last link."""
+"""Slips in an angle that is a sum of joint angles."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Slips in three angles that describe a rotation together."""
+"""Slips in the three Euler angles of a rotation."""
 
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace

@@ -82,7 +82,7 @@ class Explanation:
 
 
 def as_explanations(case: MatrixCase, found: Explained | None) -> list[Explanation]:
-    """Return the findings of a misconception as explanations; None gives an empty list."""
+    """Convert a misconception to explanations of matrix entries; None gives no explanations."""
     if found is None:
         return []
     return [Explanation(finding, case.mask(found.entries)) for finding in found.findings]

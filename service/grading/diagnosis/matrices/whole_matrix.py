@@ -343,7 +343,7 @@ def _fault(rotation: Numbers) -> Sentence | None:
 
 
 def explain(case: MatrixCase) -> list[Explanation]:
-    """Return the explanations of the whole matrix or of large parts of it."""
+    """Return explanations of the whole matrix, its rotation or its position."""
     whole = explanation(case)
     if whole is not None or not case.rigid:
         return as_explanations(case, whole)

@@ -26,7 +26,7 @@ MAX_TURNS = 4
 
 @dataclass(frozen=True, slots=True)
 class Displacement:
-    """The part of a position that contains ``lengths`` and is turned by ``angles``."""
+    """A term of a position: it contains ``lengths`` and is turned by ``angles``."""
 
     lengths: tuple[str, ...]
     angles: tuple[str, ...]
@@ -50,7 +50,7 @@ class GivenMotion:
 
     @classmethod
     def of(cls, part_id: str, exercise: Exercise, samples: Samples) -> "GivenMotion | None":
-        """Return the motion in the formulas of a part, or None if the part has no formulas."""
+        """Return the motion that an exercise gives in formulas, or None without formulas."""
         grid = exercise.formulas.get(part_id)
         if grid is None:
             return None

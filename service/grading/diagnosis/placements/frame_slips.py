@@ -1,4 +1,4 @@
-"""Find which rule of the DH conventions a wrongly placed frame breaks."""
+"""Find which rule for placing frames a wrong frame breaks."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -23,7 +23,7 @@ class WrongPlacement:
     slack: float
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Return all hypotheses; they are not compared with numbers."""
+        """Return all hypotheses (possible mistakes)."""
         return hypotheses
 
     @property

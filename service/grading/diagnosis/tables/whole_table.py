@@ -49,7 +49,7 @@ class WrongTable:
     valid: Callable[[Table, Convention], NDArray[np.bool_]]
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Return the hypotheses whose corrected table describes the robot."""
+        """Return the hypotheses (possible mistakes) that explain the table."""
         # The hypotheses must be tables at the few samples; all are compared at once.
         tried = list(hypotheses)
         explains = np.zeros(len(tried), dtype=np.bool_)
@@ -74,7 +74,7 @@ class WrongTable:
     unlike={"2/a": "d3", "3/d": "0"},
 )
 def link_columns_shifted(table: WrittenTable) -> Iterator[RepairedTable]:
-    """The columns a and α, or one of them, are shifted by one row."""
+    """Column a, column α or both are shifted by one row."""
     rows = list(range(len(table.constants)))
     up, down = [*rows[1:], rows[0]], [rows[-1], *rows[:-1]]
     for columns in (_OF_LINK, slice(A, A + 1), slice(ALPHA, ALPHA + 1)):

@@ -40,7 +40,7 @@ class Required:
 
 @dataclass(frozen=True)
 class Requirements:
-    """Finds the symbols that each correct entry depends on, by changing one symbol at a time."""
+    """Finds the symbols that each correct entry depends on."""
 
     answers: SlippedAnswers
     exercise: Exercise
@@ -51,7 +51,7 @@ class Requirements:
     scale: Numbers
 
     def of(self, *place: int) -> Required | None:
-        """Return the required symbols of one entry, or None if they are unknown."""
+        """Return the symbols that an entry must contain, or None if they are unknown."""
         if not self.answers.by_symbols:
             return None
         depends, grows = self._dependences

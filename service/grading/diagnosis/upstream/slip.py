@@ -83,7 +83,7 @@ class Slip(Change):
 
     @property
     def code(self) -> str:
-        """The code of the kind of slip, or its name if it has no code."""
+        """The code of the kind of slip, or the name of a kind without a code."""
         return self.kind.name
 
 
