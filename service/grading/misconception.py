@@ -15,7 +15,7 @@ yields hypotheses: numbers to compare with the answer, each with its message. ::
     def reversed_position(case: WrongPosition) -> Hypotheses:
         yield Written(-case.expected, "Every coordinate has the wrong sign.")
 
-A check is a function that returns a finding or None. It has a record, too.
+A check is a similar function, which returns a finding (a message) or None.
 """
 
 # A check is for a slip without numbers to compare, such as a formula without a value or a

@@ -106,7 +106,8 @@ def other_triple(sequence: str, angles: Numbers) -> Numbers:
 
 
 def is_singular(sequence: str, rotation: Matrices, *, fixed: bool = False) -> NDArray[np.bool_]:
-    """True where only the sum or difference of the first and last angle is determined."""
+    """True for rotations whose first and last angle are not unique."""
+    # Only the sum or difference of these angles is determined.
     # The result is (...).
     middle = to_angles(sequence, rotation, fixed=fixed)[..., 1]
     outer = np.sin(middle) if sequence[2] == sequence[0] else np.cos(middle)

@@ -43,7 +43,7 @@ def repairs_by_axes(
     axes: Matrices,
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield values of single cells that move one later joint axis to its correct place.
+    """Yield values of single cells, each of which corrects one later joint axis.
 
     ``starts`` ``(K, L, 4, 4)`` are the frames before each factor, ``axes`` ``(n, L, 4, 4)`` the
     correct axes.

@@ -75,7 +75,8 @@ class WrongEntry(WrongValue):
                 yield self._completed(hypothesis, sign)
 
     def _sign(self, rewritten: Rewritten) -> int | None:
-        """Return 1 if the rewritten formula is correct, -1 if its negative is; otherwise None."""
+        # 1 if the rewritten formula is correct, -1 if its negative is. None also if the formula has
+        # the same value as the student's.
         tree = rewritten.answer
         if tree is self.tree:
             return None

@@ -68,7 +68,7 @@ class WrongSum:
         return listed([self.case.spelling.names.get(name, name) for name in names])
 
     def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:
-        """Yield the shorter sums of some of the angles: their names, and the value of the sum."""
+        """Yield the names and the sum of each smaller set of the angles."""
         names = list(self.counts) if len(self.counts) <= MAX_ADDENDS else []
         for some in chain.from_iterable(combinations(names, k) for k in range(1, len(names))):
             yield some, _sum_of(self.case, {name: self.counts[name] for name in some})

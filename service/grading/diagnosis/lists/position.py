@@ -1,4 +1,4 @@
-"""Slips in the coordinates of a point as a whole."""
+"""Slips in the coordinates of a point."""
 
 from dataclasses import dataclass
 from functools import cached_property

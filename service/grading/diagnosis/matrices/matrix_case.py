@@ -54,7 +54,7 @@ class MatrixCase(WrongNumbers):
         return poses, as_entries(np.array([pose.answer for pose in poses]))[:, :rows, :columns]
 
     def mask(self, *blocks: Index) -> Mask:
-        """Return a mask ``(rows, columns)`` that is True in these blocks."""
+        """Return a mask of the entries in these blocks, ``(rows, columns)``."""
         mask = np.zeros(self.expected.shape[:2], dtype=np.bool_)
         for block in blocks:
             mask[block] = True

@@ -74,7 +74,7 @@ def in_other_length_unit(
 
 
 def _times(largest: float, right: float) -> float | None:
-    """Return the power of ten by which the lengths are too large, or None if they are not."""
+    # The power of ten by which the lengths are too large, or None if they are not.
     for times in UNIT_FACTORS:
         if right / _HALFWAY < largest / times < right * _HALFWAY:
             return times

@@ -40,7 +40,7 @@ class Required:
 
 @dataclass(frozen=True)
 class Requirements:
-    """Finds the symbols that each correct entry depends on."""
+    """The search for the symbols that each correct entry depends on."""
 
     answers: SlippedAnswers
     exercise: Exercise
