@@ -96,10 +96,6 @@ def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
 def _formulas(
     parts: Sequence[PartSpec], reference: Reference | None, reader: FormulaReader
 ) -> Mapping[str, FormulaGrid]:
-    """Read the answers that the file gives in formulas. Map the ids of their parts to the formulas.
-
-    Raises FieldError.
-    """
     found: dict[str, FormulaGrid] = {}
     for i, part in enumerate(parts):
         written = part.formulas()
@@ -111,10 +107,6 @@ def _formulas(
 
 
 def _check_checks(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> None:
-    """Raise FieldError if a check of the file names an unknown part or expects too many points.
-
-    A check is an answer with the result that the author expects for it.
-    """
     most = {part.id: part.points for part in parts}
     for i, check in enumerate(checks):
         for field, named in (("answers", check.answers), ("expect", check.expect)):
@@ -137,7 +129,6 @@ def _check_checks(checks: Sequence[CheckSpec], parts: Sequence[PartSpec]) -> Non
 
 
 def _length_scale(variables: tuple[Variable, ...], reference: Reference | None) -> float:
-    """The longest length in the ranges of the symbols and in the reference table."""
     lengths = [max(abs(v.low), abs(v.high)) for v in variables if v.kind == "length"]
     if isinstance(reference, Robot):
         nothing = {variable.name: np.zeros(1) for variable in variables}
@@ -151,18 +142,14 @@ def _levels(feedback: FeedbackLevel | list[FeedbackLevel]) -> tuple[FeedbackLeve
 
 
 def _version(spec: ExerciseSpec) -> str:
-    """The digest of all fields that affect grading; comments and layout do not change the digest.
-
-    Fields with default values are left out, so that a new field of the schema does not change the
-    version of every exercise.
-    """
+    """Return the digest of all fields that affect grading."""
+    # Default values are left out, so a new field of the schema changes no exercise's version.
     written = spec.model_dump(mode="json", exclude_defaults=True, exclude=_NOT_GRADING)
     content = json.dumps(written, sort_keys=True)
     return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 
 
 def _joints(robot: RobotSpec | ScrewRobotSpec) -> tuple[Joint, ...]:
-    """The joints, numbered like their variables (the joints of a wrist may begin at 4)."""
     digits = "".join(character for character in robot.joints[0] if character.isdigit())
     named = zip(robot.joints, robot.structure, strict=True)
     return tuple(
@@ -172,11 +159,8 @@ def _joints(robot: RobotSpec | ScrewRobotSpec) -> tuple[Joint, ...]:
 
 
 def _variables(joints: tuple[Joint, ...], symbols: dict[str, SymbolSpec]) -> tuple[Variable, ...]:
-    """All variables: the joint variables first, then the symbols in the file's order.
-
-    A symbol with the name of a joint variable sets that joint's range and description.
-    """
     joint_names = {joint.variable for joint in joints}
+    # A symbol named like a joint variable sets that joint's range and description.
     of_joints = [_joint_variable(joint, symbols.get(joint.variable)) for joint in joints]
     others = [
         _variable(name, symbol) for name, symbol in symbols.items() if name not in joint_names
@@ -243,7 +227,6 @@ def _vocabulary(variables: tuple[Variable, ...], *, decimal_comma: bool) -> Voca
 
 
 def _joint_aliases(variable: Variable, taken: set[str]) -> tuple[str, ...]:
-    """The usual names of a joint variable, without names that another symbol has."""
     if variable.joint is None:
         return ()
     letters = ("q", "d") if variable.kind == "length" else ("q", "theta", "th")
@@ -306,13 +289,10 @@ def _row(i: int, cells: Four, joints: tuple[Joint, ...], reader: FormulaReader) 
 
 
 def _check_moves_once(field: str, formula: Expression, joint: Joint) -> None:
-    """Raise FieldError unless the cell is the joint variable plus a constant.
-
-    The variable must have the factor +1, because the reference defines the positive directions.
-    """
     at = np.array([0.0, 0.7, -1.3])
     values = {name: np.full(3, 0.4) for name in formula.symbols} | {joint.variable: at}
     cell = formula.evaluate(values)
+    # The factor must be +1, because the reference defines the positive directions.
     if not np.allclose(cell - np.asarray(cell)[0], at):
         raise FieldError(
             field,

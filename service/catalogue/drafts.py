@@ -21,15 +21,14 @@ _ID: Final = re.compile(r"draft-[0-9a-f]{32}")
 
 
 def drafts_folder() -> Path:
-    """Return the path of a new folder for drafts. The first draft creates the folder."""
+    """Return a new path for a folder of drafts. The folder does not exist yet."""
     return temporary_place() / f"dh-grader-drafts-{secrets.token_hex(16)}"
 
 
 class Drafts:
-    """The drafts in a folder, which several processes may share.
+    """The drafts (unfinished exercises) in a folder. Several processes may share the folder.
 
-    Only a draft's author knows the draft's id. Without ``folder``, the drafts are in a new
-    temporary folder, which is removed when the process ends.
+    Without ``folder``, the drafts are in a temporary folder, which is removed at the end.
     """
 
     def __init__(self, folder: Path | None = None, clock: Callable[[], float] = time.time) -> None:
@@ -41,9 +40,9 @@ class Drafts:
         self._read: dict[str, tuple[int, Exercise]] = {}
 
     def put(self, text: str, draft_id: str = "") -> str:
-        """Store a draft and return its id. ``draft_id`` is the id of the draft to replace.
+        """Store a draft and return its id. ``draft_id`` is the id of a draft to replace.
 
-        Raises CatalogueError if the text is no exercise, OSError if the file cannot be written.
+        Raises CatalogueError if the text is no exercise.
         """
         if self._written(draft_id) is None:
             draft_id = f"draft-{secrets.token_hex(16)}"
@@ -80,7 +79,6 @@ class Drafts:
         return exercise
 
     def _written(self, draft_id: str) -> int | None:
-        """Return the time at which a draft was written, in ns; None if it is unknown or too old."""
         if not _ID.fullmatch(draft_id):
             return None
         try:
@@ -106,7 +104,7 @@ def _age(file: Path) -> int:
 
 
 class CatalogueWithDrafts(Mapping[str, Exercise]):
-    """A catalogue in which drafts are found by their ids. Drafts are not listed."""
+    """A catalogue that also finds drafts (unfinished exercises) by id, but does not list them."""
 
     def __init__(self, catalogue: Mapping[str, Exercise], drafts: Drafts) -> None:
         self._catalogue = catalogue

@@ -26,72 +26,65 @@ _UNTRANSLATED_PART: Final = PartTextsSpec()
 
 @dataclass(frozen=True, slots=True)
 class Exercise:
-    """One exercise of the catalogue.
-
-    ``version`` changes with every field that affects grading. It does not depend on ``checks``,
-    ``view``, ``attempts``, ``translations``, ``feedback_by_attempt`` and the fields of the
-    catalogue (``level``, ``order``, ``minutes``, ``summary`` and ``keywords``).
-
-    ``feedback_by_attempt`` has the highest feedback level of each attempt; the last level is for
-    all later attempts. ``reference`` is the robot, if any; ``formulas`` has, by part id, the
-    answers that the file gives. ``length_scale`` is the longest length, to which small differences
-    are compared. ``view`` is the viewpoint of the figure. ``vary`` has the values of the variants,
-    if the exercise has variants. ``seed`` is the seed of a variant; the variant's ``id`` is
-    ``<exercise>~<seed>`` unless the seed is hidden. ``told`` memoizes translations of the exercise
-    by language code.
-    """
+    """One exercise of the catalogue, or a variant of one with other numbers."""
 
     id: str
+    # The version changes with every field that affects grading.
     version: str
     title: str
     source: str
     statement: str
     variables: tuple[Variable, ...]
     vocabulary: Vocabulary
+    # The robot, if any.
     reference: Reference | None
+    # The answers that the file gives, by part id.
     formulas: Mapping[str, FormulaGrid]
     parts: tuple[PartSpec, ...]
+    # The longest length, to which small differences are compared.
     length_scale: float
     checks: tuple[CheckSpec, ...] = ()
+    # The highest feedback level of each attempt; the last level is for all later attempts.
     feedback_by_attempt: tuple[FeedbackLevel, ...] = (FeedbackLevel.HINTS,)
     attempts: AttemptsSpec = _ANY_TIME
+    # The viewpoint of the figure.
     view: ViewSpec | None = None
     level: ExerciseLevel | None = None
     order: int | None = None
     minutes: int | None = None
     summary: str = ""
     keywords: tuple[str, ...] = ()
+    # The values of the variants, if the exercise has variants.
     vary: Vary | None = None
+    # The seed of a variant, whose id is ``<exercise>~<seed>`` unless the seed is hidden.
     seed: str = ""
     translations: Mapping[str, TranslationSpec] = field(default_factory=dict)
+    # Translations of the exercise by language code, memoized.
     told: dict[str, "Exercise"] = field(default_factory=dict, init=False, repr=False, compare=False)
 
     @property
     def plain_id(self) -> str:
-        """The id of the exercise without the seed of a variant."""
+        """The id without the seed of a variant: ``arm`` for the variant ``arm~7``."""
         return self.id.partition("~")[0]
 
     @property
     def conventions(self) -> tuple[Convention, ...]:
-        """The conventions that the parts ask for, without duplicates."""
+        """The Denavit-Hartenberg conventions that the parts ask for, without duplicates."""
         asked = {getattr(part, "convention", None) for part in self.parts}
         return tuple(each for each in Convention if not asked.isdisjoint({each, "either"}))
 
     @property
     def feedback(self) -> FeedbackLevel:
-        """The highest feedback level of the first attempt, and of answers that are not recorded."""
+        """The highest feedback level for a first attempt or an unrecorded answer."""
         return self.feedback_by_attempt[0]
 
     def feedback_at(self, ordinal: int) -> FeedbackLevel:
-        """The highest feedback level of an attempt; ``ordinal`` counts from 1."""
+        """The highest feedback level for attempt number ``ordinal``, counted from 1."""
         return self.feedback_by_attempt[min(ordinal, len(self.feedback_by_attempt)) - 1]
 
     @property
     def robot(self) -> Robot:
-        """The robot given by a table. Raises LookupError if the exercise has no such robot.
-
-        An exercise with a part that asks for a table always has such a robot.
-        """
+        """The robot, if the file gives it by a table. Otherwise raises LookupError."""
         if not isinstance(self.reference, Robot):
             raise LookupError(f"exercise {self.id!r} has no robot with a table")
         return self.reference
@@ -116,7 +109,7 @@ class Exercise:
         return next((part for part in self.parts if part.id == part_id), None)
 
     def fields(self) -> Iterator[FormulaField]:
-        """Yield every formula of the file, with its field in the file and its quantity."""
+        """Yield each formula of the file with its field and quantity (length, angle or number)."""
         if self.reference is not None:
             yield from self.reference.fields()
         for i, part in enumerate(self.parts):
@@ -127,10 +120,7 @@ class Exercise:
 
 
 def in_language(exercise: Exercise, language: Language) -> Exercise:
-    """Return the exercise with its texts in a language; texts without a translation do not change.
-
-    Translations come from the exercise file, or from ``service.translations`` for a ``Sentence``.
-    """
+    """Return the exercise in a language. Texts without a translation do not change."""
     if language == ENGLISH:
         return exercise
     if language.code not in exercise.told:

@@ -20,18 +20,17 @@ _log = logging.getLogger(__name__)
 
 
 def open_catalogue(folders: Sequence[Path], *, reload: bool) -> Mapping[str, Exercise]:
-    """Return the exercises of these folders; with ``reload``, changed files are read again.
+    """Return the exercises of these folders. Raises CatalogueError for a faulty file.
 
-    Raises CatalogueError, so that a service does not start with a broken file.
+    With ``reload``, changed files are read again later.
     """
     return LiveCatalogue(folders) if reload else load_catalogue(*folders)
 
 
 class LiveCatalogue(Mapping[str, Exercise]):
-    """The exercises by id; changed files are read again.
+    """The exercises by id; changed files are read again, at most once in ``REFRESH_SECONDS``.
 
-    Each access checks the files' times, at most once in ``REFRESH_SECONDS``, and reads changed
-    files. For an unusable file, the last good version stays, and the log has the reason.
+    If a changed file is faulty, the last usable version stays.
     """
 
     def __init__(
@@ -88,14 +87,12 @@ class LiveCatalogue(Mapping[str, Exercise]):
         self._stamps, self._exercises = stamps, in_order(found.values())
 
     def _complain(self, complaint: str) -> None:
-        """Log a fault of the folders, unless it is the fault that was logged last."""
         if complaint != self._complaint:
             _log.error("The exercises stay as they were:\n%s", complaint)
         self._complaint = complaint
 
 
 def _stamps(files: Sequence[Path]) -> dict[Path, Stamp]:
-    """Map each file to a stamp that changes with its content; missing files are left out."""
     stamps = {}
     for file in files:
         try:

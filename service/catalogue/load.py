@@ -23,20 +23,17 @@ _LONGEST_ID = 60
 
 
 def shipped_folder() -> Path:
-    """The folder of the shipped exercises.
-
-    In a wheel, it is inside the package; in a checkout, at the top.
-    """
+    """Return the folder of the exercises that come with the program."""
     package = Path(__file__).parents[1]
+    # In a wheel, the folder is inside the package; in a checkout, at the top.
     packaged = package / "_exercises"
     return packaged if packaged.is_dir() else package.parent / "exercises"
 
 
 def exercise_files(*folders: Path) -> list[Path]:
-    """The exercise files of folders, folder by folder, sorted by name.
+    """Return the exercise files of folders, folder by folder, sorted by name.
 
-    Raises CatalogueError if a folder is missing, all are empty, or two folders have a file of the
-    same name. One of several folders may be empty: its first exercise is still to be written.
+    Raises CatalogueError if there are none, or if two have the same name.
     """
     files: dict[str, Path] = {}
     faults: list[Fault] = []
@@ -52,6 +49,7 @@ def exercise_files(*folders: Path) -> list[Path]:
                     "has the name of {file}; give it another, for it is the id", file=str(file)
                 )
                 faults.append(Fault(files[file.stem], "", reason))
+    # One of several folders may be empty: its first exercise is still to be written.
     if not files and not faults:
         faults = [Fault(each, "", say("holds no exercise file (*.toml)")) for each in folders]
     if faults:
@@ -60,10 +58,7 @@ def exercise_files(*folders: Path) -> list[Path]:
 
 
 def load_catalogue(*folders: Path) -> dict[str, Exercise]:
-    """Load all exercises of one or more folders by id, sorted by file name.
-
-    Raises CatalogueError with the faults of all files.
-    """
+    """Load all exercises of the folders, by id. Raises CatalogueError with all faults."""
     exercises: dict[str, Exercise] = {}
     faults: list[Fault] = []
     for file in exercise_files(*folders):

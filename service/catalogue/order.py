@@ -19,21 +19,18 @@ _HEADINGS: Final = {
 
 
 def in_order(exercises: Iterable[Exercise]) -> dict[str, Exercise]:
-    """Return the exercises by id, sorted by level, then ``order``, then as they are given.
-
-    Exercises without a level come last, and those without ``order`` come last in their level.
-    """
+    """Sort exercises by level, then by ``order``; exercises without these fields come last."""
     return {exercise.id: exercise for exercise in sorted(exercises, key=_place)}
 
 
 def by_level(exercises: Iterable[Exercise]) -> list[tuple[str, list[Exercise]]]:
-    """Return each level's heading with its exercises, both in the order of the catalogue."""
+    """Return each level's heading with its exercises, in the order of the catalogue."""
     groups = groupby(in_order(exercises).values(), key=lambda exercise: exercise.level)
     return [(_HEADINGS[level], list(group)) for level, group in groups]
 
 
 def exercise_after(exercise_id: str, exercises: Iterable[Exercise]) -> Exercise | None:
-    """Return the next exercise in the catalogue's order, or None if ``exercise_id`` is the last."""
+    """Return the exercise after ``exercise_id`` in the catalogue, or None for the last."""
     following = iter(in_order(exercises).values())
     found = any(exercise.id == exercise_id for exercise in following)
     return next(following, None) if found else None

@@ -26,22 +26,20 @@ from service.translations import say
 
 
 class PartSpec(StrictModel, ABC):
-    """A part of an exercise in an exercise file.
+    """A part (one question) of an exercise file.
 
-    A kind is a subclass with ``kind: Literal["its_name"]``. Class variables describe its parts:
-
-    - ``answer_fields``: the fields that may give the answer instead of the robot;
-    - ``can_be_followed``: True if the answer is a chain that a later part can follow from;
-    - ``pasted_as``: the content of pasted answers: a table, numbers or angles;
-    - ``holds_links``: True if the answer contains the link transforms;
-    - ``compared_by_formulas``: True if only equal formulas, not equal answers, make two parts the
-      same task.
+    Each answer kind is a subclass with ``kind: Literal["its_name"]``.
     """
 
+    # The fields that may give the answer, if it does not come from the robot.
     answer_fields: ClassVar[tuple[str, ...]] = ("expected",)
+    # True if a later part can be graded with this answer in place of the robot.
     can_be_followed: ClassVar[bool] = False
+    # The content of a pasted answer.
     pasted_as: ClassVar[Literal["table", "numbers", "angles"]] = "numbers"
+    # True if the answer contains the link transforms.
     holds_links: ClassVar[bool] = False
+    # True if two parts are the same task only with equal formulas, not with equal answers.
     compared_by_formulas: ClassVar[bool] = False
 
     id: Identifier
@@ -66,11 +64,14 @@ class PartSpec(StrictModel, ABC):
         kind: str
 
     def formulas(self) -> WrittenFormulas | None:
-        """The right answer if the file gives it in formulas; None if it follows from the robot."""
+        """Return the right answer as formulas, or None if it is computed from the robot."""
         return None
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """Raise FieldError unless the robot determines the answer to the part at ``field``."""
+        """Raise FieldError if the right answer cannot be computed from the robot.
+
+        ``field`` is the place of the part in the file.
+        """
         if reference is None:
             raise FieldError(
                 f"{field}.expected",
@@ -79,14 +80,11 @@ class PartSpec(StrictModel, ABC):
 
     @abstractmethod
     def shape(self, reference: Reference | None) -> AnswerShape:
-        """The shape of an answer on this robot."""
+        """Return the shape of an answer, such as the size of a matrix."""
 
 
 class PosePartSpec(PartSpec):
-    """A part about the pose of frame ``to`` in frame ``from``, such as its rotation.
-
-    A part that is not about the exercise's robot gives its answer in one of its ``answer_fields``.
-    """
+    """A part about the pose of frame ``to`` in frame ``from``, such as its rotation."""
 
     start: FrameName = Field("base", alias="from")
     """The frame in which the pose is expressed: "base", "tool", or a number of the robot's own

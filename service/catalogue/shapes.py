@@ -17,7 +17,7 @@ class AnswerShape(BaseModel, ABC):
         form: str
 
     def in_words(self) -> str:
-        """The shape in one sentence: "a matrix of 4 rows and 4 columns"."""
+        """Return the shape in words: "a matrix of 4 rows and 4 columns"."""
         return "; ".join(self._clauses())
 
     @abstractmethod
@@ -80,7 +80,7 @@ def numbered(count: int) -> list[str]:
 
 
 def choices(**stated: str) -> Iterator[str]:
-    """Yield a clause with the names whose value is "free", and one with those that are "given"."""
+    """Yield phrases such as "base frame, tool frame free" for choices that are free or given."""
     for choice in ("free", "given"):
         names = [_NAMES.get(name, name) for name, value in stated.items() if value == choice]
         if names:

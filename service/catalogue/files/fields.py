@@ -50,16 +50,12 @@ def _showable(text: str) -> str:
 
 
 def _as_sentence(value: object, checked: ValidatorFunctionWrapHandler) -> object:
-    """Return the validated text.
-
-    If it was a ``Sentence``, it stays one and can still be translated.
-    """
     text = checked(value)
     return value if isinstance(value, Sentence) and value == text else text
 
 
 def advice(text: str) -> FieldInfo:
-    """Return field metadata with advice to authors whose text does not match the pattern."""
+    """Return the advice that authors see if their text does not match the field's pattern."""
     field: FieldInfo = Field(json_schema_extra={"advice": text})
     return field
 
@@ -90,9 +86,9 @@ Screw = tuple[Formula, Formula, Formula, Formula, Formula, Formula]
 
 
 class StrictModel(BaseModel):
-    """A TOML table of the file. Unknown keys are faults.
+    """A TOML table that refuses unknown keys.
 
-    docs/exercise-fields.md is generated from the texts below the keys.
+    docs/exercise-fields.md is generated from the strings below the keys.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)

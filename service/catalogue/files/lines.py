@@ -1,7 +1,6 @@
-"""The line of each value of a TOML text.
+"""Find the line of each value in a TOML text.
 
-tomllib names the line of a syntax error, but not the line of a value that fails validation. tomllib
-has already read the text, so this module need not check the syntax again.
+The text must be valid TOML: this module does not check its syntax.
 """
 
 import re
@@ -21,17 +20,15 @@ _SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
 
 
 def with_line(field: str, line: int | None) -> str:
-    """Return the field with its line, as in "points (line 12)".
-
-    Without a line, return the field.
-    """
+    """Return the field with its line, as in "points (line 12)", or without a line if unknown."""
     return field if line is None else say("{field} (line {line})", field=field, line=line)
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:
-    """The line of a field such as ``parts[1].points``, or else of the nearest enclosing field.
+    """Return the line of a field such as ``parts[1].points``.
 
-    ``lines`` is the result of ``value_lines``. The result is None if no such field has a line.
+    If the field has no line, return that of the nearest enclosing field. ``lines`` comes from
+    ``value_lines``.
     """
     while field and field not in lines:
         field = field[: max(field.rfind("."), field.rfind("["), 0)]
@@ -44,8 +41,6 @@ def value_lines(text: str) -> dict[str, int]:
 
 
 class _LineFinder:
-    """Scans a valid TOML text and records the line of each value."""
-
     def __init__(self, text: str) -> None:
         self._text = text
         self._at = 0
@@ -89,10 +84,6 @@ class _LineFinder:
         self._value(path)
 
     def _keys(self, prefix: str, *, tables: bool = False) -> str:
-        """Read a dotted key; return its path.
-
-        With ``tables``, the key of an array of tables means the last table that was read.
-        """
         path = prefix
         while match := _KEY.match(self._text, self._at):
             if tables and path in self._counts:

@@ -1,4 +1,4 @@
-"""Translate pydantic's findings into fields of the file, and reasons with advice for authors."""
+"""Turn pydantic's errors into messages for the authors of exercise files."""
 
 import difflib
 import inspect
@@ -60,12 +60,9 @@ _QUOTED: Final = re.compile(r"'([^']*)'")
 def refusals(
     error: ValidationError | FieldError | ExceptionGroup[FieldError], table_at: TableAt
 ) -> list[tuple[str, str]]:
-    """Return the field and the reason of each fault.
+    """Return the field and the reason of each fault in an exercise file.
 
-    If a value may have several types, pydantic has a finding for each type; together, they are
-    one fault.
-
-    ``table_at`` maps a location of pydantic to the model of the TOML table that contains it.
+    ``table_at`` takes a location of pydantic and returns the model of the TOML table there.
     """
     if isinstance(error, ExceptionGroup):
         return [fault for each in error.exceptions for fault in refusals(each, table_at)]
@@ -78,6 +75,7 @@ def refusals(
         field = _path(location[:-1] if is_form else location)
         if detail["type"] == "union_tag_invalid":
             field = f"{field}.kind"
+        # If a value may have several types, pydantic has an error for each type.
         if is_form and found and found[-1][0] == field:
             found[-1][1].append(detail)
         else:
@@ -86,10 +84,6 @@ def refusals(
 
 
 def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
-    """The reason why a value is refused.
-
-    If the value may have several types, ``details`` has a finding of pydantic for each type.
-    """
     known = [
         choice
         for detail in details
@@ -110,7 +104,6 @@ def _reason(details: Sequence[_Detail], table_at: TableAt) -> str:
 
 
 def _no_choice(value: object, known: Sequence[str]) -> str:
-    """The reason why an unknown value is refused, with the nearest known value as suggestion."""
     lowered = {choice.lower(): choice for choice in known}
     near = difflib.get_close_matches(str(value).lower(), lowered, n=1)
     names = alternatives(map(repr, known))
@@ -125,17 +118,13 @@ def _no_choice(value: object, known: Sequence[str]) -> str:
 
 
 def alternatives(names: Iterable[str]) -> str:
-    """Join the names with commas, and with "or" before the last."""
+    """Return the names in words: "a, b or c"."""
     *others, last = names
     return say("{first} or {last}", first=", ".join(others), last=last) if others else last
 
 
 def _path(location: _Location) -> str:
-    """The path of a field in the file: ``parts[0].points``.
-
-    Pydantic inserts the kind of a part after its number, and the form of the robot after "robot";
-    neither is in the file.
-    """
+    # Pydantic inserts the kind of a part after its number, and the form of the robot after "robot".
     inserted = {"parts": 2, "robot": 1}.get(str(location[0])) if location else None
     names = {"start": "from"}
     steps = [names.get(str(step), step) for i, step in enumerate(location) if i != inserted]
@@ -144,7 +133,6 @@ def _path(location: _Location) -> str:
 
 
 def _advised(detail: _Detail, table_at: TableAt) -> str:
-    """The message of a pydantic finding, followed by advice how to correct the value."""
     reason = _message(detail)
     location: _Location = detail["loc"]
     last = location[-1] if location else ""
@@ -178,7 +166,6 @@ def _advised(detail: _Detail, table_at: TableAt) -> str:
 
 
 def _message(detail: _Detail) -> str:
-    """The message of a pydantic finding, without advice."""
     if detail["type"] == "value_error":
         reason: str = detail["ctx"]["error"].args[0]
         return reason
@@ -187,7 +174,6 @@ def _message(detail: _Detail) -> str:
 
 
 def _out_of_range(detail: _Detail, is_share: bool) -> str:
-    """The reason why a number out of range is refused. For a share of 50, it suggests 0.5."""
     value = detail["input"]
     shown = reprlib.repr(value)
     if not is_share:
@@ -204,7 +190,6 @@ def _out_of_range(detail: _Detail, is_share: bool) -> str:
 
 
 def _is_share(key: str, model: type[BaseModel]) -> bool:
-    """True if the field is a number from 0 to 1."""
     field = model.model_fields.get(key)
     limits = field.metadata if field else []
     return any(getattr(each, "ge", None) == 0 for each in limits) and any(
@@ -234,7 +219,7 @@ def _advice(key: str, model: type[BaseModel]) -> str:
 
 
 def exercise_table(location: _Location) -> type[BaseModel]:
-    """The pydantic model of the TOML table in which ``location`` is."""
+    """Return the pydantic model of the TOML table that contains ``location``."""
     match list(location):
         case ["robot", tag, *_]:
             return ScrewRobotSpec if tag == "screws" else RobotSpec
@@ -258,7 +243,7 @@ def exercise_table(location: _Location) -> type[BaseModel]:
 
 
 def table_in(annotation: object) -> type[BaseModel] | None:
-    """The model in an annotation such as ``list[StepSpec] | None``; None if there is none."""
+    """Return the pydantic model in an annotation such as ``list[StepSpec] | None``, if any."""
     if inspect.isclass(annotation) and issubclass(annotation, BaseModel):
         return annotation
     return next(filter(None, map(table_in, get_args(annotation))), None)

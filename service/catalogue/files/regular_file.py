@@ -7,9 +7,9 @@ from pathlib import Path
 
 
 def read_regular(file: Path, most: int) -> bytes:
-    """Return the bytes of a regular file. Pipes and devices are refused: reading could block.
+    """Return the bytes of a regular file.
 
-    Raises OSError, with ``EFBIG`` if the file has more than ``most`` bytes.
+    Raises OSError for a pipe, for a device, and for more than ``most`` bytes.
     """
     with open(file, "rb", opener=_open_nonblocking) as opened:
         status = os.fstat(opened.fileno())

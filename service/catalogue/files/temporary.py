@@ -1,4 +1,4 @@
-"""The place for temporary folders that several processes share."""
+"""The folder for temporary folders that several processes share."""
 
 import os
 import tempfile
@@ -10,7 +10,7 @@ _MEMORY: Final = Path("/dev/shm")
 
 
 def temporary_place() -> Path:
-    """Return a folder in memory, or else the temporary folder, or else the current folder."""
+    """Return a folder for temporary files, in memory if possible."""
     if os.access(_MEMORY, os.W_OK):
         return _MEMORY
     try:

@@ -44,10 +44,10 @@ class CatalogueError(Exception):
 
 
 def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
-    """Return the result of ``build`` on the content of the file. Raises CatalogueError.
+    """Read a TOML file, and return what ``build`` makes of its content.
 
-    ``build`` may raise pydantic's ValidationError, one FieldError, or a group of FieldErrors.
-    ``table_at`` maps a location of pydantic to the model of the TOML table that contains it.
+    Raises CatalogueError. ``table_at`` takes a location of pydantic and returns the model of the
+    TOML table there.
     """
     try:
         text = read_regular(file, _LARGEST).decode()
@@ -59,10 +59,7 @@ def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: Ta
 def read_toml(
     file: Path, text: str, build: Callable[[dict[str, Any]], Built], table_at: TableAt
 ) -> Built:
-    """Return the result of ``build`` on a text, as if it were the content of ``file``.
-
-    Raises CatalogueError for the faults that ``build`` or the TOML reader finds.
-    """
+    """Read a TOML text like the content of ``file``; see ``load_toml``. Raises CatalogueError."""
     # Normalize line ends as in a file that is opened in text mode.
     text = text.replace("\r\n", "\n")
     try:
@@ -77,7 +74,7 @@ def read_toml(
 
 
 def fault_reason(error: Exception) -> str:
-    """The reason why a file cannot be read, or is not TOML."""
+    """Return the reason why a file cannot be read, or is not TOML."""
     match error:
         case OSError():
             return say("cannot be read: {reason}", reason=str(error.strerror))

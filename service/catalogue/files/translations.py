@@ -14,7 +14,7 @@ _FORMULA: Final = re.compile(r"(?<!\\)(\$\$?)(.+?)(?<!\\)\1", re.DOTALL)
 
 
 def check_translations(spec: ExerciseSpec) -> None:
-    """Raise FieldError for an unknown language, part or symbol, and for missing formulas."""
+    """Raise FieldError for a faulty translation, for example of an unknown part."""
     for code, texts in spec.translations.items():
         field = f"translations.{code}"
         if code not in LANGUAGE_CODES:
@@ -39,7 +39,6 @@ def _require_known(field: str, named: Iterable[str], known: Iterable[str]) -> No
 
 
 def _pairs(spec: ExerciseSpec, texts: TranslationSpec) -> Iterator[tuple[str, str, str | None]]:
-    """Yield the field of each text, the English text, and its translation."""
     for name in ("title", "summary", "statement"):
         yield name, getattr(spec, name), getattr(texts, name)
     for part in spec.parts:
@@ -67,5 +66,4 @@ def _require_same_formulas(field: str, original: str, text: str) -> None:
 
 
 def _formulas(text: str) -> Counter[str]:
-    """Return the formulas between dollar signs, without blanks at their ends."""
     return Counter(found[2].strip() for found in _FORMULA.finditer(text))

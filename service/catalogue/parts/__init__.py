@@ -24,7 +24,6 @@ class KindError(RuntimeError):
 
 
 def _spec(module: ModuleType) -> type[PartSpec]:
-    """Return the only concrete subclass of PartSpec in a module. Raises KindError."""
     kind = module.__name__.rpartition(".")[2]
     found = [
         member

@@ -58,7 +58,6 @@ class DhRowSpec(PartSpec):
         return replace(transform_of("transform", self.transform), check=self._check)
 
     def _check(self, field: str, numbers: Numbers) -> None:
-        """Raise FieldError unless each DH condition holds for all values of symbols or for none."""
         check_transform(field, numbers)
         transform = np.moveaxis(numbers, -1, 0)
         for condition in (dh1_residual, dh2_residual):
@@ -70,5 +69,5 @@ class DhRowSpec(PartSpec):
                 )
 
     def shape(self, _: Reference | None) -> DhRowShape:
-        """The shape of one row, or "none"."""
+        """Return the shape of an answer: one row, or "none"."""
         return DhRowShape(columns=list(COLUMNS), convention=self.convention)

@@ -84,7 +84,7 @@ class DhTableSpec(TablePartSpec):
     earn nothing: the other rows share the points."""
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """Raise FieldError unless the given rows are in the robot's own table."""
+        """Raise FieldError if the file gives a row that the robot's table does not have."""
         super().check_reference(field, reference)
         if not self.given:
             return
@@ -120,13 +120,13 @@ class DhTableSpec(TablePartSpec):
         )
 
     def asked_table(self, robot: Robot) -> ReferenceTable:
-        """Return the table in the part's convention; if the part accepts both, the longer table."""
+        """Return the robot's table in the part's convention."""
         if isinstance(self.convention, Convention):
             return robot.tables[self.convention]
+        # The part accepts both conventions.
         return max(robot.tables.values(), key=lambda table: len(table.rows))
 
     def _given_cells(self, robot: Robot) -> dict[str, list[str]]:
-        """Return the texts of the cells of each given row, by row label."""
         table = robot.tables[robot.convention]
         return {
             table.labels[i - 1]: [cell.source for cell in table.rows[i - 1]] for i in self.given

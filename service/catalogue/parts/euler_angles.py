@@ -30,7 +30,7 @@ class EulerAnglesSpec(PosePartSpec):
 
     @property
     def turns(self) -> str:
-        """The letters of the three axes, such as "ZYX"."""
+        """The letters of the three rotation axes, such as "ZYX"."""
         return "ZYX" if self.sequence == "RPY" else self.sequence
 
     def formulas(self) -> WrittenFormulas | None:

@@ -93,7 +93,7 @@ class FindSlipSpec(TablePartSpec):
 
     @property
     def table(self) -> DhTableSpec:
-        """A part that asks for the whole table."""
+        """Return a part of kind ``dh_table`` with the same convention, frames and points."""
         return DhTableSpec(
             id=self.id,
             title=self.title,
@@ -104,7 +104,7 @@ class FindSlipSpec(TablePartSpec):
         )
 
     def shape(self, reference: Reference | None) -> FindSlipShape:
-        """The shape of the table. The grader chooses the slip, and adds the given cells."""
+        """Return the shape of an answer, still without the cells of the given table."""
         assert isinstance(reference, Robot)
         return FindSlipShape(
             columns=list(COLUMNS),

@@ -48,7 +48,7 @@ class FramesSpec(TablePartSpec):
     of frame i is along the axis of joint i."""
 
     def check_reference(self, field: str, reference: Reference | None) -> None:
-        """Raise FieldError unless there are frames between base and tool, all on joint axes."""
+        """Raise FieldError unless the robot has frames to place, all on joint axes."""
         super().check_reference(field, reference)
         assert isinstance(reference, Robot)
         fixed = len(reference.tables[self.convention].rows) - len(reference.joints)

@@ -44,16 +44,14 @@ class FieldError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class WrittenFormulas:
-    """The formulas of an answer in the file, row by row, and each formula's quantity.
+    """A right answer as formulas, with the quantity (length, angle or number) of each."""
 
-    ``path`` is the field of row i and column j, such as ``expected[{i}][{j}]``. ``check`` takes the
-    field of the answer and the formulas' numbers ``(rows, columns, TRIALS)``, and raises FieldError
-    if the numbers cannot be right.
-    """
-
+    # The field of row i and column j, such as ``expected[{i}][{j}]``.
     path: str
     rows: Sequence[Sequence[Formula]]
     quantities: Sequence[Sequence[Kind]]
+    # Takes the answer's field and the numbers ``(rows, columns, TRIALS)``; raises FieldError if
+    # they cannot be right.
     check: Callable[[str, Numbers], None] | None = None
 
 
@@ -63,31 +61,34 @@ def matrix_of(
     quantities: Sequence[Sequence[Kind]],
     check: Callable[[str, Numbers], None] | None = None,
 ) -> WrittenFormulas:
-    """The formulas of a matrix."""
+    """Return the formulas of a matrix at ``field``, with their quantities."""
     return WrittenFormulas(f"{field}[{{i}}][{{j}}]", rows, quantities, check)
 
 
 def list_of(path: str, formulas: Sequence[Formula], quantities: Sequence[Kind]) -> WrittenFormulas:
-    """The formulas of a list as a single row; ``path`` is, for example, ``steps[{j}].angle``."""
+    """Return a list of formulas as one row.
+
+    ``path`` is the field of formula j, for example ``steps[{j}].angle``.
+    """
     return WrittenFormulas(path, (formulas,), (quantities,))
 
 
 def transform_of(field: str, rows: Homogeneous) -> WrittenFormulas:
-    """The formulas of a homogeneous transform."""
+    """Return the formulas of a homogeneous transform."""
     return matrix_of(field, rows, HOMOGENEOUS, check_transform)
 
 
 def screws_of(field: str, axes: Sequence[Screw]) -> WrittenFormulas:
-    """The formulas of screw axes (ω; v), each of unit length."""
+    """Return the formulas of screw axes (ω; v)."""
     return matrix_of(field, axes, (SCREW,) * len(axes), _check_screws)
 
 
 def fields_of(
     path: str, grid: FormulaGrid, quantities: Sequence[Sequence[Kind]]
 ) -> Iterator[FormulaField]:
-    """Yield the formulas of a grid, each with its field and quantity.
+    """Yield each formula of a grid with its field and quantity (length, angle or number).
 
-    ``path`` is the field with {i} for the row and {j} for the column.
+    ``path`` is the field of row {i} and column {j}.
     """
     for i, (row, kinds) in enumerate(zip(grid, quantities, strict=True)):
         for j, (formula, kind) in enumerate(zip(row, kinds, strict=True)):
@@ -95,7 +96,7 @@ def fields_of(
 
 
 def grid_values(grid: FormulaGrid, values: SymbolValues, samples: int) -> Numbers:
-    """Return the numbers of formulas at ``values``, ``(rows, columns, samples)``."""
+    """Evaluate formulas at ``values``; return numbers ``(rows, columns, samples)``."""
     numbers = np.empty((len(grid), len(grid[0]), samples))
     for i, row in enumerate(grid):
         for j, formula in enumerate(row):
@@ -125,7 +126,10 @@ class FormulaReader:
             raise FieldError(field, reason) from error
 
     def grid(self, written: WrittenFormulas, prefix: str = "") -> FormulaGrid:
-        """Read and check all formulas, whose fields begin with ``prefix``. Raises FieldError."""
+        """Read and check the formulas of an answer. Raises FieldError.
+
+        ``prefix`` is the beginning of their fields in the file.
+        """
         path = prefix + written.path
         rows = enumerate(zip(written.rows, written.quantities, strict=True))
         grid = tuple(
@@ -141,7 +145,7 @@ class FormulaReader:
         return grid
 
     def trial_numbers(self, grid: FormulaGrid, field: Callable[[int, int], str]) -> Numbers:
-        """Return the numbers of formulas at the trial values, ``(rows, columns, TRIALS)``.
+        """Evaluate formulas at trial values; return numbers ``(rows, columns, TRIALS)``.
 
         Raises FieldError if a number is undefined.
         """

@@ -32,7 +32,7 @@ TOOL_ROW = "e"
 
 @dataclass(frozen=True, slots=True)
 class Joint:
-    """One joint: its index, variable and type. The index is also the label of its row."""
+    """One joint: its index, variable and type. The index is also the label of its table row."""
 
     index: int
     variable: str
@@ -40,13 +40,13 @@ class Joint:
 
     @property
     def column(self) -> str:
-        """The table column of the joint variable."""
+        """The table column of the joint variable: "theta" or "d"."""
         return "d" if self.prismatic else "theta"
 
 
 @dataclass(frozen=True)
 class ReferenceTable:
-    """A DH table of formulas in one convention: a row for each joint, then fixed rows if any."""
+    """A DH table of formulas in one convention: a row for each joint, then any fixed rows."""
 
     convention: Convention
     joints: tuple[Joint, ...]
@@ -54,7 +54,7 @@ class ReferenceTable:
 
     @property
     def lazy_rows(self) -> list[dict[str, str]]:
-        """The answer that needs no knowledge: joint variables in their columns, and 0 elsewhere."""
+        """Return rows of zeros with only the joint variables in their columns."""
         rows = [dict.fromkeys(COLUMNS, "0") for _ in self.rows]
         for row, joint in zip(rows, self.joints, strict=False):
             row["d" if joint.prismatic else "theta"] = joint.variable
@@ -62,11 +62,7 @@ class ReferenceTable:
 
     @cached_property
     def labels(self) -> tuple[str, ...]:
-        """The row labels: joint numbers, and "e" for the fixed row after the last joint.
-
-        When a standard table with a row "e" is rewritten in the modified convention, it gets two
-        fixed rows, "e" and "e2".
-        """
+        """The row labels: joint numbers, then "e" and "e2" for rows without a joint."""
         joints = tuple(str(joint.index) for joint in self.joints)
         fixed = (TOOL_ROW, f"{TOOL_ROW}2")
         return joints + fixed[: len(self.rows) - len(joints)]
@@ -83,7 +79,6 @@ class ReferenceTable:
     def _constants_and_formulas(
         self,
     ) -> tuple[Numbers, tuple[tuple[int, int, Expression], ...]]:
-        """The constant cells, ``(rows, 4)``, and the formulas of the other cells."""
         constants = np.zeros((len(self.rows), len(COLUMNS)))
         formulas = []
         for i, row in enumerate(self.rows):
@@ -96,7 +91,7 @@ class ReferenceTable:
 
 
 def at_home(joints: tuple[Joint, ...], values: SymbolValues, samples: int) -> SymbolValues:
-    """Return the values, with 0 for each joint variable."""
+    """Return the values with every joint variable set to 0."""
     return {**values, **{joint.variable: np.zeros(samples) for joint in joints}}
 
 
@@ -133,11 +128,7 @@ class Robot:
         return ("base", *range(first, last), "tool")
 
     def frame(self, name: int | str, values: SymbolValues, samples: int) -> Matrices:
-        """Return the pose of a frame in the base frame, ``(samples, 4, 4)``.
-
-        ``name`` is one of ``frames``. The first joint's number minus 1 also means the base frame.
-        Without a fixed row, the last joint's number also means the tool frame.
-        """
+        """Return the pose of a frame in the base frame, ``(samples, 4, 4)``."""
         return np.asarray(self.all_frames(values, samples)[self.frame_number(name)])
 
     def all_frames(self, values: SymbolValues, samples: int) -> Matrices:
@@ -156,7 +147,7 @@ class Robot:
         return isinstance(name, str) or first - 1 <= name < first + len(self.joints)
 
     def screws(self, values: SymbolValues, samples: int) -> Numbers:
-        """Return the screw axes in the base frame at home, ``(joints, samples, 6)``."""
+        """Return the screw axes with all joint variables 0, ``(joints, samples, 6)``."""
         poses = self.all_frames(at_home(self.joints, values, samples), samples)
         on_axis = joint_frames(poses, self.convention)
         return np.stack(
@@ -170,10 +161,7 @@ class Robot:
 def tables_in_both_conventions(
     joints: tuple[Joint, ...], rows: Sequence[FormulaRow], convention: Convention, zero: Expression
 ) -> dict[Convention, ReferenceTable]:
-    """Return the author's table, and a table in the other convention if that can express the robot.
-
-    In the other table, a fixed last row of zeros is dropped, because it moves nothing.
-    """
+    """Return the author's table, and the same robot's table in the other convention if any."""
     if convention is Convention.STANDARD:
         other, regrouped = Convention.MODIFIED, modified_rows(rows, zero)
     else:

@@ -51,7 +51,7 @@ class ScrewRobot:
         return product_in_space(self.screws(values, samples), amounts, home)
 
     def screws(self, values: SymbolValues, samples: int) -> Numbers:
-        """Return the screw axes in the base frame at home, ``(joints, samples, 6)``."""
+        """Return the screw axes with all joint variables 0, ``(joints, samples, 6)``."""
         return np.swapaxes(grid_values(self.axes, values, samples), 1, 2)
 
 

@@ -1,1 +1,1 @@
-"""The table ``[vary]`` of an exercise file: choices, conditions, and the values of a seed."""
+"""The table ``[vary]`` of an exercise file, which gives students different numbers."""

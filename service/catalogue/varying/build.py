@@ -1,4 +1,4 @@
-"""Build an exercise from a file's content, with the values of a seed if the file has ``[vary]``."""
+"""Build an exercise, or one of its variants, from the content of its file."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -11,7 +11,7 @@ from service.catalogue.varying.vary import Vary
 
 
 def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
-    """Return the exercise of a file's content. If it has ``[vary]``, use the exercise's own values.
+    """Build an exercise from the content of its file, without choosing a variant.
 
     Raises ValidationError or FieldError.
     """
@@ -21,7 +21,7 @@ def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
 
 
 def exercise_of_seed(exercise: Exercise, seed: str) -> Exercise:
-    """Return the variant of an exercise with ``[vary]``. Raises ValidationError or FieldError."""
+    """Build the variant of an exercise for a seed. Raises ValidationError or FieldError."""
     assert exercise.vary is not None, f"{exercise.id} has no variants"
     return _filled(exercise.id, exercise.vary, seed)
 

@@ -59,7 +59,7 @@ def is_seed(text: str) -> bool:
 
 
 def deployed_seeds(vary: Mapping[str, object]) -> tuple[str, ...]:
-    """Return the seeds that assignments use. Raises FieldError."""
+    """Return the seeds that assignments may use. Raises FieldError."""
     seeds = texts_of(vary, DEPLOYED)
     if len(seeds) > MOST_DEPLOYED:
         raise FieldError(

@@ -1,4 +1,4 @@
-"""The conditions in ``[vary]``: comparisons of formulas in the varied numbers."""
+"""The conditions in ``[vary]``: comparisons of formulas with the varied numbers."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -21,7 +21,7 @@ _EQUAL: Final = 1e-9
 
 
 def numeric_values(values: Sequence[VaryValue]) -> Sequence[float] | None:
-    """Return a name's choices as numbers (90deg is a number); None if a choice is not a number."""
+    """Return the choices as numbers, or None if one of them is not a number."""
     found = []
     for each in values:
         if isinstance(each, Mapping):
@@ -37,7 +37,7 @@ def numeric_values(values: Sequence[VaryValue]) -> Sequence[float] | None:
 
 
 def vocabulary_of(names: Sequence[str]) -> Vocabulary:
-    """Return the vocabulary of names whose choices are numbers. Raises FieldError."""
+    """Return the symbols for formulas: the names whose choices are numbers. Raises FieldError."""
     for name in names:
         try:
             Vocabulary([Symbol(name, "number")])
@@ -78,10 +78,7 @@ class Condition:
     right: Expression
 
     def holds(self, values: Mapping[str, NDArray[np.float64]], count: int) -> NDArray[np.bool_]:
-        """Return a mask ``(count,)`` that is True where the values meet the condition.
-
-        Undefined values do not meet it.
-        """
+        """Return a mask ``(count,)`` that is True where the values meet the condition."""
         difference = np.broadcast_to(
             np.asarray(self.left.evaluate(values)) - np.asarray(self.right.evaluate(values)), count
         )

@@ -1,7 +1,6 @@
-"""The values of a seed, and the content of an exercise file with these values.
+"""Choose the values of a variant by its seed, and put them into the exercise file's content.
 
-The same id and seed give the same values in every process and Python version. Each value comes from
-the SHA-256 of the id, the seed and the name, so a new name in ``[vary]`` changes no other value.
+The same exercise id and seed give the same values in every process and Python version.
 """
 
 import hashlib
@@ -44,11 +43,10 @@ _NOT_GRADING: Final = frozenset({
 
 
 class Vary:
-    """The varied content of an exercise file.
+    """An exercise file's content with a table ``[vary]``, from which variants are made.
 
-    ``table`` is ``[vary]`` as it is written. ``deployed`` are the seeds that assignments use;
-    without deployed seeds, assignments use any seed. ``base_version`` changes with every field that
-    affects grading, in any variant.
+    ``table`` is ``[vary]`` as written. ``deployed`` are the only seeds for assignments; if empty,
+    assignments use any seed. ``base_version`` is the version of the file.
     """
 
     def __init__(self, exercise_id: str, content: Mapping[str, Any]) -> None:
@@ -84,12 +82,12 @@ class Vary:
     def with_choices(self, table: Mapping[str, Any]) -> "Vary":
         """Return this content with the table ``[vary]`` of an earlier version of the file.
 
-        If a text needs a name that the earlier table lacks, the name keeps its present choices.
-        Raises FieldError if the texts do not fit even then.
+        Raises FieldError if the texts do not fit that table.
         """
         try:
             earlier = Vary(self._id, {**self._content, "vary": table})
             earlier.content(earlier.values(""))
+        # If a text needs a name that the earlier table lacks, the name keeps its present choices.
         except FieldError:
             rules = (CONDITIONS, DEPLOYED)
             present = {name: each for name, each in self.table.items() if name not in rules}
@@ -100,22 +98,20 @@ class Vary:
 
     @property
     def count(self) -> int:
-        """The number of combinations of choices, whether they meet the conditions or not."""
+        """The number of combinations of choices, including those that the conditions exclude."""
         count = 1
         for values in self._choices.values():
             count *= len(values)
         return count
 
     def values(self, seed: str) -> Mapping[str, VaryValue]:
-        """Return the value of each name for a seed. The seed "" gives the exercise's own values.
-
-        A seed whose values never meet the conditions also gives the exercise's own values.
-        """
+        """Return the value of each name for a seed; "" means the plain exercise."""
+        # A seed whose values never meet the conditions also gives the values of the plain exercise.
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}
 
     def written(self, seed: str) -> Mapping[str, str]:
-        """Return the values of a seed as text; the key of a group's field is ``name.field``."""
+        """Return the values of a seed as text, by name."""
         written: dict[str, str] = {}
         for name, value in self.values(seed).items():
             if isinstance(value, Mapping):
@@ -129,7 +125,7 @@ class Vary:
         return f"{self.base_version}-{values_digest(values)}"
 
     def content(self, values: Mapping[str, VaryValue]) -> dict[str, Any]:
-        """Return the content of the file with these values in all texts. Raises FieldError."""
+        """Return the file's content with these values in all texts. Raises FieldError."""
         return dict(self._filled(self._content, values, ""))
 
     def _draw(self, seed: str) -> Mapping[str, int] | None:
@@ -147,7 +143,6 @@ class Vary:
         return None
 
     def _meet(self, draws: Sequence[Mapping[str, int]]) -> NDArray[np.bool_]:
-        """Return a mask of the combinations of choices that meet all conditions."""
         values = {
             name: np.array([numbers[draw[name]] for draw in draws])
             for name, numbers in self._numbers.items()
@@ -176,10 +171,6 @@ class Vary:
                 return node
 
     def _written(self, place: str, values: Mapping[str, VaryValue], field: str) -> str:
-        """Return the text that replaces ``{{place}}`` in the file.
-
-        ``place`` is a name, a field of a group of values, or a formula.
-        """
         place = place.strip()
         name, dot, key = place.partition(".")
         found = values.get(name)
@@ -218,7 +209,6 @@ def _plain(value: VaryValue) -> object:
 
 
 def _text(value: VaryValue) -> str:
-    """Return a number as text, without exponent and trailing zeros; return a text as it is."""
     if not isinstance(value, Decimal):
         return str(value)
     written = format(value, "f")
@@ -227,7 +217,7 @@ def _text(value: VaryValue) -> str:
 
 
 def _whole(text: str, count: int) -> int:
-    """Return a whole number from 0 to ``count`` − 1 that depends only on ``text``."""
+    # Each value has its own digest, so a new name in ``[vary]`` changes no other value.
     return int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big") % count
 
 
