@@ -26,23 +26,18 @@ class GradesFormat(StrEnum):
 
     @property
     def is_gradebook(self) -> bool:
-        """True if the format is a gradebook; a gradebook has the points of one exercise only."""
+        """True if the format is a gradebook, which has the points of one exercise only."""
         return self in (GradesFormat.CANVAS, GradesFormat.MOODLE)
 
 
 @dataclass(frozen=True, slots=True)
 class NewAttempt:
-    """An attempt to be recorded; ``submission`` and ``report`` are JSON.
-
-    ``ordinal`` is the attempt's number among the learner's counted attempts at the exercise; None
-    if the attempt does not count. ``owner`` is the client that sent the attempt; idempotency keys
-    are unique for each owner. ``assignment`` is the number of an assignment of a course, or None.
-    ``variant`` is the seed of a variant of the exercise, or None. ``hint_price`` is the price of
-    all hints that the learner has taken, as a share of the attempt's maximum points.
-    """
+    """An attempt to be recorded; ``submission`` and ``report`` are JSON."""
 
     exercise: str
     learner: str
+    # The attempt's number among the learner's counted attempts at the exercise; None if it does not
+    # count.
     ordinal: int | None
     at: datetime
     is_late: bool
@@ -54,11 +49,15 @@ class NewAttempt:
     grader: str
     points: float
     max_points: float
+    # The client that sent the attempt; idempotency keys are unique for each owner.
     owner: str
     idempotency_key: str | None
     request_digest: str
+    # The number of an assignment of a course.
     assignment: int | None = field(default=None, kw_only=True)
+    # The seed of a variant of the exercise.
     variant: str | None = field(default=None, kw_only=True)
+    # The price of all hints that the learner has taken, as a share of the maximum points.
     hint_price: float = field(default=0.0, kw_only=True)
 
 
@@ -71,41 +70,38 @@ class RecordedAttempt(NewAttempt):
 
     @property
     def hint_points(self) -> float | None:
-        """The points that the hints before the attempt cost; None if they cost nothing."""
+        """The points lost by hints taken before the attempt, or None."""
         return hint_points(self.hint_price, self.max_points) or None
 
 
 @dataclass(frozen=True, slots=True)
 class Standing:
-    """The attempts of a learner at an exercise, just before a new attempt.
+    """A summary of a learner's attempts at an exercise, read just before a new attempt."""
 
-    ``counted`` is the number of attempts that count towards the limit: those in the assignment or,
-    without an assignment, those outside of all assignments. ``earlier`` is the attempt that was
-    already recorded under the same idempotency key, if any. ``last`` is the highest number
-    (``ordinal``) of all attempts. ``hint_price`` is the price of all hints taken so far, as a share
-    of the points.
-    """
-
+    # The attempts that count towards the limit: those in the assignment or, without an assignment,
+    # those outside of all assignments.
     counted: int
+    # The attempt that was already recorded under the same idempotency key.
     earlier: RecordedAttempt | None
+    # The highest ``ordinal`` of all attempts.
     last: int = 0
+    # The price of all hints taken so far, as a share of the points.
     hint_price: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class AttemptFilter:
-    """A filter on attempts; None means no condition. ``since`` is inclusive, ``until`` is not.
+    """Conditions that select attempts; None means no condition."""
 
-    ``assignment`` is the id of an assignment of ``course``. ``exercise`` is the id of an exercise,
-    which selects all its variants, or the id of one variant.
-    """
-
+    # The id of an exercise, which selects all its variants, or the id of one variant.
     exercise: str | None = None
     learner: str | None = None
+    # Inclusive; ``until`` is exclusive.
     since: datetime | None = None
     until: datetime | None = None
     counted: bool | None = None
     course: str | None = None
+    # The id of an assignment of ``course``.
     assignment: str | None = None
 
 
@@ -130,10 +126,10 @@ class ListedAttempt:
 
     @property
     def hint_points(self) -> float | None:
-        """The points that the hints before the attempt cost; None if they cost nothing."""
+        """The points lost by hints taken before the attempt, or None."""
         return hint_points(self.hint_price, self.max_points) or None
 
     @property
     def earned(self) -> float:
-        """The points that count: points awarded by a tutor, or else the points of the report."""
+        """The points that count: points given by a tutor, or else the points of the report."""
         return self.points if self.awarded is None else self.awarded

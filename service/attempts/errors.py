@@ -4,8 +4,7 @@
 class StoreDownError(Exception):
     """The database cannot be reached, cannot write, or does not respond.
 
-    Nothing was written. There is one exception: the database may have committed, and only its reply
-    was lost.
+    Nothing was written, unless only the database's reply to a commit was lost.
     """
 
 

@@ -11,7 +11,7 @@ from service.submissions.body import GradeRequest
 
 @dataclass(frozen=True, slots=True)
 class AttemptReport:
-    """A report, its JSON for the database, and its outcome for statistics."""
+    """A report, its JSON, and its outcome (verdicts and message codes) for statistics."""
 
     report: Report
     text: str
@@ -19,10 +19,7 @@ class AttemptReport:
 
 
 class AttemptGrading:
-    """Grades the answers of one request, and makes reports at different feedback levels from them.
-
-    It grades at most twice: once for the level ``full``, and once for all lower levels.
-    """
+    """Grades the answers of one request, and makes reports at different feedback levels."""
 
     def __init__(self, exercise: Exercise, body: GradeRequest) -> None:
         self._exercise = exercise
@@ -35,10 +32,7 @@ class AttemptGrading:
         return _grading_level(self._level(most)) in self._graded
 
     def at(self, most: FeedbackLevel) -> AttemptReport:
-        """Return the report and its outcome for statistics.
-
-        The feedback level is the one that the request asks for, but at most ``most``.
-        """
+        """Return the report at the requested feedback level, but at most at the level ``most``."""
         level = self._level(most)
         if level not in self._reports:
             self._reports[level] = self._report(most, level)

@@ -1,8 +1,7 @@
 """Database functions for the hints that learners take at recorded attempts.
 
-A hint explains a message, and belongs to the attempt whose report has this message. The price of
-the hint reduces the points of the learner's later attempts at the exercise, in the same assignment
-or outside of all assignments.
+A hint explains a message of a report. Its price reduces the points of the learner's later attempts
+at the exercise.
 """
 
 from collections import Counter
@@ -35,7 +34,7 @@ _TAKEN: Final = select(hints, attempts.c.id.label("attempt_id")).join_from(hints
 
 
 class HintRefusedError(Exception):
-    """The hint is refused. The message tells the learner why; ``name`` is for programs."""
+    """The hint is refused. The message is for the learner; ``name`` identifies the reason."""
 
     def __init__(self, name: str, message: str) -> None:
         self.name = name
@@ -44,10 +43,7 @@ class HintRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class HintStepOf:
-    """A step of the hint for a message.
-
-    ``row`` or ``cell`` is "" if the message is not about a row or a cell.
-    """
+    """One step of the hint for a message; ``row`` and ``cell`` are its place, or ""."""
 
     part: str
     code: str
@@ -80,16 +76,12 @@ def take(
     prices: Sequence[float],
     now: datetime,
 ) -> HintRefusedError | None:
-    """Record that the learner took a step of a hint. A step that was taken before costs nothing.
-
-    Steps are counted for each cell, row or part: another message on the same cell does not start
-    the steps again. Return the error if the step is refused, else None. The error is not raised,
-    because that would roll back the transaction, in which other jobs run, too.
-    """
+    """Record that the learner took a step of a hint. Return an error if it is refused."""
     # Two requests for the same step wait for each other.
     attempt = connection.execute(
         select(attempts).where(attempts.c.id == attempt_id).with_for_update()
     ).one()
+    # Steps are counted for each cell, row or part: another message there does not start them again.
     earlier = connection.execute(
         select(hints.c.step, hints.c.attempt, attempts.c.answers_digest)
         .join_from(hints, attempts)
@@ -102,6 +94,7 @@ def take(
     if wanted.step <= len(earlier):
         return None
     if wanted.step > len(earlier) + 1:
+        # Not raised, because that would roll back other jobs of the transaction.
         return HintRefusedError(
             "earlier-step-first", say("Take the earlier steps of this hint first.")
         )
@@ -129,7 +122,7 @@ def hints_before(connection: Connection, attempt_id: str) -> list[TakenHint]:
 
 
 def hints_of(connection: Connection, learner: str) -> dict[tuple[int, str], list[TakenHint]]:
-    """Return a learner's hints by (assignment number, exercise); each list is oldest first."""
+    """Return a learner's hints by assignment number and exercise, the oldest first."""
     mine = _TAKEN.add_columns(attempts.c.assignment, attempts.c.exercise).where(
         attempts.c.learner == learner, attempts.c.assignment.is_not(None)
     )
@@ -140,7 +133,7 @@ def hints_of(connection: Connection, learner: str) -> dict[tuple[int, str], list
 
 
 def hint_figures(connection: Connection, chosen: ColumnElement[bool]) -> list[HintFigures]:
-    """Count the steps of each hint that were taken at the chosen attempts; sort by frequency."""
+    """Count the hints taken at the chosen attempts, the most frequent first."""
     counted = (
         select(hints.c.part, hints.c.code, hints.c.step, func.count().label("times"))
         .join_from(hints, attempts)
@@ -158,7 +151,6 @@ def hint_figures(connection: Connection, chosen: ColumnElement[bool]) -> list[Hi
 
 
 def _same_place(attempt: Row[Any]) -> ColumnElement[bool]:
-    """Return the condition for attempts with ``attempt``'s learner, exercise and assignment."""
     return and_(
         attempts.c.exercise == attempt.exercise,
         attempts.c.learner == attempt.learner,

@@ -103,11 +103,9 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
 
 
 def is_older(before: datetime) -> ColumnElement[bool]:
-    """Return the condition for attempts whose retention time began before the moment ``before``.
-
-    The retention time begins with the attempt. For an attempt in an assignment, the time begins
-    when the last learner can no longer hand in; without a due date, the time never begins.
-    """
+    """Return the SQL condition for attempts whose retention time began before ``before``."""
+    # In an assignment, the time begins when the last learner can no longer hand in; without a due
+    # date, it never begins.
     later = and_(
         extensions.c.assignment == assignments.c.number,
         func.coalesce(extensions.c.closes, extensions.c.due) >= before,
@@ -132,13 +130,12 @@ def delete_attempts(connection: Connection, chosen: ColumnElement[bool]) -> int:
 
 
 def months_before(now: datetime, months: int) -> datetime:
-    """Return ``now`` minus ``months`` months; a day after the 28th becomes the 28th."""
+    """Return the time some months earlier; a day after the 28th becomes the 28th."""
     total = 12 * now.year + now.month - 1 - months
     return now.replace(year=total // 12, month=total % 12 + 1, day=min(now.day, 28))
 
 
 def _known(row: Row[Any]) -> dict[str, Any]:
-    """Return the columns of a row for JSON, without internal columns and without None."""
     return {name: _plain(name, value) for name, value in _named(row).items() if value is not None}
 
 

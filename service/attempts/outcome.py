@@ -11,11 +11,7 @@ from service.grading.report import PartReport
 
 @dataclass(frozen=True)
 class Outcome:
-    """The verdicts and message codes of one report.
-
-    ``content`` is JSON. For each part (question) of the exercise it has the verdict, the verdicts
-    of the cells by "row/cell", and the codes of the messages, each code once.
-    """
+    """The verdicts and message codes of one report, as JSON in ``content``."""
 
     exercise: str
     content: str
@@ -27,9 +23,9 @@ class Outcome:
 
 
 def outcome_of(report: Report) -> Outcome:
-    """Return the outcome of a report.
+    """Return the verdicts and message codes of a report.
 
-    The report must have rows, so its feedback level must be higher than ``score``.
+    The feedback level of the report must be higher than ``score``.
     """
     content = {part.part: _part(part) for part in report.parts}
     return Outcome(report.exercise.partition("~")[0], json.dumps(content, separators=(",", ":")))

@@ -9,7 +9,7 @@ from service.translations import say, say_count
 
 
 class AttemptRefusedError(Exception):
-    """The attempt is refused. The message tells the learner why; ``name`` is for programs."""
+    """The attempt is refused. The message is for the learner; ``name`` identifies the reason."""
 
     def __init__(self, name: str, message: str) -> None:
         self.name = name
@@ -18,10 +18,9 @@ class AttemptRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Ruling:
-    """The terms on which an attempt is accepted.
+    """The number of an accepted attempt, and the factor ``worth`` for its points.
 
-    ``ordinal`` counts the learner's attempts from 1. The attempt's points are multiplied by
-    ``worth``, which is 1 for an attempt in time, and less for a late attempt.
+    The factor is 1 for an attempt in time, and less for a late attempt.
     """
 
     ordinal: int
@@ -30,9 +29,9 @@ class Ruling:
 
 
 def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
-    """Return the terms of the next attempt of a learner who has already used ``counted`` attempts.
+    """Return number and factor of a learner's next attempt, or raise AttemptRefusedError.
 
-    Raises AttemptRefusedError.
+    ``counted`` is the number of attempts that the learner has already used.
     """
     if rules.opens is not None and now < rules.opens:
         opens = say("This exercise opens on {moment}.", moment=_formatted(rules.opens))
@@ -53,7 +52,7 @@ def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
 
 
 def points_after(points: float, max_points: float, hint_price: float, worth: float) -> float:
-    """Return the points minus the price of hints, times ``worth`` (below 1 if late)."""
+    """Return the points after deductions for hints and for lateness."""
     return round(max(0.0, points - hint_points(hint_price, max_points)) * worth, 6)
 
 

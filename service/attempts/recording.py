@@ -101,11 +101,7 @@ def standing(
     idempotency_key: str | None,
     assignment: int | None = None,
 ) -> Standing:
-    """Return the number of a learner's attempts, and the attempt with this idempotency key.
-
-    With ``assignment``, only attempts in this assignment count; without ``assignment``, only
-    attempts outside of all assignments.
-    """
+    """Return a summary of a learner's earlier attempts at an exercise."""
     which: dict[str, str | int | None] = {
         "exercise": exercise,
         "learner": learner,
@@ -113,6 +109,7 @@ def standing(
         "idempotency_key": idempotency_key,
         "assignment": assignment,
     }
+    # Only attempts in the same assignment count or, without one, those outside of all assignments.
     statement = _OUTSIDE if assignment is None else _IN_ASSIGNMENT
     row = connection.execute(statement, which).one()
     found = row.earlier and connection.execute(_EARLIER, {"number": row.earlier}).one_or_none()
@@ -121,10 +118,7 @@ def standing(
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
-    """Write the attempt.
-
-    Return None if another attempt already has its number (``ordinal``) or its idempotency key.
-    """
+    """Write the attempt. Return None if its number or its idempotency key is already taken."""
     values: dict[str, Any] = {name: getattr(new, name) for name in _WRITTEN}
     values["id"] = secrets.token_hex(16)
     statement = _NEW_ATTEMPT[connection.dialect.name]
@@ -146,11 +140,9 @@ AttemptAfter = Callable[[Standing], tuple[NewAttempt, Outcome] | None]
 def record_next(
     connection: Connection, before: Standing, attempt_after: AttemptAfter
 ) -> RecordedAttempt | Standing:
-    """Write the attempt that ``attempt_after`` makes from the learner's earlier attempts.
+    """Call ``attempt_after`` with the learner's earlier attempts, and write its result.
 
-    ``before`` has the earlier attempts as they were last read. If another attempt was recorded in
-    the meantime, read them again, and call ``attempt_after`` again. If ``attempt_after`` returns
-    None, write nothing, and return the earlier attempts.
+    If the result is None, write nothing and return the earlier attempts.
     """
     now = before
     while (attempt := attempt_after(now)) is not None:
@@ -166,7 +158,7 @@ def record_next(
 
 
 def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:
-    """Insert the outcomes that the database does not have; return the row ids of all ``wanted``."""
+    """Return the row ids of the outcomes; insert those that the database does not have."""
     # Always in the same order: otherwise two workers could deadlock.
     ordered = sorted(set(wanted), key=lambda each: (each.exercise, each.digest))
     ids = _written_outcomes(connection, ordered)
@@ -178,7 +170,6 @@ def outcome_ids(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outco
 
 
 def _written_outcomes(connection: Connection, wanted: Iterable[Outcome]) -> dict[Outcome, int]:
-    """Return the row ids of those outcomes that are already in the database."""
     by_digest = {(each.exercise, each.digest): each for each in wanted}
     exercises, digests = zip(*by_digest, strict=True)
     which = {"exercises": list(set(exercises)), "digests": list(digests)}
@@ -191,7 +182,6 @@ def _key(outcome: Outcome) -> dict[str, str]:
 
 
 def _add_outcome(connection: Connection, outcome: Outcome) -> bool:
-    """Insert the outcome; return False if the database already has it."""
     new = _key(outcome) | {"content": outcome.content}
     statement = _NEW_OUTCOME[connection.dialect.name].returning(outcomes.c.id)
     return connection.scalar(statement, new) is not None

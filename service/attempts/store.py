@@ -1,4 +1,4 @@
-"""The store of attempts, as the routes of the service use it."""
+"""The store of attempts that the HTTP routes use."""
 
 import asyncio
 import tempfile
@@ -104,7 +104,7 @@ class AttemptStore:
         idempotency_key: str | None,
         assignment: int | None = None,
     ) -> Standing:
-        """Return the number of a learner's attempts, and the attempt with this idempotency key."""
+        """Return a summary of a learner's earlier attempts at an exercise."""
         with self.measure("standing"):
             return await self._running.run(
                 lambda connection: standing(
@@ -115,10 +115,9 @@ class AttemptStore:
     async def record(
         self, before: Standing, attempt_after: AttemptAfter
     ) -> RecordedAttempt | Standing:
-        """Write the attempt that ``attempt_after`` makes from the learner's earlier attempts.
+        """Call ``attempt_after`` with the learner's earlier attempts, and write its result.
 
-        See ``record_next`` for the result. ``attempt_after`` must be quick: the writer thread calls
-        it, and other jobs wait meanwhile.
+        ``attempt_after`` must be quick, because other jobs wait for it. See ``record_next``.
         """
         with self.measure("record"):
             return await self._running.run(
@@ -140,7 +139,7 @@ class AttemptStore:
         return await self.read(lambda connection: page(connection, wanted, cursor, most))
 
     async def history(self, attempt_id: str) -> AttemptHistory | None:
-        """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
+        """Return an attempt with its answers, its reports, and points given by tutors, if known."""
         return await self.read(lambda connection: history(connection, attempt_id))
 
     async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:
@@ -154,7 +153,7 @@ class AttemptStore:
         title: str,
         counting: Callable[[str], Counting],
     ) -> IO[bytes]:
-        """Return the attempts in a format, as a file that the caller closes; see ``written``."""
+        """Return a file with the attempts in a format. The caller closes the file."""
         return await self.read(
             lambda connection: _file_of(
                 written(graded_attempts(connection, wanted, counting), form, title)
@@ -184,11 +183,9 @@ class AttemptStore:
         return await self.read(lambda connection: data_of(connection, learner))
 
     async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
-        """Delete all records of a learner; return their counts and the state of erasure.
+        """Delete all records of a learner; return their counts, and True if they are overwritten.
 
-        The state of erasure is True if the deleted rows are overwritten, and False if they are not:
-        then the writer thread tries again every minute. The state is None for PostgreSQL, which
-        overwrites deleted rows by itself.
+        The second value is None for PostgreSQL, which overwrites deleted rows by itself.
         """
         with self.measure("forget"):
             deleted = await self._running.run(lambda connection: forget(connection, learner))
@@ -205,7 +202,7 @@ class AttemptStore:
             return await self._running.run(work)
 
     async def read(self, work: Callable[[Connection], R]) -> R:
-        """Run ``work``, which only reads, in a reader thread; return its result."""
+        """Run ``work``, which only reads, in a thread for reading; return its result."""
         assert self._readers is not None, "the store has not been started"
         loop = asyncio.get_running_loop()
         with self.measure("read"):
@@ -231,10 +228,6 @@ class AttemptStore:
 
 
 def _file_of(lines: Iterable[bytes]) -> IO[bytes]:
-    """Return the lines as a file, positioned at its start.
-
-    A slow reader of the file does not keep a connection to the database open.
-    """
     file = tempfile.SpooledTemporaryFile(_IN_MEMORY)  # noqa: SIM115 - the caller closes it
     try:
         file.writelines(lines)

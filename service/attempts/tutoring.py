@@ -79,10 +79,7 @@ def data_of(connection: Connection, learner: str) -> LearnerData:
 
 
 def forget(connection: Connection, learner: str) -> LearnerData:
-    """Delete all records of a learner, also in courses; return the counts in ``LearnerData``.
-
-    Outcomes stay: they contain verdicts and codes, but no learners and no answers.
-    """
+    """Delete all records of a learner, also in courses; return the numbers of records."""
     for _ in range(_TRIES):
         try:
             with connection.begin_nested():

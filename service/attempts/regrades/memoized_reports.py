@@ -19,10 +19,7 @@ PartResults: TypeAlias = Mapping[str, tuple[str, float]]
 
 @dataclass(frozen=True, slots=True)
 class WrittenReport:
-    """The JSON of a report for the database, with some values that are also in the JSON.
-
-    These values are stored separately, because parsing the JSON again would take time.
-    """
+    """The JSON of a report, and values of the report that are needed without parsing it."""
 
     text: str
     points: float
@@ -48,10 +45,7 @@ class MemoizedReports:
     def get(
         self, submission: str, level: FeedbackLevel, grade: Callable[[], WrittenReport]
     ) -> WrittenReport:
-        """Return the report on a submission at a feedback level, from the cache if possible.
-
-        Otherwise call ``grade``, and store its result in the cache.
-        """
+        """Return a report from the cache, or call ``grade`` and store its result in the cache."""
         key = submission, level
         if (found := self._reports.get(key)) is not None:
             self._reports.move_to_end(key)

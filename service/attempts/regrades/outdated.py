@@ -1,10 +1,7 @@
 """Regrade outdated attempts. Several processes may share the work through the database.
 
-A worker locks the attempts that it takes. One commit writes their new reports and removes the
-attempts from the queue. If the worker dies, the database releases the locks, and another worker
-takes the attempts. In PostgreSQL, workers skip locked rows (SKIP LOCKED). In SQLite, only one
-process can write at a time, and even the recording of attempts waits for this process: a worker
-therefore grades first, and locks the file only while it writes.
+A worker locks the attempts that it takes until it commits. If the worker dies, the database
+releases the locks, and another worker takes the attempts.
 """
 
 import json
@@ -64,12 +61,7 @@ class CountedPoints:
 
 @dataclass(frozen=True, slots=True)
 class RegradedAttempt:
-    """The points of an attempt before and after a regrade, on the scale of the exercise file.
-
-    ``reasons`` names the parts whose result has changed. ``awarded`` are points with which a tutor
-    has overridden the report; a regrade does not change them. ``counted`` has the points on the
-    scale of the assignment; None if no assignment has the exercise.
-    """
+    """The points of an attempt before and after a regrade, on the scale of the exercise file."""
 
     id: str
     learner: str
@@ -77,8 +69,11 @@ class RegradedAttempt:
     before: float
     after: float
     max_points: float
+    # Points with which a tutor has overridden the report; a regrade does not change them.
     awarded: float | None
+    # The parts whose result has changed.
     reasons: tuple[str, ...]
+    # The points on the scale of the assignment; None if no assignment has the exercise.
     counted: CountedPoints | None
 
     @property
@@ -90,9 +85,9 @@ class RegradedAttempt:
 
 
 class Regrading:
-    """Regrades the attempts at an exercise with the current versions of exercise and program.
+    """Regrades the attempts at an exercise with its current version and the current program.
 
-    With ``course``, it regrades only the attempts in the assignments of this course.
+    With ``course``, it regrades only attempts in this course.
     """
 
     def __init__(
@@ -117,10 +112,7 @@ class Regrading:
     def outdated_after(
         self, connection: Connection, place: TimePlace | None, most: int
     ) -> list[TimePlace]:
-        """Return the times and numbers of at most ``most`` outdated attempts, the oldest first.
-
-        The attempts are later than ``place``, which is the time and number of an attempt.
-        """
+        """Return time and number of outdated attempts later than ``place``, the oldest first."""
         following = select(*BY_TIME).where(self._is_outdated())
         if place is not None:
             following = following.where(later_than(place))
@@ -147,15 +139,14 @@ class Regrading:
         )
 
     def waiting(self, connection: Connection) -> int:
-        """Count the attempts in the queue, including those that a worker has taken."""
+        """Count the attempts in the queue, including those that another worker has locked."""
         waiting = select(func.count()).select_from(regrade_queue).where(self._is_queued())
         return connection.scalar(waiting) or 0
 
     def next_batch(self, engine: Engine) -> list[RegradedAttempt]:
-        """Regrade, in one transaction, some queued attempts that no other worker has taken.
+        """Regrade some queued attempts in one transaction.
 
-        The result is empty if no such attempts are left, or if none of them needs a regrade. In
-        SQLite, it is also empty if another worker was faster.
+        The result is empty if no attempts are left for this worker.
         """
         prepared = self._prepared(engine) if engine.dialect.name == "sqlite" else None
         return in_transaction(engine, partial(self.work, among=prepared))
@@ -163,7 +154,7 @@ class Regrading:
     def work(
         self, connection: Connection, among: Sequence[int] | None = None
     ) -> list[RegradedAttempt]:
-        """Regrade a batch and remove it from the queue, in the caller's transaction.
+        """Regrade some queued attempts and remove them from the queue.
 
         If ``among`` is given, take only these attempts.
         """
@@ -180,7 +171,6 @@ class Regrading:
         return [change for _, change, _ in done]
 
     def _waiting(self) -> Select[int]:
-        """The query for the first batch of the queue."""
         waiting = select(regrade_queue.c.attempt).where(self._is_queued())
         return waiting.order_by(regrade_queue.c.attempt).limit(BATCH)
 
@@ -191,10 +181,7 @@ class Regrading:
         return mine & regrade_queue.c.attempt.in_(select(attempts.c.number).where(self._condition))
 
     def _prepared(self, engine: Engine) -> list[int]:
-        """Grade the first batch of the queue without locking it, and store the reports in memory.
-
-        Return the numbers of the graded attempts.
-        """
+        # In SQLite only one process can write: grade first, and lock the file only while writing.
         with engine.connect() as connection:
             rows = self._rows(connection, connection.scalars(self._waiting()).all())
         return [row.number for row, _ in self._graded_in_time(rows)]
@@ -202,11 +189,6 @@ class Regrading:
     def _graded_in_time(
         self, rows: Sequence[Row[Any]]
     ) -> list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]]:
-        """Regrade the attempts in ``rows`` until a time limit is over, but at least one attempt.
-
-        The result of a row is None if the row needs no regrade, for example because another worker
-        has regraded it in the meantime.
-        """
         graded: list[tuple[Row[Any], tuple[RegradedAttempt, WrittenReport] | None]] = []
         end = time.monotonic() + _BATCH_SECONDS
         for row in rows:
@@ -318,10 +300,7 @@ class Regrading:
 
 
 def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
-    """Return the exercise or variant of an attempt; None if the variant has other numbers now.
-
-    Then the attempt is not regraded: the learner answered a question with the old numbers.
-    """
+    """Return the exercise or variant of an attempt; None if the variant has other numbers now."""
     if row.variant is None:
         return exercise
     make = variant_of if row.assignment is None else hidden_variant
@@ -333,7 +312,6 @@ def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
 
 
 def _counted(row: Row[Any], after: float, max_points: float) -> CountedPoints | None:
-    """Return the points in the assignment; None if no assignment has the exercise."""
     chosen = json.loads(row.exercises or "[]")
     assigned = next((it["points"] for it in chosen if it["exercise"] == row.exercise), None)
     if assigned is None:
@@ -349,12 +327,10 @@ def _counted(row: Row[Any], after: float, max_points: float) -> CountedPoints | 
 
 
 def _results(report: Mapping[str, Any]) -> PartResults:
-    """The results of the parts of a recorded report."""
     return {part["part"]: (part["verdict"], part["points"]) for part in report["parts"]}
 
 
 def _reasons(old: PartResults, new: PartResults) -> list[str]:
-    """The parts whose results differ, each described in a few words."""
     reasons: list[str] = []
     for name in dict.fromkeys((*old, *new)):
         if name not in new:

@@ -25,11 +25,7 @@ _CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<lef
 
 @dataclass(frozen=True, slots=True)
 class RegradeStep:
-    """The result of one step of a regrade or of its preview.
-
-    ``regraded`` are the attempts of this step, ``left`` is the number of attempts that remain for
-    later steps, and ``following`` is the cursor of the next step, or None.
-    """
+    """The attempts of one step, the number of attempts left, and the cursor of the next step."""
 
     regraded: Sequence[RegradedAttempt]
     left: int
@@ -37,7 +33,7 @@ class RegradeStep:
 
 
 def preview_step(engine: Engine, regrading: Regrading, cursor: str | None) -> RegradeStep:
-    """Grade some outdated attempts; write nothing. Raises BadCursorError, StoreDownError."""
+    """Regrade some outdated attempts without writing. Raises BadCursorError, StoreDownError."""
     place, left = (None, 0) if cursor is None else _read(cursor)
     done: list[RegradedAttempt] = []
     end = time.monotonic() + _SECONDS
@@ -61,10 +57,9 @@ def preview_step(engine: Engine, regrading: Regrading, cursor: str | None) -> Re
 
 
 def apply_step(engine: Engine, regrading: Regrading, cursor: str | None) -> RegradeStep:
-    """Regrade some outdated attempts. Several processes may do so at once.
+    """Regrade some outdated attempts. Raises BadCursorError, StoreDownError.
 
-    The first step, without a cursor, puts all outdated attempts into the queue. Raises
-    BadCursorError, StoreDownError.
+    The first step has no cursor. Several processes may do this at once.
     """
     if cursor is not None:
         _read(cursor)

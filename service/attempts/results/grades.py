@@ -19,9 +19,9 @@ Counting = Literal["best", "last"]
 
 
 def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Counting]:
-    """Return a function that takes the id of an exercise and returns its rule, "best" or "last".
+    """Return a function that takes an exercise's id and returns its rule, "best" or "last".
 
-    The rule chooses the attempt that counts. An unknown id gets the default rule.
+    The rule chooses the attempt that counts for a learner.
     """
 
     def rule(exercise_id: str) -> Counting:
@@ -44,8 +44,7 @@ def graded_attempts(
 ) -> Iterator[GradedAttempt]:
     """Yield the wanted attempts, sorted by exercise, learner and time.
 
-    Of each learner and exercise, one of the wanted attempts counts. ``counting`` takes the id of an
-    exercise and returns the rule by which it is chosen.
+    ``counting`` takes the id of an exercise and returns the rule for the attempt that counts.
     """
     ordered = (
         select(*LISTED)
@@ -61,10 +60,6 @@ def graded_attempts(
 
 
 def _counting_attempt(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:
-    """Return the attempt that counts: the last one, or the first one with the most points.
-
-    Return None if no attempt counts.
-    """
     counted = [each for each in of_learner if each.ordinal is not None]
     if not counted:
         return None
@@ -76,9 +71,8 @@ def _counting_attempt(of_learner: Iterable[ListedAttempt], rule: Counting) -> Li
 def written(graded: Iterable[GradedAttempt], form: GradesFormat, title: str) -> Iterator[bytes]:
     """Yield the attempts in a format, line by line.
 
-    ``csv`` and ``jsonl`` have every attempt. ``canvas`` and ``moodle`` are gradebooks for these
-    platforms: they have only the attempts that count. For Canvas, ``title`` is the heading of the
-    points.
+    Gradebooks (``canvas``, ``moodle``) have only the attempts that count. ``title`` is the heading
+    of the points for Canvas.
     """
     match form:
         case GradesFormat.CSV:
@@ -104,10 +98,6 @@ _Value = str | float | bool | None
 
 
 def _values(graded: GradedAttempt) -> tuple[_Value, ...]:
-    """The exported values of an attempt, in the order of ``_FIELDS``.
-
-    If a tutor has given points, they replace the points of the report.
-    """
     each = graded.attempt
     return (
         each.exercise, each.learner, each.id, each.ordinal, each.at.isoformat(), each.is_late,
@@ -121,10 +111,7 @@ def _as_cell(value: _Value) -> str | float | None:
 
 
 def _canvas(counted: Iterable[ListedAttempt], title: str) -> Iterator[bytes]:
-    """Yield a gradebook for Canvas: the maximum points, then a line for each learner's login.
-
-    Source: Canvas, "How do I import grades in the Gradebook?".
-    """
+    # Source: Canvas, "How do I import grades in the Gradebook?".
     kept = list(counted)
     possible = max((each.max_points for each in kept), default=0.0)
     yield spreadsheet.line(("Student", "ID", "SIS User ID", "SIS Login ID", "Section", title))
@@ -134,7 +121,6 @@ def _canvas(counted: Iterable[ListedAttempt], title: str) -> Iterator[bytes]:
 
 
 def _moodle(counted: Iterable[ListedAttempt]) -> Iterator[bytes]:
-    """Yield a list of grades for Moodle, with the headings of the format ``gradebook``."""
     yield spreadsheet.line(spreadsheet.GRADEBOOK_HEAD)
     for each in counted:
         late = "late" if each.is_late else ""

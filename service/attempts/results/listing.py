@@ -28,7 +28,7 @@ _CURSOR: Final = re.compile(r"[0-9a-f]+\.[0-9a-f]+")
 
 
 def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
-    """Return the SQL condition of a filter."""
+    """Return the SQL condition for the attempts that a filter selects."""
     return and_(True, *_conditions(wanted))
 
 
@@ -56,7 +56,7 @@ def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
 
 @dataclass(frozen=True, slots=True)
 class AttemptHistory:
-    """All records of an attempt; ``submission`` and ``report`` are JSON.
+    """An attempt with all its records; ``submission`` and ``report`` are JSON.
 
     ``course`` is the course of the attempt's assignment, or None.
     """
@@ -92,7 +92,7 @@ def page(
 
 
 def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
-    """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
+    """Return an attempt with its answers, its reports, and points given by tutors, if known."""
     # PostgreSQL raises an error for some characters.
     if not attempt_id.isalnum():
         return None
@@ -121,12 +121,12 @@ BY_TIME: Final = (attempts.c.at, attempts.c.number)
 
 
 def earlier_than(place: TimePlace) -> ColumnElement[bool]:
-    """Return the SQL condition for attempts earlier than the one with this time and number."""
+    """Return the SQL condition for attempts before this time and number."""
     return tuple_(*BY_TIME) < _literal(place)
 
 
 def later_than(place: TimePlace) -> ColumnElement[bool]:
-    """Return the SQL condition for attempts later than the one with this time and number."""
+    """Return the SQL condition for attempts after this time and number."""
     return tuple_(*BY_TIME) > _literal(place)
 
 
@@ -136,16 +136,13 @@ def _literal(place: TimePlace) -> Tuple:
 
 
 def cursor_of(place: TimePlace) -> str:
-    """Return the cursor of a page of a list, made of the time and number of an attempt."""
+    """Write the time and number of an attempt as the cursor of a page."""
     at, number = place
     return f"{(at - _EPOCH) // _TICK:x}.{number:x}"
 
 
 def place_of(cursor: str) -> TimePlace:
-    """Return the time and number of the attempt that a cursor names.
-
-    Raises BadCursorError.
-    """
+    """Read the time and number of an attempt from a cursor. Raises BadCursorError."""
     if not _CURSOR.fullmatch(cursor):
         raise BadCursorError(cursor)
     try:

@@ -1,8 +1,7 @@
 """Recorded reports: JSON in English, with the sentences that can be translated.
 
-A recorded report begins with ``sentences``, a list of templates with their values; the rest is the
-report as it was sent. A sentence without values is not in the list, because its text is its
-template. Reports that older versions recorded without such a list stay in English.
+A recorded report begins with ``sentences``, a list of templates with their values. The rest is the
+report as it was sent.
 """
 
 import json
@@ -40,7 +39,7 @@ def recorded_report(report: Report) -> str:
 
 
 def shown_report(recorded: str, language: Language) -> str:
-    """Return a recorded report as JSON in a language; in English, byte by byte as it was sent."""
+    """Return a recorded report as JSON in a language."""
     sentences, text = _divided(recorded)
     translation = language.translation
     if translation is None or sentences is None:
@@ -55,13 +54,12 @@ def shown_report(recorded: str, language: Language) -> str:
 
 
 def sentence_in(report: Mapping[str, Any], text: str) -> str:
-    """Return the sentence that can be translated, given its English text in a recorded report."""
+    """Find the sentence that has this English text in a recorded report."""
     sentences = report.get("sentences")
     return text if sentences is None else _known(sentences)(text)
 
 
 def _divided(recorded: str) -> tuple[list[Any] | None, str]:
-    """Return the list of sentences in a recorded report, and the report without this list."""
     if not recorded.startswith(_START):
         return None, recorded
     sentences, end = _DECODER.raw_decode(recorded, len(_START))
@@ -80,7 +78,6 @@ def _known(sentences: list[Any]) -> Callable[[str], str]:
 
 
 def _written(sentence: Sentence) -> list[Any]:
-    """Return the template of a sentence, its values, and the template of its plural, if any."""
     values = {
         name: _written(value) if isinstance(value, Sentence) else value
         for name, value in sentence.values.items()

@@ -1,8 +1,4 @@
-"""The statistics of the attempts at an exercise.
-
-They are counted from outcomes (verdicts and message codes). Attempts with the same outcome share a
-row of the database, so this needs far less time than reading all reports.
-"""
+"""The statistics of the attempts at an exercise, counted from verdicts and message codes."""
 
 import json
 from collections import Counter, defaultdict
@@ -76,7 +72,6 @@ def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> Exerci
 
 
 def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Counter[str]]:
-    """Return the number of attempts by row id of their outcome, and by day (in UTC)."""
     is_postgresql = connection.dialect.name == "postgresql"
     # SQLite stores times as text that begins with the date; parsing it would take far longer.
     day: ColumnElement[str] = (
@@ -96,15 +91,12 @@ def _counts(connection: Connection, chosen: ColumnElement[bool]) -> dict[int, Co
 
 
 def _by_attempt(connection: Connection, chosen: ColumnElement[bool]) -> list[Counter[int]]:
-    """Return the number of learners by outcome: of their first attempts, their second, and so on.
-
-    An attempt in which nothing could be read is not counted.
-    """
     place = func.row_number().over(
         partition_by=attempts.c.learner, order_by=[attempts.c.at, attempts.c.number]
     )
     placed = (
         select(attempts.c.outcome, place.label("place"))
+        # An attempt in which nothing could be read has no ordinal.
         .where(chosen, attempts.c.ordinal.is_not(None))
         .subquery()
     )
@@ -124,7 +116,6 @@ def _curve(
     contents: Mapping[int, Mapping[str, Any]],
     slip: MisconceptionFigures,
 ) -> list[int]:
-    """Return how many learners have a misconception in their first attempt, second attempt, etc."""
     having = {
         number
         for number, content in contents.items()
@@ -159,8 +150,6 @@ class _RowCount:
 
 @dataclass(slots=True)
 class _PartCount:
-    """The counts of a part; ``detailed`` is the number of attempts whose report has table rows."""
-
     share: Share = field(default_factory=Share)
     detailed: int = 0
     rows: dict[str, _RowCount] = field(default_factory=lambda: defaultdict(_RowCount))
@@ -176,10 +165,6 @@ class _PartCount:
             self.rows[row].add(cells, times)
 
     def figures(self, name: str) -> PartFigures:
-        """Return the figures of the part and of its rows.
-
-        Rows that are in at most half of the reports are left out: a few students added them.
-        """
         rows = [
             RowFigures(
                 label=label,
@@ -187,6 +172,7 @@ class _PartCount:
                 cells=[CellFigures(label=cell, **_share(row.cells[cell])) for cell in row.cells],
             )
             for label, row in self.rows.items()
+            # A few students added the other rows.
             if 2 * row.seen > self.detailed
         ]
         return PartFigures(part=name, **_share(self.share), rows=rows)
@@ -221,7 +207,6 @@ def _commonest(
 def _newest_reports(
     connection: Connection, chosen: ColumnElement[bool], among: Set[int]
 ) -> dict[int, Any]:
-    """Return the newest report with each outcome; older reports may lack some messages."""
     newest = (
         select(func.max(attempts.c.number))
         .where(chosen, attempts.c.outcome.in_(among))
@@ -232,7 +217,6 @@ def _newest_reports(
 
 
 def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
-    """Return the first message with ``code`` in a part; None if the report has no such message."""
     told = (each for each in report["parts"] if each["part"] == part)
     texts = (each["message"] for each in _messages(told) if each["code"] == code)
     text = next(texts, None)
@@ -240,7 +224,6 @@ def _sentence(report: Mapping[str, Any], part: str, code: str) -> str | None:
 
 
 def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]]:
-    """Yield the messages of parts, rows or cells, including nested rows and cells."""
     for place in places:
         yield from place["feedback"]
         yield from _messages([*place.get("rows", ()), *place.get("cells", ())])
@@ -249,7 +232,6 @@ def _messages(places: Iterable[Mapping[str, Any]]) -> Iterator[Mapping[str, Any]
 def _identical(
     connection: Connection, chosen: ColumnElement[bool], contents: Mapping[int, Mapping[str, Any]]
 ) -> Iterator[IdenticalAnswers]:
-    """Yield the wrong answers that several learners sent with exactly the same text."""
     learners = func.count(attempts.c.learner.distinct())
     same = (
         select(attempts.c.outcome, attempts.c.answers_digest, learners, func.count())

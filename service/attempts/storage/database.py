@@ -44,8 +44,8 @@ _WHEN_SILENT: Final = {
 def open_database(url: str, *, create: bool = True) -> Engine:
     """Open the database at the URL and migrate it to the newest tables.
 
-    ``url`` is an SQLAlchemy URL (postgresql://…, sqlite:///…) or the path of an SQLite file. With
-    ``create``, a missing file is created. Raises UnusableDatabaseError.
+    ``url`` is an SQLAlchemy URL or the path of an SQLite file, which ``create`` allows to create.
+    Raises UnusableDatabaseError.
     """
     engine = unmigrated_database(url)
     is_sqlite = engine.dialect.name == "sqlite"
@@ -81,7 +81,7 @@ def migration_state(connection: Connection) -> tuple[str | None, str | None]:
 
 
 def unmigrated_database(url: str) -> Engine:
-    """Return the database at the URL as it is. Raises UnusableDatabaseError."""
+    """Open the database at the URL without a migration. Raises UnusableDatabaseError."""
     try:
         return _engine(url)
     except (ArgumentError, ValueError) as error:
@@ -140,11 +140,7 @@ def _set_up_sqlite(connection: Any, _: object) -> None:
 
 
 def _use_write_ahead_log(cursor: sqlite3.Cursor) -> None:
-    """Use a write-ahead log, so that readers need not wait for a writer.
-
-    SQLite does not wait for its lock here. If two processes open a new file at the same time,
-    SQLite refuses one of them at once, and this function tries again.
-    """
+    # SQLite does not wait for its lock here, so try again if another process has the file.
     until = time.monotonic() + _LOCK_WAIT
     while True:
         try:
@@ -165,7 +161,6 @@ def _begin_sqlite(connection: Connection) -> None:
 
 
 def _migrate(connection: Connection) -> None:
-    """Migrate the tables to the newest version, or create them in an empty database."""
     connection = connection.execution_options(writes=True)
     with _patient(connection), connection.begin():
         without_time_limit(connection)
@@ -180,7 +175,6 @@ def _migrate(connection: Connection) -> None:
 
 @contextmanager
 def _patient(connection: Connection) -> Iterator[None]:
-    """Let SQLite wait long for its lock: another process may be migrating a large table."""
     driver = connection.connection.driver_connection
     if connection.dialect.name != "sqlite" or driver is None:
         yield
@@ -194,7 +188,7 @@ def _patient(connection: Connection) -> Iterator[None]:
 
 
 def without_time_limit(connection: Connection) -> None:
-    """Remove the time limits of this transaction, which changes every row of a large table."""
+    """Remove the time limits of the connection's transaction."""
     if connection.dialect.name == "postgresql":
         for limit in ("lock_timeout", "statement_timeout"):
             connection.exec_driver_sql(f"SET LOCAL {limit} = 0")
@@ -216,7 +210,7 @@ def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
 
 
 def is_deadlock(error: Exception) -> bool:
-    """True if a deadlock in PostgreSQL ended the transaction, which can then be tried again."""
+    """True if PostgreSQL ended the transaction because of a deadlock."""
     return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
 
 
@@ -226,6 +220,6 @@ def safe_url(engine: Engine) -> str:
 
 
 def reason(error: SQLAlchemyError) -> str:
-    """The message of the database's driver in one line, without values of rows."""
+    """Return the database driver's message in one line, without values of rows."""
     said = str(getattr(error, "orig", None) or error).partition("\nDETAIL:")[0]
     return " ".join(said.split())[:300]

@@ -18,10 +18,7 @@ class MisplacedFileError(SQLAlchemyError):
 
 
 class DatabaseFile:
-    """Refuses connections and commits after the file of a database was deleted or replaced.
-
-    Otherwise SQLite would go on writing to the old file, and these writes would be lost.
-    """
+    """Refuses connections and commits after the file of a database was deleted or replaced."""
 
     def __init__(self, engine: Engine) -> None:
         self._path = Path()
@@ -32,7 +29,7 @@ class DatabaseFile:
         event.listen(engine, "commit", self._check)
 
     def note(self, connection: Connection) -> str:
-        """Remember the connection's file; return the path, or "" for a database in memory."""
+        """Remember the file of the connection. Return its path, or "" for a database in memory."""
         path: str = connection.exec_driver_sql("PRAGMA database_list").one()[2]
         if path:
             self._path = Path(path)
@@ -48,19 +45,16 @@ class DatabaseFile:
 
 
 def make_private(path: str) -> None:
-    """Create an empty file that only its owner can read, unless the file exists.
-
-    An empty file is an empty database. SQLite gives the files beside a database the same mode.
-    Errors are ignored: SQLite reports them when it opens the file.
-    """
+    """Create an empty file that only its owner can read, unless the file exists."""
+    # SQLite itself reports errors when it opens the file.
     with suppress(OSError):
         os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, _OWN))
 
 
 def copy_into(source: Path, target: Path) -> None:
-    """Copy an SQLite database into a new file, while others read and write it.
+    """Copy an SQLite database into a new file, which only its owner may read.
 
-    Only the owner may read the copy. Raises sqlite3.Error.
+    Other programs may read and write the database meanwhile. Raises sqlite3.Error.
     """
     make_private(str(target))
     uri = f"{source.absolute().as_uri()}?mode=ro"
@@ -69,10 +63,8 @@ def copy_into(source: Path, target: Path) -> None:
 
 
 def is_in_use(path: Path) -> bool:
-    """True if another program has the SQLite database open.
-
-    If no program has it open, its write-ahead log is written into the database.
-    """
+    """True if another program has the SQLite database open."""
+    # If no program has it open, closing writes the write-ahead log into the database.
     with closing(sqlite3.connect(path, timeout=0, isolation_level=None)) as connection:
         try:
             # In WAL mode every open connection holds a lock that excludes this one.

@@ -1,6 +1,5 @@
-"""Erase deleted rows from SQLite's write-ahead log.
+"""Erase deleted rows from SQLite's write-ahead log (the file ``-wal``).
 
-SQLite writes changes to a log beside the database, ``-wal``, and later to the database itself.
 Deleted rows stay in the log until it is truncated, which is possible only while nobody reads.
 """
 
@@ -20,7 +19,7 @@ _PAUSE: Final = 0.2
 
 
 def overwrite_deleted(engine: Engine, tries: int = _TRIES) -> bool | None:
-    """Truncate the log; return False if a reader prevents it.
+    """Truncate SQLite's write-ahead log; return False if a reader prevents it.
 
     Return None for PostgreSQL, which overwrites deleted rows by itself.
     """
@@ -40,10 +39,7 @@ def overwrite_deleted(engine: Engine, tries: int = _TRIES) -> bool | None:
 
 
 def finish_overwriting(engine: Engine) -> None:
-    """Truncate SQLite's log if possible.
-
-    The log may contain rows that this or another program has deleted.
-    """
+    """Truncate SQLite's write-ahead log if possible."""
     if engine.dialect.name != "sqlite":
         return
     with suppress(SQLAlchemyError, OSError):
@@ -55,6 +51,5 @@ def finish_overwriting(engine: Engine) -> None:
 
 
 def _truncate(connection: Connection) -> bool:
-    """Truncate the log; return False if a reader prevents it."""
     busy, _, _ = connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)").one()
     return not busy

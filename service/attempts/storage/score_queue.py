@@ -1,7 +1,7 @@
-"""Queue the scores that platforms must get: one row for each line item and learner.
+"""The queue of scores to be sent to learning platforms.
 
-A row is written in the transaction that changes the score. The sender reads the points only when it
-sends them, so that the last of several changes counts.
+A row belongs to a learner and a line item (a column of the platform's gradebook). Points are read
+when they are sent, so the last change counts.
 """
 
 import secrets
@@ -84,7 +84,7 @@ _QUEUE_ONE: Final = {name: _upsert(each, _OF_LEARNER) for name, each in _DIALECT
 def queue_score(
     connection: Connection, assignment: int | None, learner: str, priority: Priority
 ) -> None:
-    """Queue the score of a learner in an assignment, if a platform has a line item for it."""
+    """Queue the score of a learner in an assignment, if a platform has a column for it."""
     if assignment is not None:
         _queue(
             connection,
@@ -114,13 +114,10 @@ def queue_scores(
 
 
 def forget_scores(connection: Connection, learner: str) -> None:
-    """Queue the clearing of a learner's scores at platforms; a random name replaces the learner.
-
-    Rows whose score was never sent are deleted. The platform's id for the learner stays in the row
-    until the platform has cleared the score.
-    """
+    """Remove a learner from the queue: clear sent scores at platforms, delete all others."""
     mine = scores.c.learner == learner
     connection.execute(scores.delete().where(mine, scores.c.stamp.is_(None)))
+    # The platform's id of the learner stays until the platform has cleared the score.
     now = datetime.now(UTC)
     left = update(scores).where(mine)
     changed = connection.execute(

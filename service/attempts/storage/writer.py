@@ -1,4 +1,4 @@
-"""The writer thread. It writes waiting attempts together, so that they share one commit."""
+"""The thread that writes to the database. Attempts that wait share one commit."""
 
 import asyncio
 import logging
@@ -48,11 +48,9 @@ _Finished = tuple[_Job, Any, Exception | None]
 
 
 class AttemptWriter:
-    """Runs jobs on a connection, in the order of their arrival, many in one transaction.
+    """Runs jobs (functions that write) in order, many of them in one transaction.
 
-    A job gets its result only after the commit, when its changes are durable. If a transaction of
-    several jobs fails, each job is run again in its own transaction: a failing job does not affect
-    others.
+    A job gets its result only after the commit. A failing job does not affect others.
     """
 
     def __init__(self, engine: Engine, tidy: Callable[[], None] = lambda: None) -> None:
@@ -67,10 +65,7 @@ class AttemptWriter:
         self._thread.start()
 
     async def run(self, work: Callable[[Connection], R]) -> R:
-        """Return the result of ``work`` after its commit. Raises StoreDownError.
-
-        After an error nothing was written, unless only the database's reply to the commit was lost.
-        """
+        """Return the result of ``work`` after its commit. Raises StoreDownError."""
         begun_at = self._begun_at
         if begun_at is not None and monotonic() - begun_at > _TIMEOUT:
             raise StoreDownError(_SILENT)
@@ -109,11 +104,6 @@ class AttemptWriter:
                 self._tidy_at = monotonic() + _TIDY_INTERVAL
 
     def _waiting(self, gather: float) -> tuple[list[_Job], bool]:
-        """Wait for jobs; return them, and True if the writer was closed.
-
-        After the first job, wait ``gather`` seconds for other jobs. Return no jobs when the writer
-        must clean up, which it does once a minute.
-        """
         jobs: list[_Job] = []
         try:
             found = self._jobs.get(timeout=max(0.0, self._tidy_at - monotonic()))
@@ -153,7 +143,6 @@ class AttemptWriter:
 
 
 def _deliver(finished: list[_Finished]) -> None:
-    """Pass results and exceptions to the callers of the jobs, waking each event loop once."""
     by_loop: dict[asyncio.AbstractEventLoop, list[_Finished]] = defaultdict(list)
     for each in finished:
         by_loop[each[0].loop].append(each)

@@ -8,7 +8,7 @@ down_revision = "0003"
 
 
 def upgrade() -> None:
-    """Create the table. It gets its first row when a key is added with the current secret."""
+    """Create the table."""
     op.create_table(
         "key_secrets",
         sa.Column("id", sa.Integer, primary_key=True, autoincrement=False),

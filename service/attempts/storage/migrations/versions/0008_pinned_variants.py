@@ -1,4 +1,4 @@
-"""Store which numbers an assignment's variants may have.
+"""Store the numbers that the variants of an assignment may have.
 
 So a correction of the exercise file does not change the variants of learners.
 """
