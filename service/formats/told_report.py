@@ -19,11 +19,8 @@ def report_in(report: Report, language: Language) -> Report:
 
 
 def with_texts(report: Report, changed: ChangedText) -> Report:
-    """Apply ``changed`` to all sentences of the report, and return the new report.
-
-    Sentences are messages, corrections in words, and the reasons of lost points. Formulas and
-    labels do not change.
-    """
+    """Return a copy of the report, with ``changed`` applied to each of its sentences."""
+    # Sentences are messages, corrections in words, and the reasons of lost points.
     return replace(report, parts=tuple(_part(part, changed) for part in report.parts))
 
 
@@ -66,7 +63,6 @@ def _messages(messages: tuple[Feedback, ...], changed: ChangedText) -> tuple[Fee
 
 
 def _correction(correction: Correction | None, changed: ChangedText) -> Correction | None:
-    """Return a correction with changed text if it is in words; a formula stays as it is."""
     if correction is None or correction.latex is not None:
         return correction
     return replace(correction, text=changed(correction.text))

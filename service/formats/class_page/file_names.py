@@ -14,11 +14,8 @@ _RESERVED: Final = frozenset(
 
 
 def distinct_file_names(ending: str) -> Callable[[str], str]:
-    """Return a function that makes distinct file names for one folder.
-
-    The names keep only letters, digits, ``-`` and ``_``, so no name leads out of the folder. They
-    are distinct even on systems that ignore case or the form of accented letters.
-    """
+    """Return a function that makes distinct, safe file names for one folder."""
+    # The names are distinct even on systems that ignore case or the form of accented letters.
     used: set[str] = set()
 
     def distinct(name: str) -> str:

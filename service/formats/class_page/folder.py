@@ -17,10 +17,9 @@ Folder = Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]]
 
 
 def class_folder(page: Pages) -> Folder:
-    """Return a function that yields the files of a class; ``page`` writes a submission's page.
+    """Return a function that yields the files of a class's folder.
 
-    The function takes submissions one by one. It keeps only a line for each submission and the
-    counts for the index.
+    ``page`` writes the page of one submission.
     """
 
     def documents(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[Document]:

@@ -1,7 +1,4 @@
-"""The index of a class: scores, success, slips, identical mistakes, and all submissions.
-
-It is for tutors. It has no script: the browser itself folds long lists.
-"""
+"""The index of a class, for tutors: scores, success, identical mistakes, and all submissions."""
 
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
@@ -57,7 +54,6 @@ def _title(overview: Overview) -> str:
 
 
 def _part_titles(overview: Overview) -> Mapping[tuple[str, str], str]:
-    """Return the titles of parts, with the exercise's title if there are several exercises."""
     has_several = len(overview.exercises) > 1
     return {
         (each.id, part.id): f"{each.title}: {part.title}" if has_several else part.title
@@ -90,14 +86,12 @@ def _sentence_of(slip: CountedSlip) -> str:
 
 
 def _band_of(share: Share) -> str:
-    """Return the CSS class for the colour that shows a share."""
     if share.value is None:
         return "share-none"
     return f"share{sum(share.value >= low for low in _BANDS) - 1}"
 
 
 def _span_of(each: ScoreBin) -> str:
-    """Return the range of scores that a column of the histogram covers, in words."""
     low, high = f"{each.low * 100:.0f}", f"{each.high * 100:.0f}"
     if each.high == 1:
         return say("{low} to {high} %", low=low, high=high)
@@ -105,7 +99,6 @@ def _span_of(each: ScoreBin) -> str:
 
 
 def _bars_of(each: ScoreBin, highest: int) -> Iterator[tuple[str, str, str]]:
-    """Yield CSS class, top and height (per cent) of the bars for failed and passed scores."""
     tall, below = (100 * n / highest for n in (each.count, each.count - each.passed))
     for side, top, height in (("below", 100 - below, below), ("over", 100 - tall, tall - below)):
         if each.count and f"{height:.2f}" != "0.00":

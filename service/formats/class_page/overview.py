@@ -39,7 +39,7 @@ class Overview:
     _learners: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: GradedSubmission, page: str) -> None:
-        """Add a submission to the counts; its reports are not kept."""
+        """Count a submission, and add its line; its reports are not stored."""
         number = len(self.lines)
         self.pass_mark = submission.pass_mark
         self._learners[submission.learner] += 1
@@ -69,7 +69,7 @@ class Overview:
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:
-        """Return the learner's name, or the submission's name if the learner has several."""
+        """Return the learner's name, or the submission's if the learner has several submissions."""
         return line.learner if self._learners[line.learner] == 1 else line.name
 
     @property
@@ -79,10 +79,6 @@ class Overview:
 
 
 def _problems(submission: GradedSubmission) -> tuple[str, ...]:
-    """Return the distinct problems of a submission.
-
-    If there are several exercises, each problem follows the title of its exercise.
-    """
     has_several = len(submission.files) > 1
     told = (
         f"{file.exercise.title}: {file.problem}" if has_several else file.problem

@@ -23,9 +23,9 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
-    """Return the cells of a submission's line. If nothing was graded, the points are empty."""
     is_graded = submission.is_graded
     results = part_results(submission, setting.language)
+    # If nothing was graded, the points are empty.
     return [
         submission.name,
         submission.points if is_graded else None,
@@ -39,7 +39,6 @@ def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float |
 
 
 def _codes(part: PartReport) -> list[str]:
-    """Return the distinct codes of the part's messages, each as ``part.code``."""
     found = (message.code for message, _, _ in messages_of(part) if message.severity in _COUNTED)
     return [f"{part.part}.{code}" for code in dict.fromkeys(found)]
 

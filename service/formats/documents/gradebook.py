@@ -1,7 +1,4 @@
-"""Grades for the gradebook of a course: one line for each learner, with Moodle's headings.
-
-When Moodle, Canvas and others import the file, they let the user assign its columns.
-"""
+"""Grades for the gradebook of a course: one line for each learner, with Moodle's headings."""
 
 from collections.abc import Iterable, Iterator
 from typing import Final
@@ -20,10 +17,10 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
-    """Return the cells of a learner's line. An empty grade keeps the old grade on import."""
     parts = (f"{each.name}: {_earned(each)}" for each in part_results(submission, setting.language))
     return [
         submission.learner,
+        # On import, an empty grade keeps the old grade.
         submission.points if submission.is_graded else None,
         submission.max_points,
         "; ".join(parts),

@@ -52,7 +52,6 @@ def _page(
 
 
 def _columns_of(rows: Sequence[RowReport]) -> list[str]:
-    """Return the labels of the cells of the longest row."""
     return [cell.label for cell in max((row.cells for row in rows), key=len)]
 
 

@@ -20,15 +20,12 @@ def rendered(report: Report, *, indent: int | None = None) -> bytes:
 
 
 def read_report(content: bytes) -> Report:
-    """Return the report in JSON that ``rendered`` made. Raises pydantic.ValidationError."""
+    """Parse a report from the JSON that ``rendered`` made. Raises pydantic.ValidationError."""
     return _REPORT.validate_json(content)
 
 
 def entries(submissions: Iterable[GradedSubmission]) -> Iterator[bytes]:
-    """Yield a line of JSON for each file, with its report, its error, or both.
-
-    An entry with both has a report on the usable part of a submission.
-    """
+    """Yield a line of JSON for each file, with its report, its error, or both."""
     for submission in submissions:
         for file in submission.files:
             yield printable(_entry(submission, file))
@@ -49,7 +46,7 @@ def _entry(submission: GradedSubmission, file: GradedFile) -> bytes:
 
 
 def _encodable(text: str) -> str:
-    """Return the text as valid Unicode. Names of files may have bytes that are not UTF-8."""
+    # Names of files may have bytes that are not UTF-8.
     return text.encode("utf-8", "replace").decode()
 
 

@@ -19,7 +19,6 @@ _ALIGNED: Final = "|---|--:|--:|:-:|\n"
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
-    """Yield a table of all submissions, then the parts of each submission."""
     details = []
     head = " | ".join(told(each, setting.language.translation) for each in _HEAD)
     yield f"| {head} |\n{_ALIGNED}".encode()

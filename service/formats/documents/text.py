@@ -1,6 +1,6 @@
 """A report for the terminal: each part as a table with its messages, and a total.
 
-Signs carry the meaning, not colours, so the report can also be read without colours.
+Signs carry the meaning, so the report can also be read without colours.
 """
 
 from collections.abc import Iterable, Iterator, Mapping
@@ -50,7 +50,6 @@ _BLANK: Final[StyledText] = ("", "")
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
-    """Yield each report, or one line for each submission of a class, then a summary."""
     rest = iter(submissions)
     first = tuple(islice(rest, _IN_FULL + 1))
     are_several = len(first) > 1 or any(len(each.files) > 1 for each in first)
@@ -99,7 +98,6 @@ def _write_submission(
 
 
 def _print_indented(line: Text, console: Console) -> None:
-    """Print a line of the summary; a long line continues below, indented."""
     width = min(console.width, _WIDEST)
     if line.cell_len <= width:
         console.print(line)
@@ -112,13 +110,11 @@ def _print_indented(line: Text, console: Console) -> None:
 
 
 def write(report: Report, console: Console, translation: Translation | None = None) -> None:
-    """Print the report; replace the signs by ASCII if the console's encoding lacks them."""
+    """Print the report; replace signs that the console's encoding lacks by ASCII."""
     _Page(console, translation).report(report)
 
 
 class _Page:
-    """One report on one console."""
-
     def __init__(self, console: Console, translation: Translation | None) -> None:
         self._console = console
         self._translation = translation
@@ -173,7 +169,6 @@ class _Page:
         self._console.print(_as_they_are(lines, self._console))
 
     def _table(self, part: PartReport) -> AlignedTable:
-        """Return a table with the signs of the cells and the points of each row."""
         widest = max((row.cells for row in part.rows), key=len)
         columns = [AlignedColumn(cell.label, "center") for cell in widest]
         rows = [
@@ -195,7 +190,6 @@ class _Page:
         )
 
     def _read(self, part: PartReport) -> AlignedTable:
-        """Return a table that shows how each entry was read."""
         widest = max((row.cells for row in part.rows), key=len)
         columns = [
             AlignedColumn(self._told(_READ)),
@@ -212,7 +206,6 @@ class _Page:
         return AlignedTable(columns, rows, "bold")
 
     def _message(self, message: Message) -> Iterator[Text]:
-        """Yield the lines of a message, indented to the right of its sign."""
         costs = message.severity is Severity.ERROR
         mark = self._mark(message.verdict) if costs else (message.label, "cyan")
         places = f"{message.places}: " if message.places else ""
@@ -229,7 +222,6 @@ class _Page:
             yield Text.assemble(" " * first.cell_len, line)
 
     def _marks(self, text: str) -> Iterator[Text]:
-        """Yield the lines of a text on lost points, indented like the messages."""
         shown = Text(text.translate(_ASCII_MARKS) if self._ascii else text)
         for line in shown.wrap(self._console, self._width - 2 * _INDENT):
             yield Text.assemble(" " * 2 * _INDENT, line)
@@ -249,10 +241,7 @@ class _Page:
 
 
 def _as_they_are(lines: Iterable[Text], console: Console) -> Segments:
-    """Return the lines and an empty line as one renderable.
-
-    Printing each line separately takes five times as long.
-    """
+    # Printing each line separately takes five times as long.
     return Segments(segment for line in [*lines, Text()] for segment in line.render(console, "\n"))
 
 

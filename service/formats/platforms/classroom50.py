@@ -45,10 +45,6 @@ def _document(submission: GradedSubmission, setting: Setting) -> bytes:
 
 
 def _identity(environment: Mapping[str, str]) -> dict[str, str]:
-    """Return the identity of the submission from the runner's variables.
-
-    Raises UnusableSettingError if a variable is missing.
-    """
     found = {field: _first(environment, names) for field, names in _FIELDS.items()}
     lacking = [_FIELDS[field][0] for field, value in found.items() if not value]
     if lacking:

@@ -42,7 +42,6 @@ def _total(submission: GradedSubmission, translation: Translation | None) -> str
 
 
 def _tasks(submission: GradedSubmission) -> Iterator[str]:
-    """Yield the texts of the student's variants: the platform has no page with them."""
     for file in submission.files:
         yield from map(visible, file.exercise.task)
 

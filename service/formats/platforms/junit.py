@@ -51,7 +51,6 @@ def _case(result: PartResult, suite: str) -> Element:
 
 
 def _failure(result: PartResult) -> Element:
-    """Return a ``failure`` element, or an ``error`` if the part could not be read."""
     is_unread = result.verdict is Verdict.UNREADABLE
     failure = _element(
         "error" if is_unread else "failure",
@@ -63,7 +62,7 @@ def _failure(result: PartResult) -> Element:
 
 
 def _element(tag: str, *children: Element, **attributes: str) -> Element:
-    """Return an element; replace invisible characters in its attributes: XML may forbid them."""
+    # XML may forbid invisible characters.
     made = Element(tag, {name: visible(value) for name, value in attributes.items()})
     made.extend(children)
     return made

@@ -46,7 +46,6 @@ def _test(result: PartResult) -> dict[str, Any]:
 
 
 def _not_gradable(results: list[PartResult]) -> dict[str, Any]:
-    """Return the result of an unreadable submission, with each reason once."""
     lines = (
         line if each.report is None else f"{each.name}: {line}"
         for each in results

@@ -1,1 +1,1 @@
-"""What several formats share: submissions with their reports, messages in words, escaping."""
+"""Helpers of several formats: submissions with their reports, messages in words, escaping."""

@@ -33,7 +33,7 @@ class AlignedColumn:
 
 @dataclass(frozen=True, slots=True)
 class AlignedTable:
-    """A table without lines; each of ``rows`` has a cell for each of the ``columns``."""
+    """A table of short texts without lines; each row has a cell for each column."""
 
     columns: Sequence[AlignedColumn]
     rows: Sequence[Sequence[StyledText]]

@@ -22,12 +22,13 @@ _NOT_PASSED: Final = say("not passed")
 
 
 def result_line(submission: GradedSubmission, translation: Translation | None) -> Text:
-    """Return a line about one submission. The name is at the end, because it may be long."""
+    """Return a line about one submission."""
     name = visible(submission.name)
     words = [told(each, translation) for each in (_NOT_GRADED, _PASSED, _NOT_PASSED)]
     width = max(map(cell_len, words))
     not_graded, passed, not_passed = (set_cell_size(each, width) for each in words)
     if not submission.is_graded:
+        # The name is at the end, because it may be long.
         return Text.assemble((not_graded, "magenta"), " " * 23, name)
     verdict = (passed, "green") if submission.passed else (not_passed, "red")
     earned = points(submission.points, submission.max_points)
@@ -48,7 +49,7 @@ def pass_line(submission: GradedSubmission, translation: Translation | None) -> 
 
 
 class ClassSummary:
-    """A summary of submissions that are added one by one; none of them is kept."""
+    """Counts submissions one by one, and summarizes them in a few lines."""
 
     def __init__(self, translation: Translation | None = None) -> None:
         self._translation = translation
@@ -93,10 +94,6 @@ class ClassSummary:
         return told(text, self._translation)
 
     def _listed(self, heading: str, slips: Sequence[CountedSlip]) -> Iterator[Text]:
-        """Yield one heading, and then one line for each slip.
-
-        A line has the number of submissions with the slip, the message, its code and the parts.
-        """
         if slips:
             yield Text()
             yield Text(self._told(heading), "bold")

@@ -14,7 +14,7 @@ _ROUNDED = 5e-7
 
 @dataclass(frozen=True, slots=True)
 class AnsweredPart:
-    """A part (one question) of an assigned exercise; the student need not have answered it."""
+    """A part (one question) of an assigned exercise, with or without an answer."""
 
     id: str
     title: str
@@ -23,20 +23,17 @@ class AnsweredPart:
 
 @dataclass(frozen=True, slots=True)
 class AnsweredExercise:
-    """An assigned exercise, with the facts that formats need.
-
-    ``worth`` is the exercise's points in a submission: the points of its parts, unless an
-    assignment gives the exercise another weight. ``symbols`` are the names that the exercise
-    declares, if they are known. ``task`` has the paragraphs of a variant's texts, because the
-    student may have these texts nowhere else.
-    """
+    """An assigned exercise, with the facts that formats need."""
 
     id: str
     title: str
     source: str
     parts: tuple[AnsweredPart, ...]
+    # The exercise's points in a submission; an assignment may change them.
     worth: float
+    # The names that the exercise declares, if they are known.
     symbols: frozenset[str] = frozenset()
+    # The paragraphs of a variant's texts: the student may have these texts nowhere else.
     task: tuple[str, ...] = ()
 
     @property
@@ -48,7 +45,7 @@ class AnsweredExercise:
 def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExercise:
     """Return an exercise with the facts that formats need.
 
-    ``worth`` is by default the sum of the points of the parts.
+    ``worth`` is its number of points, by default the sum of the points of its parts.
     """
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
@@ -60,7 +57,6 @@ def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExerc
 
 
 def _task(exercise: Exercise) -> tuple[str, ...]:
-    """Return the title, the paragraphs of the statement, and the prompts."""
     prompts = (f"{part.id}: {part.title}. {part.prompt}" for part in exercise.parts)
     paragraphs = (exercise.title, *exercise.statement.split("\n\n"), *prompts)
     return tuple(" ".join(each.split()) for each in paragraphs)
@@ -73,17 +69,14 @@ def is_answered(report: Report) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class GradedFile:
-    """A file with its report, or with the problem that prevents a report.
+    """A file with its report, or with the problem that prevents a full report."""
 
-    If both exist, only a part of the submission could be used. ``file`` is the path of the file,
-    and ``names`` are the names that the student gave the files, without what a platform adds.
-    ``file`` and ``names`` are empty if there is no file for the exercise.
-    """
-
+    # The path of the file; empty if there is no file for the exercise.
     file: str
     exercise: AnsweredExercise
     report: Report | None
     problem: str = ""
+    # The names that the student gave the files, without the additions of a platform.
     names: tuple[str, ...] = ()
 
     @property

@@ -1,11 +1,8 @@
 """HTML from Jinja2 templates that escape every text.
 
-A template is named by its path below ``service/``. Every value that a template prints becomes one
-visible line and is escaped, unless it is HTML that the service itself made (``own_html``).
-
-Each language has its own Jinja2 environment. In its templates, ``{% trans %}`` prints HTML of the
-language's catalogue, and ``_("…")`` prints a text of the catalogue. A ``Sentence`` is printed in
-the language.
+A template is named by its path below ``service/``. Only HTML that the service itself made
+(``own_html``) is not escaped. Each language has its own Jinja2 environment, which translates ``{%
+trans %}``, ``_("…")`` and each ``Sentence``.
 """
 
 import base64
@@ -45,30 +42,25 @@ class StyleSheet:
 
 
 def html(template: str, /, *, language: Language = ENGLISH, **values: object) -> bytes:
-    """Return the document that a template makes in a language, in UTF-8."""
+    """Fill in a template in a language; return the document in UTF-8."""
     return environment(language).get_template(template).render(values).encode()
 
 
 def html_pieces(
     template: str, /, *, language: Language = ENGLISH, **values: object
 ) -> Iterator[bytes]:
-    """Yield the document that a template makes, piece by piece. Values may be iterators."""
+    """Fill in a template in a language, piece by piece. Values may be iterators."""
     for piece in environment(language).get_template(template).generate(values):
         yield piece.encode()
 
 
 def own_html(text: str) -> Markup:
-    """Return HTML that templates do not escape. The service itself must have made it.
-
-    There are five such texts: style sheets, statements (``statement_html``), formulas in MathML
-    (``formula_html``, ``formula``), texts with names in MathML (``typeset``), and texts of
-    templates in a language (``_filled``).
-    """
+    """Mark a text as HTML of the service itself, which templates do not escape."""
     return Markup(text)
 
 
 def style_sheet(file: Path) -> StyleSheet:
-    """Return the style of all reports, followed by the style in ``file``."""
+    """Return the style sheet of all reports, followed by the style in ``file``."""
     style = _SHARED_STYLE.read_text(encoding="utf-8") + file.read_text(encoding="utf-8")
     digest = base64.b64encode(hashlib.sha256(style.encode()).digest()).decode()
     return StyleSheet(own_html(style), f"sha256-{digest}")
@@ -80,23 +72,23 @@ def lines(text: str) -> Markup:
 
 
 def typeset(text: object, symbols: Container[str] = ()) -> Markup:
-    """Return the visible text as HTML with its names in MathML."""
+    """Return the text as HTML, with its symbols as MathML."""
     return own_html(names.typeset(visible(str(text)), symbols))
 
 
 def in_unicode(text: str, symbols: Container[str] = ()) -> str:
-    """Return the text with its names in Unicode, for the title of a page."""
+    """Return the text with its symbols in Unicode, for the title of a page."""
     return names.in_unicode(text, symbols)
 
 
 def formula(text: str) -> Markup:
-    """Return a formula in MathML, or as visible text if it is unreadable."""
+    """Return a formula as MathML, or as plain text if it is unreadable."""
     return own_html(formulas.formula(visible(text)))
 
 
 @cache
 def environment(language: Language = ENGLISH) -> "Environment":
-    """Return the Jinja2 environment of a language; it compiles each template once in a process."""
+    """Return the Jinja2 environment of a language; in a process, it compiles each template once."""
     # Imported here, so that a program that writes no HTML starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 
@@ -139,20 +131,16 @@ def environment(language: Language = ENGLISH) -> "Environment":
 
 
 def _finalize(language: Language, value: object) -> str:
-    """Return a printed value unchanged if it is HTML, otherwise as visible text."""
     if isinstance(value, Markup):
         return value
     return visible(_told(value, language))
 
 
 def _told(value: object, language: Language) -> str:
-    """Return a sentence in the language, or the text of another value."""
     return told(value, language.translation) if isinstance(value, str) else str(value)
 
 
 def _telling(shown: Callable[..., str], language: Language) -> Callable[..., str]:
-    """Return a filter that translates a sentence into the language, then applies ``shown``."""
-
     def filtered(text: object, symbols: Container[str] = ()) -> str:
         return shown(_told(text, language), symbols)
 
@@ -160,19 +148,16 @@ def _telling(shown: Callable[..., str], language: Language) -> Callable[..., str
 
 
 def _text(language: Language, text: str, /, **values: object) -> Markup:
-    """Translate a text of a template, escape it, and fill in ``values``."""
     return _filled(escape(_translated(language, text)), language, values)
 
 
 def _markup(language: Language, text: str, /, **values: object) -> Markup:
-    """Translate HTML of a template, and fill in ``values``."""
     return _filled(_translated(language, text), language, values)
 
 
 def _counted_markup(
     language: Language, one: str, many: str, count: int, /, **values: object
 ) -> Markup:
-    """Translate HTML of a template, in the plural form for ``count``; fill in ``values``."""
     translation = language.translation
     if translation is None:
         chosen = one if count == 1 else many
@@ -186,5 +171,4 @@ def _translated(language: Language, text: str) -> str:
 
 
 def _filled(text: str, language: Language, values: Mapping[str, object]) -> Markup:
-    """Return HTML from a template or from the language's catalogue, with escaped values."""
     return own_html(text) % {name: _finalize(language, each) for name, each in values.items()}

@@ -27,7 +27,7 @@ def escaped(text: str) -> str:
 
 
 def sentence(text: str) -> str:
-    """Return Markdown for the text of a message, where pairs of backticks enclose code."""
+    """Return the text of a message as Markdown; text between backticks becomes code."""
     # Code contains no markup, and no backtick that could end it early.
     told = (f"`{piece}`" if is_code else escaped(piece) for piece, is_code in code_pieces(text))
     # Separate two adjacent pieces of code, which would be read as one.

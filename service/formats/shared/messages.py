@@ -56,20 +56,19 @@ _RESULTS: Final = (YOURS, EXPECTED)
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A message as visible texts of one line each.
-
-    ``verdict`` is the verdict on the place. For an error, ``label`` is the sign of this verdict;
-    otherwise, ``label`` is the name of the severity. ``places`` names the rows and cells, ``text``
-    is the message itself, ``offers`` says what to write instead, and ``example`` is a
-    counterexample; all but ``text`` may be empty.
-    """
+    """A message as visible texts of one line each."""
 
     severity: Severity
+    # The verdict on the place of the message.
     verdict: Verdict
+    # For an error, the sign of the verdict; otherwise the name of the severity.
     label: str
+    # The rows and cells; may be empty.
     places: str
     text: str
+    # What to write instead; may be empty.
     offers: str
+    # A counterexample; may be empty.
     example: str
 
     @property
@@ -100,14 +99,11 @@ def messages(part: PartReport, translation: Translation | None = None) -> Iterat
 def marks(
     part: PartReport, weight: float = 1.0, translation: Translation | None = None
 ) -> list[str]:
-    """Return a line with the lost points and their places, such as ``−0.5: α in row 2``.
-
-    A second line says why a row of zeros earned little. Missing and unreadable answers are left
-    out, because a message already reports them.
-    """
+    """Return lines about lost points and their places, such as ``−0.5: α in row 2``."""
     lost = [
         f"−{number(each.points * weight)}: {told(each.message, translation)}"
         for each in part.lost
+        # A message already reports missing and unreadable answers.
         if each.code not in (NO_ANSWER, NOT_READ)
     ]
     notes = [told(part.little_worth.message, translation)] if part.little_worth else []
@@ -139,8 +135,7 @@ def _message(
 def places_in_words(places: Iterable[Place], rows: Sequence[RowReport] = ()) -> str:
     """Return places in words, such as ``row 1 d, theta; rows 2, 3``.
 
-    ``rows`` are the rows of the part. If the places include all cells of a row, only the row is
-    named.
+    ``rows`` are the rows of the part.
     """
     complete = {row.label: [cell.label for cell in row.cells] for row in rows}
     cells: dict[str, list[str]] = {}
@@ -180,14 +175,12 @@ def _columns(labels: Sequence[str]) -> str:
 
 
 def _suggestion(feedback: Feedback) -> str:
-    """Return a question that offers the repaired text; empty if there is none."""
     if feedback.suggestion is None:
         return ""
     return say("Did you mean {suggestion}?", suggestion=feedback.suggestion)
 
 
 def _correction(feedback: Feedback, rows: Sequence[RowReport]) -> str:
-    """Return the correction of a message, and the corrections of its places, in sentences."""
     found = [] if feedback.correction is None else [_in_words(feedback.correction)]
     at: dict[Correction, list[Place]] = {}
     for place in feedback.places or ():
@@ -211,7 +204,6 @@ def _in_words(correction: Correction) -> str:
 
 
 def _counterexample(values: Mapping[str, float | str]) -> str:
-    """Return ``(with q1 = 0.4, yours gives 1.2, not 0.9)`` from the values of one sample."""
     at = ", ".join(f"{name} = {value}" for name, value in values.items() if name not in _RESULTS)
     yours, right = str(values.get(YOURS, "")), str(values.get(EXPECTED, ""))
     if not yours:

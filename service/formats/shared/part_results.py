@@ -25,26 +25,24 @@ LONGEST: Final = 600
 
 @dataclass(frozen=True, slots=True)
 class PartResult:
-    """The result of one part (question) of an assigned exercise.
+    """The result of one part (question) of an assigned exercise."""
 
-    ``report`` is None if the file could not be graded. ``name`` is one line, and unique in the
-    submission. Points are on the scale of the submission. Texts are in ``language``.
-    """
-
+    # One line, unique in the submission.
     name: str
     file: GradedFile
     part: AnsweredPart
+    # None if the file could not be graded.
     report: PartReport | None
     language: Language = ENGLISH
 
     @property
     def points(self) -> float:
-        """Return the points earned."""
+        """Return the points earned, on the scale of the submission."""
         return rounded_points(self.report.points * self.file.weight) if self.report else 0.0
 
     @property
     def max_points(self) -> float:
-        """Return the maximum points."""
+        """Return the maximum points, on the scale of the submission."""
         return rounded_points(self.part.points * self.file.weight)
 
     @property
@@ -90,7 +88,7 @@ class PartResult:
         return list(first_lines(lines, MESSAGES_TOLD, self.language.translation))
 
     def lines(self) -> list[str]:
-        """Return the lines of the messages, then the lines about lost points."""
+        """Return all lines: first the messages, then the lost points."""
         return [*self.message_lines(), *self.marks()]
 
 
@@ -116,7 +114,6 @@ def _title(part: AnsweredPart, file: GradedFile) -> str:
 
 
 def _reports(file: GradedFile) -> Iterator[tuple[AnsweredPart, PartReport | None]]:
-    """Yield the assigned parts of a file with their reports."""
     reports = {report.part: report for report in (file.report.parts if file.report else ())}
     return ((part, reports.get(part.id)) for part in file.exercise.parts)
 

@@ -15,10 +15,7 @@ _UNBROKEN: Final = "\u00a0\u202f"
 
 
 def visible(text: str) -> str:
-    """Return the text in one line, without invisible characters.
-
-    Signs that start a command in the log of a build, such as ``##[``, are separated by a blank.
-    """
+    """Return the text in one line, without invisible characters."""
     if not text.isprintable():
         text = "".join(
             c if c.isprintable() or c in _UNBROKEN else "\N{REPLACEMENT CHARACTER}" for c in text
@@ -27,12 +24,10 @@ def visible(text: str) -> str:
 
 
 def code_pieces(text: str) -> list[tuple[str, bool]]:
-    """Return the visible text in pieces, each with True if it is code between backticks.
-
-    A text with an odd number of backticks has no code.
-    """
+    """Divide a text at its backticks; each piece has True if it is code."""
     pieces = visible(text).split("`")
     if len(pieces) % 2 == 0:
+        # With an odd number of backticks, nothing is code.
         return [(visible(text), False)]
     return [(piece, bool(i % 2)) for i, piece in enumerate(pieces) if piece]
 
@@ -45,7 +40,7 @@ def shortened(text: str, most: int) -> str:
 def first_lines(
     lines: Iterable[str], most: int, translation: Translation | None = None
 ) -> Iterator[str]:
-    """Yield the first ``most`` lines, then a line with the number of the other lines."""
+    """Yield the first ``most`` lines, then a line with the number of omitted lines."""
     left = 0
     for i, line in enumerate(lines):
         if i < most:
@@ -62,7 +57,7 @@ def points_in_words(earned: float, most: float, translation: Translation | None 
 
 
 def points(earned: float, most: float) -> str:
-    """Return points such as ``1.5 / 2``; they are never rounded up to the maximum."""
+    """Return points such as ``1.5 / 2``. They are never rounded up to the maximum."""
     shown = number(earned)
     if earned < most and shown == number(most):
         shown = number(int(earned * 100) / 100)
@@ -70,7 +65,7 @@ def points(earned: float, most: float) -> str:
 
 
 def percent(score: float) -> str:
-    """Return a score, 0..1, in per cent, such as ``87.5 %``. It is rounded down."""
+    """Return a score, 0..1, in per cent, such as ``87.5 %``, rounded down."""
     return f"{int(score * 1000 + 1e-6) / 10:g} %"
 
 
@@ -80,7 +75,7 @@ def whole_percent(share: float) -> str:
 
 
 def whole_score(score: float) -> str:
-    """Return a score, 0..1, in whole per cent, such as ``87 %``. It is rounded down."""
+    """Return a score, 0..1, in whole per cent, such as ``87 %``, rounded down."""
     return f"{int(score * 100 + 1e-6)} %"
 
 

@@ -1,4 +1,4 @@
-"""The type of report formats, and the setting in which they write."""
+"""The type of report formats, and what a format needs besides the submissions."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
@@ -14,23 +14,22 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """The input of a format besides the submissions.
+    """What a format needs besides the submissions, such as the language and the time."""
 
-    ``exercises`` are the assigned exercises in order. ``console`` has the width, colours and
-    encoding of the output. ``now`` is the time in UTC. ``environment`` has the environment
-    variables, in which platforms describe the submission. ``language`` is the reports' language.
-    """
-
+    # The assigned exercises in order.
     exercises: tuple[AnsweredExercise, ...]
+    # The width, colours and encoding of the output.
     console: "Console"
+    # In UTC.
     now: datetime
+    # The environment variables, in which platforms describe the submission.
     environment: Mapping[str, str] = field(default_factory=dict)
     visibility: Visibility = Visibility.VISIBLE
     language: Language = ENGLISH
 
 
 class UnusableSettingError(ValueError):
-    """A format cannot write in this setting; the text gives the reason."""
+    """A format cannot write its document; the text gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,33 +42,30 @@ class Document:
 
 @dataclass(frozen=True, slots=True)
 class ReportFormat:
-    """A report format.
+    """A report format: a function that writes submissions, and its properties."""
 
-    - ``pieces`` takes submissions one by one and yields the document piece by piece. It decides no
-      points and no verdicts. It may raise UnusableSettingError before its first piece.
-    - ``is_single``: a document holds exactly one submission.
-    - ``is_stream``: the first pieces are useful before the others are written.
-    - ``for_students``: students read the document, so by default it shows no more than the
-      exercise allows.
-    - ``shows_entries``: it shows how each cell was read.
-    - ``folder`` writes several submissions as files of one folder. Each file must be written before
-      the next file is taken.
-    """
-
+    # Takes submissions one by one and yields the document piece by piece. It decides no points and
+    # no verdicts. It may raise UnusableSettingError before its first piece.
     pieces: Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
+    # A document holds exactly one submission.
     is_single: bool = False
+    # The first pieces are useful before the others are written.
     is_stream: bool = False
+    # Students read the document, so by default it shows no more than the exercise allows.
     for_students: bool = False
+    # The document shows how each cell was read.
     shows_entries: bool = False
+    # Writes several submissions as files of one folder. Each file must be written before the next
+    # file is taken.
     folder: Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]] | None = None
 
 
 def single(
     document: Callable[[GradedSubmission, Setting], bytes],
 ) -> Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]:
-    """Make the function ``pieces`` of a format from a function that writes one submission.
+    """Return a format's function ``pieces``, made from a function that writes one submission.
 
-    The result raises UnusableSettingError for any other number of submissions.
+    It raises UnusableSettingError for any other number of submissions.
     """
 
     def pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
