@@ -27,7 +27,7 @@ _SAME_NUMBER: Final = 1e-9
 
 
 def model_answer(exercise: Exercise) -> Iterator[Remark]:
-    """Yield a failure for each part whose model answer lacks full marks in one angle unit."""
+    """Yield a failure for each part in which the model answer does not get full marks."""
     answers = solve(exercise).answers
     fields = {part.id: f"parts[{i}]" for i, part in enumerate(exercise.parts)}
     too_long = [part for part, answer in answers.items() if _longest(answer) > LIMITS.characters]
@@ -60,7 +60,6 @@ def model_answer(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _longest(answer: object) -> float:
-    """The number of characters of the longest entry of an answer."""
     match answer:
         case None:
             return math.inf
@@ -72,7 +71,7 @@ def _longest(answer: object) -> float:
 
 
 def failed_checks(exercise: Exercise) -> Iterator[Remark]:
-    """Yield a failure for each check whose answer does not get the expected result."""
+    """Yield a failure for each check (an answer with its expected result) that fails."""
     for i, check in enumerate(exercise.checks):
         reports = _graded(exercise, check.answers, check.angle_unit)
         for part, problem in _problems(check, reports):
@@ -83,7 +82,7 @@ def failed_checks(exercise: Exercise) -> Iterator[Remark]:
 
 
 def missing_checks(exercise: Exercise) -> Iterator[Remark]:
-    """Yield a warning if the file has too few checks of a kind."""
+    """Yield a warning if the file has too few checks (answers with their expected result)."""
     kinds = Counter[str](check.kind for check in exercise.checks)
     short = [kind for kind, wanted in WANTED.items() if kinds[kind] < wanted]
     if short:
@@ -145,7 +144,7 @@ def _differences(expected: ExpectSpec, report: PartReport) -> Iterator[str]:
 
 
 def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
-    """Yield one warning for each group of parts with the same right answer."""
+    """Yield a warning for each group of parts with the same right answer."""
     pairs = list(combinations(exercise.parts, 2))
     if not any(_task(one) == _task(other) for one, other in pairs):
         return
@@ -175,7 +174,6 @@ def duplicate_parts(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _task(part: PartSpec) -> dict[str, object]:
-    """The fields that define the task, except formulas and frames, which are compared by value."""
     return part.model_dump(exclude={*PosePartSpec.model_fields, *part.answer_fields})
 
 
@@ -191,13 +189,11 @@ def _equal(one: PartSpec, other: PartSpec, answers: dict[str, object], exercise:
 def _graded(
     exercise: Exercise, answers: Mapping[str, object], angle_unit: AngleUnit = "radians"
 ) -> dict[str, PartReport]:
-    """Grade answers; return the report on each part by its id."""
     submission = Submission(answers, angle_unit, FeedbackLevel.FULL)
     return {part.part: part for part in grade(exercise, submission).parts}
 
 
 def _in_words(report: PartReport) -> str:
-    """The verdict, the points and one message of a part, for a remark."""
     # Prefer a message on a single cell: it says more than one on the whole part.
     message = next((each.message for each, *_ in reversed([*messages_of(report)])), "")
     result = say(

@@ -33,7 +33,7 @@ def examine(exercise: Exercise) -> list[Remark]:
 
 
 def failures(exercise: Exercise) -> list[str]:
-    """Return what is wrong with an exercise, in sentences; warnings are left out."""
+    """Return the failures of an exercise as sentences, without the warnings."""
     return [
         joined(": ", [remark.field, remark.text]) if remark.field else remark.text
         for remark in examine(exercise)

@@ -1,4 +1,4 @@
-"""The check that the reference robot has no superfluous joints."""
+"""The check that every joint of the reference robot adds a motion."""
 
 from collections.abc import Iterator
 
@@ -17,7 +17,7 @@ WAYS = 6
 
 
 def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
-    """Yield warnings for joints on the same axis, and for fewer degrees of freedom than joints."""
+    """Yield warnings about joints that add no motion."""
     robot = exercise.reference
     if robot is None:
         return
@@ -52,10 +52,7 @@ def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _jacobian(exercise: Exercise, robot: Reference) -> Numbers:
-    """The space Jacobian ``(samples, 6, joints)``, with lengths divided by ``length_scale``.
-
-    Source: Lynch and Park, *Modern Robotics*, eq. 5.11.
-    """
+    # Source: Lynch and Park, *Modern Robotics*, eq. 5.11.
     values = trial_values(exercise.variables)
     reached = identity((TRIALS,))
     columns = []

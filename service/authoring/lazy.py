@@ -1,4 +1,4 @@
-"""The points of lazy answers, which need no knowledge: zeros and joint variables."""
+"""The points of answers that need no knowledge: only zeros and joint variables."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -16,7 +16,7 @@ MOST_OF_A_POSE: Final = 0.5
 
 
 def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
-    """Return the largest share of points that a lazy answer earns in each part, by part id."""
+    """Return by part id the share of points that only zeros and joint variables earn."""
     from service.solutions.kinds import LAZY
 
     return {
@@ -28,7 +28,7 @@ def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
 
 
 def summary(exercise: Exercise) -> Sentence:
-    """Return the numbers of parts and checks, and what lazy answers earn."""
+    """Return a sentence with the numbers of parts and checks, and the points of trivial answers."""
     earned = [
         say("{share} % of {part}", share=math.floor(100 * share), part=part)
         for part, share in lazy_shares(exercise).items()
@@ -42,7 +42,7 @@ def summary(exercise: Exercise) -> Sentence:
 
 
 def lazy_answers(exercise: Exercise) -> Iterator[Remark]:
-    """Yield a warning for each part in which a lazy answer earns much."""
+    """Yield a warning for each part in which only zeros and joint variables earn much."""
     shares = lazy_shares(exercise)
     for i, part in enumerate(exercise.parts):
         share = shares[part.id]

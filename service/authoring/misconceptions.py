@@ -24,7 +24,7 @@ _FAMILIES: Final = (
 
 @dataclass(frozen=True, slots=True)
 class NamedMisconception:
-    """A mistake: ``name`` is its code; ``sentences`` come from the examples of the grader."""
+    """A mistake that the grader can name: its code, its meaning, and example sentences."""
 
     name: str
     meaning: str
@@ -34,10 +34,7 @@ class NamedMisconception:
 def misconceptions_of(
     exercise: Exercise, catalogue: Mapping[str, Exercise]
 ) -> list[NamedMisconception]:
-    """Return the misconceptions that the grader may name in answers of the exercise's kinds.
-
-    They are sorted by code. An example whose exercise is not in the ``catalogue`` is skipped.
-    """
+    """Return the mistakes that the grader may name in answers to the exercise, sorted by code."""
     own = {part.kind for part in exercise.parts}
     kinds = frozenset().union(*(family for family in _FAMILIES if family & own))
     meanings: dict[str, dict[str, None]] = {}
@@ -63,7 +60,6 @@ def misconceptions_of(
 
 
 def _told(exercise: Exercise, example: Example, model_answers: Any) -> list[tuple[str, str]]:
-    """Return the code and the sentence of each message on the answer of an example."""
     name, part, answer, *unit = example
     if isinstance(answer, str):
         answer = answer.replace(" ↵ ", "\n")
@@ -80,7 +76,6 @@ def _told(exercise: Exercise, example: Example, model_answers: Any) -> list[tupl
 
 
 def _with_changes(answer: Any, changes: Mapping[str, str]) -> Any:
-    """Return a model answer with other texts in some cells; ``changes`` has them by row/cell."""
     changed = json.loads(json.dumps(answer))
     for place, written in changes.items():
         rows = changed["rows"] if isinstance(changed, dict) else changed

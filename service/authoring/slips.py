@@ -1,4 +1,4 @@
-"""Check that some table of the robot can contain the mistake that an exercise file names."""
+"""Check that the mistake of a part ``find_slip`` is possible in a table of the robot."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,7 @@ from service.translations import say
 
 
 def unfit_slips(exercise: Exercise) -> Iterator[Remark]:
-    """Yield a failure for each part whose slip fits no table of the robot."""
+    """Yield a failure for each part whose planted mistake fits no table of the robot."""
     for i, part in enumerate(exercise.parts):
         if not isinstance(part, FindSlipSpec) or part.slip is None:
             continue

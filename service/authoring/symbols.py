@@ -37,7 +37,7 @@ _LOOK_ALIKE: Final = str.maketrans("IlO", "110")
 
 
 def ambiguous_symbols(exercise: Exercise) -> Iterator[Remark]:
-    """Yield warnings about names that are also shorthands or joint variables, or look alike."""
+    """Yield warnings about names that students may confuse."""
     for variable in exercise.variables:
         for problem in _problems(variable, exercise):
             yield warning(f"symbols.{variable.name}", problem)
@@ -93,7 +93,7 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
 
 
 def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
-    """Warn of narrow ranges, lengths that may be 0, and lengths of very different size."""
+    """Yield warnings about ranges: narrow ones, lengths near 0, and very different lengths."""
     for variable in exercise.variables:
         yield from _range(variable)
     sizes = {v.name: max(abs(v.low), abs(v.high)) for v in exercise.variables if v.kind == "length"}
@@ -150,7 +150,7 @@ def _range(variable: Variable) -> Iterator[Remark]:
 
 
 def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
-    """Yield warnings about angles without a unit beyond a full turn: probably degrees."""
+    """Yield warnings about large angles without a unit, which are probably degrees."""
     for field, formula, quantity in exercise.fields():
         for term in _bare_terms(formula.tree, is_angle=quantity == "angle"):
             constant = Expression(formula.source, term, (), frozenset())
@@ -168,7 +168,6 @@ def bare_degrees(exercise: Exercise) -> Iterator[Remark]:
 
 
 def _bare_terms(tree: Node, *, is_angle: bool) -> Iterator[Node]:
-    """Yield the terms without a unit that students' degree mode would read as degrees."""
     written = {(unit.start, unit.end) for unit in _units(tree)}
     for unit in _units(in_degrees(tree, is_angle=is_angle, notes=[])):
         if (unit.start, unit.end) not in written:

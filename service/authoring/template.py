@@ -24,10 +24,9 @@ class UnusableIdError(ValueError):
 
 
 def template(exercise_id: str, like: Path | None = None) -> str:
-    """Return the text of a new exercise file, with comments, or the text of the file ``like``.
+    """Return the text of a new exercise file; with ``like``, the text of that file.
 
-    The text passes every check. Raises UnusableIdError, because the id becomes the file's name and
-    a part of web addresses.
+    Raises UnusableIdError.
     """
     if not is_exercise_id(exercise_id):
         raise UnusableIdError(exercise_id)

@@ -5,7 +5,7 @@ from service.bundles.content import BundleContent, BundleError, setup_script, te
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """Return the files of a folder: ``setup.sh`` installs the grader there, ``grade`` runs it.
+    """Return the files of the bundle, with the scripts ``setup.sh`` and ``grade``.
 
     Raises BundleError.
     """

@@ -1,4 +1,4 @@
-"""The content of every bundle: the program, pinned dependencies, the assignment, its exercises."""
+"""The content of every bundle: the program, its dependencies, the assignment, its exercises."""
 
 from collections.abc import Container, Iterator
 from dataclasses import dataclass, replace
@@ -19,17 +19,15 @@ class BundleError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class BundleContent:
-    """An assignment with all files that are needed to grade it.
-
-    ``exercises`` are the assigned exercises with only the assigned parts. ``image`` is the name of
-    the grader's container image, if the platform uses one. ``variants`` is None if all students get
-    the same exercises.
-    """
+    """An assignment with all files that are needed to grade it."""
 
     title: str
+    # The assigned exercises with only the assigned parts.
     exercises: tuple[Exercise, ...]
     files: tuple[BundledFile, ...]
+    # The name of the grader's container image, if the platform uses one.
     image: str = ""
+    # None if all students get the same exercises.
     variants: BundleVariants | None = None
 
     def program(self) -> Iterator[BundledFile]:
@@ -45,11 +43,10 @@ def content_of(
     image: str = "",
     secret: str = "",
 ) -> BundleContent:
-    """Return the content for an assignment. Raises BundleError.
+    """Return an assignment with all files that are needed to grade it. Raises BundleError.
 
-    ``file`` is the assignment's file, if any. ``catalogue`` has the exercise files of this
-    installation by id. The files of assigned exercises are bundled, so that the platform grades
-    with the same version. Variants follow from the ``secret``.
+    ``file`` is the assignment's file, if any. ``catalogue`` has exercise files by id. ``secret``
+    determines the variants of students.
     """
     files = [BundledFile("assignment.toml", _assignment_text(assignment, file))]
     exercises = []
@@ -64,13 +61,13 @@ def content_of(
 
 
 def with_parts(exercise: Exercise, left_out: Container[str]) -> Exercise:
-    """Return the exercise without some parts."""
+    """Return the exercise without the parts whose ids are in ``left_out``."""
     parts = tuple(part for part in exercise.parts if part.id not in left_out)
     return replace(exercise, parts=parts)
 
 
 def setup_script() -> BundledFile:
-    """Return the script that installs the program in its own folder."""
+    """Return the script that installs the program."""
     return BundledFile("setup.sh", (_TEMPLATES / "setup.sh").read_bytes(), is_executable=True)
 
 
@@ -89,7 +86,6 @@ def _assignment_text(assignment: Assignment, file: Path | None) -> bytes:
 
 
 def _below(path: Path, file: Path | None) -> str:
-    """The path of an exercise file relative to the assignment's folder. Raises BundleError."""
     folder = (file.parent if file else Path()).resolve()
     try:
         name = path.resolve().relative_to(folder).as_posix()

@@ -33,14 +33,13 @@ def own_wheel() -> BundledFile:
 
 
 def locked_requirements() -> BundledFile:
-    """Return the pinned dependencies with hashes, from the package or the top of a checkout."""
+    """Return the file of pinned dependencies with hashes."""
     packaged = _PACKAGE / "_requirements.lock"
     lock = packaged if packaged.is_file() else _PACKAGE.parent / "requirements.lock"
     return BundledFile("requirements.lock", lock.read_bytes())
 
 
 def _program() -> Iterator[BundledFile]:
-    """Yield the package and the catalogue, with the paths that they have in a wheel."""
     yield from _below(_PACKAGE, "service")
     if not (_PACKAGE / "_exercises").is_dir():
         yield from _below(shipped_folder(), "service/_exercises")
@@ -62,7 +61,6 @@ def _metadata(installed: Distribution, folder: str) -> Iterator[BundledFile]:
 
 
 def _record(files: list[BundledFile], record: str) -> bytes:
-    """The file RECORD: each file with its hash and size, and RECORD itself without them."""
     written = io.StringIO()
     rows = csv.writer(written, lineterminator="\n")
     for file in files:

@@ -25,7 +25,7 @@ _PATTERNS: Final = ", ".join(
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """Return the folders ``image``, to build the grader, and ``question``, to add to a course."""
+    """Return the files of the bundle, in the folders ``image`` and ``question``."""
     dockerfile = template("prairielearn", "Dockerfile")
     script = template("prairielearn", "grade-submission")
     return [
@@ -77,7 +77,6 @@ def _page(content: BundleContent) -> bytes:
 
 
 def _places(content: BundleContent) -> Iterator[str]:
-    """Yield the HTML of each exercise, or a placeholder that ``server.py`` fills with a variant."""
     variants = {} if content.variants is None else content.variants.deployed
     places = {name: f"  {{{{{{params.page_{i}}}}}}}\n" for i, name in enumerate(variants, 1)}
     for exercise in content.exercises:
@@ -85,7 +84,6 @@ def _places(content: BundleContent) -> Iterator[str]:
 
 
 def _pages_of_variants(content: BundleContent) -> Iterator[BundledFile]:
-    """Yield the statements of all variants, and a script that chooses a variant per exercise."""
     if content.variants is None:
         return
     pages: dict[str, dict[str, str]] = {}
@@ -102,7 +100,6 @@ def _pages_of_variants(content: BundleContent) -> Iterator[BundledFile]:
 
 
 def _exercise(exercise: Exercise) -> Iterator[str]:
-    """Yield the HTML of the statement and the parts."""
     yield f"  <h4>{_text(exercise.title)}</h4>\n"
     yield f"  <div>{_typeset(exercise.statement, exercise)}</div>\n"
     yield f"  <p>Hand in <code>{exercise.id}.json</code>, with an answer to each part:</p>\n"
@@ -114,15 +111,13 @@ def _exercise(exercise: Exercise) -> Iterator[str]:
 
 
 def _text(text: str) -> str:
-    """Escape text for HTML."""
     return _braces(escape(text))
 
 
 def _typeset(text: str, exercise: Exercise) -> str:
-    """Return a statement or a prompt as HTML and MathML."""
     return _braces(statement_html(text, exercise.symbols))
 
 
 def _braces(html: str) -> str:
-    """Escape braces, because PrairieLearn replaces text in double braces."""
+    # PrairieLearn replaces text in double braces.
     return html.replace("{", "&#123;").replace("}", "&#125;")

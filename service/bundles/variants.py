@@ -1,7 +1,7 @@
-"""The variants of a bundle: which seed a student of the platform gets.
+"""The variants of a bundle: which seed (and so which numbers) a student gets.
 
-PrairieLearn chooses by its own variant seed among pages that are in the bundle. On Gradescope, the
-seed follows from a secret of the tutor and the number of the student's account.
+PrairieLearn chooses by its own variant seed among pages in the bundle. On Gradescope, the seed
+follows from a secret of the tutor and the number of the student's account.
 """
 
 import json
@@ -24,25 +24,25 @@ class UnknownStudentError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class BundleVariants:
-    """The secret of a bundle, and the deployed seeds of each exercise with variants."""
+    """The secret of a bundle, and the allowed seeds of each exercise with variants."""
 
     secret: str = field(repr=False)
     deployed: Mapping[str, Sequence[str]]
 
     def seeds_of(self, learner: str) -> Mapping[str, str]:
-        """Return the seed of a learner for each exercise."""
+        """Return a learner's seed for each exercise."""
         return {
             exercise: seed_of(self.secret, learner, exercise, 0, deployed)
             for exercise, deployed in self.deployed.items()
         }
 
     def some(self, exercise: str) -> Sequence[str]:
-        """Return seeds to choose from: the deployed seeds, or else seeds made from the secret."""
+        """Return seeds of an exercise to choose from."""
         drawn = (seed_of(self.secret, f"variant {i}", exercise, 0) for i in range(DRAWN))
         return self.deployed[exercise] or tuple(drawn)
 
     def file(self) -> BundledFile:
-        """Return the file with the secret and the seeds, which the platform's script reads."""
+        """Return the file with the secret and the seeds, for the script on the platform."""
         content = {"secret": self.secret, "deployed": dict(self.deployed)}
         return BundledFile("variants.json", (json.dumps(content, indent=2) + "\n").encode())
 
@@ -55,10 +55,10 @@ def variants_of(exercises: Sequence[Exercise], secret: str) -> BundleVariants:
 
 
 def platform_seeds(submission: Path, variants: Path | None) -> Mapping[str, str]:
-    """Return the seeds of the student whose submission a platform describes in a file.
+    """Return a student's seed for each exercise. Raises UnknownStudentError.
 
-    ``variants`` is the file of the bundle, if the platform has not chosen the seeds already. Raises
-    UnknownStudentError.
+    ``submission`` is the file in which a platform describes the submission. ``variants`` is the
+    file of the bundle with the secret and the seeds.
     """
     told = _read(submission)
     match told:

@@ -1,4 +1,4 @@
-"""The statistics of a class, counted from reports one by one. The reports are not stored."""
+"""The statistics of a class, counted from its reports."""
 
 from service.statistics.class_statistics import ClassStatistics
 from service.statistics.identical import IdenticalMistakes, MistakeGroup

@@ -13,10 +13,10 @@ _NO_MESSAGES: Final = (FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
 
 
 class ClassStatistics:
-    """Counts the reports of a class.
+    """Counts the reports of a class, one by one.
 
-    Add each submission under its own number: its score by ``scores.add``, its reports by ``add``.
-    ``untold`` is the number of reports whose feedback level hides slips.
+    Number the submissions, and add the score of each to ``scores``. ``untold`` counts reports whose
+    feedback level hides mistakes.
     """
 
     def __init__(self) -> None:

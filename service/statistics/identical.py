@@ -29,10 +29,7 @@ class MistakeGroup:
 
 
 class IdenticalMistakes:
-    """Groups the wrong entries of reports, which are added part by part.
-
-    For mistakes of a single submission, only a fingerprint is stored.
-    """
+    """Finds submissions with identical mistakes in reports, which are added part by part."""
 
     def __init__(self) -> None:
         self._alone: dict[bytes, int] = {}
@@ -60,7 +57,7 @@ class IdenticalMistakes:
 
     @property
     def groups(self) -> Sequence[MistakeGroup]:
-        """The groups of two or more submissions, by decreasing size and number of wrong cells."""
+        """Return the groups of two or more submissions, the largest groups first."""
         return sorted(
             self._groups.values(), key=lambda group: (-len(group.submissions), -len(group.mistakes))
         )

@@ -1,4 +1,4 @@
-"""The number of submissions with each slip, by code."""
+"""The number of submissions with each kind of mistake (message code)."""
 
 from array import array
 from collections import Counter
@@ -17,22 +17,20 @@ _SENTENCES: Final = 50
 
 @dataclass(slots=True)
 class CountedSlip:
-    """The occurrences of a message code in answers of one kind.
-
-    ``is_unreadable`` is True if the code is about an unreadable entry, which is not a
-    misconception. ``submissions`` has each submission once; ``parts`` is the number of submissions
-    by part, with the ids of exercise and part.
-    """
+    """The occurrences of a message code in answers of one kind."""
 
     slip_code: str
     kind: str
+    # True if the code is about an unreadable entry, which is not a misconception.
     is_unreadable: bool
+    # Each submission once.
     submissions: "array[int]" = field(default_factory=lambda: array("L"))
+    # The number of submissions by ids of exercise and part.
     parts: Counter[tuple[str, str]] = field(default_factory=Counter)
     _sentences: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: int, part: tuple[str, str], sentence: str) -> None:
-        """Count the slip in a part. Add all parts of a submission before the next submission."""
+        """Count the mistake in a part. Add all parts of a submission before the next submission."""
         if not self.submissions or self.submissions[-1] != submission:
             self.submissions.append(submission)
         self.parts[part] += 1
@@ -41,26 +39,26 @@ class CountedSlip:
 
     @property
     def count(self) -> int:
-        """The number of submissions with this slip."""
+        """The number of submissions with this mistake."""
         return len(self.submissions)
 
     @property
     def sentence(self) -> str:
-        """The most frequent message; the first message if several are equally frequent."""
+        """The most frequent message with this code."""
         return self._sentences.most_common(1)[0][0]
 
 
 class SlipCounts:
-    """Counts the message codes in reports; a code counts once in each part of a submission.
+    """Counts the message codes in reports, separately for each kind of answer.
 
-    The same code in another kind of answer is a different slip.
+    A code counts once in each part of a submission.
     """
 
     def __init__(self) -> None:
         self._found: dict[tuple[str, str, bool], CountedSlip] = {}
 
     def add(self, submission: int, exercise: str, part: PartReport) -> None:
-        """Count the slips of a part, unless the answer is missing."""
+        """Count the message codes of a part, unless its answer is missing."""
         if part.verdict is Verdict.MISSING:
             return
         for (code, is_unreadable), sentence in _slips(part).items():
@@ -69,13 +67,12 @@ class SlipCounts:
             slip.add(submission, (exercise, part.part), sentence)
 
     def counted(self, *, unreadable: bool = False) -> Sequence[CountedSlip]:
-        """Return the slips in readable or ``unreadable`` entries, the most common slips first."""
+        """Return the mistakes in readable or ``unreadable`` entries, the most common first."""
         found = (slip for slip in self._found.values() if slip.is_unreadable is unreadable)
         return sorted(found, key=lambda slip: (-slip.count, slip.slip_code, slip.kind))
 
 
 def _slips(part: PartReport) -> dict[tuple[str, bool], str]:
-    """The first sentence in the part with each code, separately for unreadable entries."""
     found: dict[tuple[str, bool], str] = {}
     for message, verdict in _counted(part):
         found.setdefault((message.code, verdict is Verdict.UNREADABLE), message.message)

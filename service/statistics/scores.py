@@ -24,7 +24,7 @@ class ScoreBin:
 
 
 class ScoreDistribution:
-    """Counts scores from 0 to 1; each takes eight bytes."""
+    """Counts scores from 0 to 1."""
 
     def __init__(self) -> None:
         self._scores = array("d")
@@ -60,6 +60,6 @@ class ScoreDistribution:
 
     @property
     def bins(self) -> list[ScoreBin]:
-        """Ten bins of equal width, from 0 to 1."""
+        """Return ten bins of equal width, from 0 to 1."""
         counted = enumerate(zip(self._counts, self._passed, strict=True))
         return [ScoreBin(i / BINS, (i + 1) / BINS, *counts) for i, counts in counted]

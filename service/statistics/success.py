@@ -42,7 +42,7 @@ class FrequentEntry(NamedTuple):
 
 @dataclass(slots=True)
 class CellSuccess:
-    """The counts of a cell; ``wrong`` counts wrong entries by their text."""
+    """The answers to a cell, counted from reports; ``wrong`` counts wrong entries by text."""
 
     share: Share = field(default_factory=Share)
     wrong: Counter[str] = field(default_factory=Counter)
@@ -63,7 +63,7 @@ def shown_entry(text: str) -> str:
 
 @dataclass(slots=True)
 class RowSuccess:
-    """The counts of a row; ``seen`` is the number of reports with this row."""
+    """The answers to a row, counted from reports; ``seen`` is the number of reports."""
 
     share: Share = field(default_factory=Share)
     cells: dict[str, CellSuccess] = field(default_factory=dict)
@@ -79,13 +79,12 @@ class RowSuccess:
 
 @dataclass(slots=True)
 class PartSuccess:
-    """The counts of a part in ``seen`` reports, of which ``detailed`` have rows.
-
-    ``points`` is the sum of all points.
-    """
+    """The answers to a part, counted from reports."""
 
     share: Share = field(default_factory=Share)
+    # The sum of all points.
     points: float = 0.0
+    # The number of reports; ``detailed`` is the number of those with rows.
     seen: int = 0
     detailed: int = 0
     _rows: dict[str, RowSuccess] = field(default_factory=dict)
@@ -106,7 +105,8 @@ class PartSuccess:
 
     @property
     def rows(self) -> Mapping[str, RowSuccess]:
-        """The rows in more than half of the detailed reports. Others were added by students."""
+        """Return the rows that are in more than half of the reports with rows."""
+        # A few students added the other rows.
         return {label: row for label, row in self._rows.items() if 2 * row.seen > self.detailed}
 
     def commonest_wrong(self, most: int, at_least: int = 2) -> list[FrequentEntry]:

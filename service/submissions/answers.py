@@ -43,32 +43,26 @@ _NOT_ANSWERS: Final = frozenset({"readme", "license", "licence", "changelog"})
 
 @dataclass(frozen=True, slots=True)
 class ExerciseAnswers:
-    """The answers to one exercise.
+    """A student's answers to one exercise, from one or several files."""
 
-    ``file`` is the path of their file, or of the folder of several files; ``names`` are the files
-    as the student named them. Both are empty without files. ``body`` is None if nothing can be
-    graded. ``problem`` says which files are unusable, and why.
-    """
-
+    # The path of the file, or of the folder of several files; empty without files.
     file: str
+    # None if nothing can be graded.
     body: GradeRequest | None
+    # Which files are unusable, and why.
     problem: str = ""
+    # The files as the student named them.
     names: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class _Claim:
-    """A file that answers an exercise, or only the part in its name."""
-
     file: HandedFile
     part: str | None = None
 
 
 def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswers, ...]:
-    """Return the answers to each exercise of the assignment, in order.
-
-    An exercise without a file has no answers, and no problem if another exercise has a file.
-    """
+    """Return the answers to each exercise of the assignment, in order."""
     try:
         claims = _claims(handed.files(), assignment)
     except UnusableFileError as error:
@@ -79,7 +73,6 @@ def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswer
 
 
 def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_Claim]]:
-    """The files that answer each exercise. Raises UnusableFileError if no file answers one."""
     claims: list[list[_Claim]] = [[] for _ in assignment.exercises]
     unnamed = []
     for file in files:
@@ -105,10 +98,6 @@ def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_C
 
 
 def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
-    """The index of each exercise that the file name matches, and the part in the name.
-
-    The part is "" if the file name names only the exercise.
-    """
     path = PurePosixPath(name.lower())
     is_one = len(assignment.exercises) == 1
     found = ((i, _place(path, each, is_one)) for i, each in enumerate(assignment.exercises))
@@ -116,7 +105,6 @@ def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
 
 
 def _place(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str | None:
-    """The part in the file name, "" if it names only the exercise, None if it names neither."""
     for part, patterns in assigned.part_files.items():
         if _is_named(path, patterns):
             return part
@@ -127,7 +115,6 @@ def _place(path: PurePosixPath, assigned: AssignedExercise, is_one: bool) -> str
 
 
 def _is_named(path: PurePosixPath, patterns: Sequence[str]) -> bool:
-    """True if the path, in lower case, matches one of the patterns."""
     return any(path.match(pattern.lower()) for pattern in patterns)
 
 
@@ -151,12 +138,10 @@ def _part_in(stem: str, assigned: AssignedExercise) -> str | None:
 
 
 def _stems(stem: str) -> tuple[str, ...]:
-    """The name, and the name without the number of a copy."""
     return tuple(dict.fromkeys((stem, without_copy_number(stem))))
 
 
 def _stated(file: HandedFile, assignment: Assignment) -> int:
-    """The index of the exercise named in the content of a file. Raises UnusableFileError."""
     content = read_content(file.read(), file.name)
     known = [each.exercise.id for each in assignment.exercises]
     if content.is_pasted:
@@ -192,7 +177,6 @@ def _stated(file: HandedFile, assignment: Assignment) -> int:
 
 
 def _only_file(files: Sequence[HandedFile], assignment: Assignment) -> HandedFile:
-    """The only file that may have answers. Raises UnusableFileError if there are several."""
     if not files:
         raise UnusableFileError(say("holds no file"))
     others = [file for file in files if _stem(file) not in _NOT_ANSWERS] or files
@@ -216,7 +200,6 @@ def _stem(file: HandedFile) -> str:
 
 
 def _example(assigned: AssignedExercise, suffix: str) -> str:
-    """An example of a file name for this exercise, with a part if the suffix needs one."""
     if assigned.files:
         return assigned.files[0]
     if suffix in PASTED_ENDINGS:
@@ -225,7 +208,6 @@ def _example(assigned: AssignedExercise, suffix: str) -> str:
 
 
 def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseAnswers:
-    """The answers of all files to one exercise; an unusable file affects only itself."""
     if not claims:
         return ExerciseAnswers("", GradeRequest(answers={}))
     paths = [str(claim.file.path) for claim in claims]
@@ -249,7 +231,6 @@ def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseA
 
 
 def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
-    """Merge the answers of files. Raises UnusableFileError if files contradict each other."""
     answers: dict[str, Any] = {}
     came_from: dict[str, str] = {}
     options: dict[str, Any] = {}
@@ -279,7 +260,6 @@ def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
 
 
 def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
-    """Read the answers in one file. Raises UnusableFileError."""
     content = read_content(claim.file.read(), claim.file.name)
     return read_body(content, assigned, claim.part)
 
@@ -287,10 +267,9 @@ def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
 def read_body(
     content: FileContent, assigned: AssignedExercise, part: str | None = None
 ) -> GradeRequest:
-    """Read the answers to the assigned parts.
+    """Read the answers in the content of a file. Raises UnusableFileError.
 
-    If the content has no key ``answers``, it is the answer to ``part`` or to the only assigned
-    part. Raises UnusableFileError.
+    ``part`` is the part that the file answers, if its name or the caller says so.
     """
     part = part or assigned.only_part
     value = content.value
@@ -347,7 +326,6 @@ def _first(error: ValidationError) -> str:
 
 
 def _fault(detail: "ErrorDetails") -> str:
-    """The fault of a field in words for students."""
     given = detail["input"]
     shown = json.dumps(given, ensure_ascii=False, default=str)[:_LONGEST_NAME]
     match detail["type"]:
@@ -375,7 +353,7 @@ def _fault(detail: "ErrorDetails") -> str:
 
 
 def of_file(name: str, problem: str) -> Sentence:
-    """Return a sentence with the name and the problem of a file."""
+    """Return a sentence that names a file and its problem."""
     return say("{file} {problem}", file=name, problem=problem)
 
 

@@ -85,17 +85,17 @@ class AssignmentSpec(StrictModel):
 
 @dataclass(frozen=True, slots=True)
 class AssignedExercise:
-    """An assigned exercise, with only the assigned parts.
-
-    ``worth`` is its number of points. ``left_out`` are the ids of the other parts. ``path`` is the
-    exercise file if it is not in the catalogue. ``files`` and ``part_files`` are patterns of the
-    names of answer files; without ``files``, the ids of the exercise and its parts are the names.
-    """
+    """An exercise of an assignment, with only the assigned parts."""
 
     exercise: SetExercise
+    # Its number of points in the assignment.
     worth: float
+    # The ids of the parts that are not assigned.
     left_out: frozenset[str] = frozenset()
+    # The exercise file, if it is not in the catalogue.
     path: Path | None = None
+    # Patterns of the names of answer files. Without patterns, the ids of the exercise and its parts
+    # are the names.
     files: tuple[str, ...] = ()
     part_files: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
 
@@ -106,14 +106,14 @@ class AssignedExercise:
         return parts[0].id if len(parts) == 1 else None
 
     def part_named(self, name: str) -> str | None:
-        """The id of the part with this name, ignoring case; None if there is none."""
+        """The id of the part with this name, ignoring case; None if there is no such part."""
         lowered = name.lower()
         return next((part.id for part in self.exercise.parts if part.id == lowered), None)
 
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """Assigned exercises in order, or a single exercise.
+    """Exercises that are set together, in order; a single exercise is also an assignment.
 
     ``feedback`` is the highest feedback level for students; None means the level of each exercise.
     With ``variants``, each learner gets personal variants of the exercises.
@@ -131,10 +131,7 @@ class Assignment:
 
     @property
     def part_names(self) -> frozenset[str]:
-        """The ids of the parts if the assignment has only one exercise.
-
-        It is empty for several exercises, because their parts may have the same ids.
-        """
+        """The ids of the parts if the assignment has only one exercise; otherwise empty."""
         if len(self.exercises) > 1:
             return frozenset()
         return frozenset(part.id for each in self.exercises for part in each.exercise.parts)
@@ -145,18 +142,16 @@ class UnknownPartNameError(LookupError):
 
 
 def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
-    """Return an assignment of one exercise or one part of it. Raises UnknownPartNameError."""
+    """Return an assignment of one exercise, or of one part of it. Raises UnknownPartNameError."""
     return Assignment((assigned(exercise, None if part is None else [part]),), exercise.title)
 
 
 def assigned(
     exercise: SetExercise, parts: list[str] | None = None, worth: float | None = None
 ) -> AssignedExercise:
-    """Return the exercise with the given parts, or with all its parts.
+    """Return an exercise for an assignment, with the given parts, or with all its parts.
 
-    The exercise is worth ``worth`` points; without ``worth``, the sum of the points of its parts.
-
-    Raises UnknownPartNameError.
+    ``worth`` is its number of points, by default the sum of its parts. Raises UnknownPartNameError.
     """
     known = [part.id for part in exercise.parts]
     for part in parts or ():
@@ -176,11 +171,6 @@ def assigned(
 
 
 def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
-    """Return the exercise with only the chosen parts.
-
-    A part may build on the answer to an earlier part (``follows``). If that part is dropped, it
-    builds on the part before it instead.
-    """
     if isinstance(exercise, ExerciseOutline):
         kept = tuple(part for part in exercise.parts if part.id in chosen)
         return replace(exercise, parts=kept)
@@ -189,6 +179,7 @@ def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
     for part in exercise.parts:
         followed = part.follows
         if followed is not None and followed not in chosen:
+            # The part builds on a dropped part: it builds on that part's predecessor instead.
             followed = follows[followed]
         follows[part.id] = followed
         if part.id in chosen:
@@ -199,7 +190,7 @@ def _restricted(exercise: SetExercise, chosen: frozenset[str]) -> SetExercise:
 def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignment:
     """Load an assignment from a TOML file. Raises CatalogueError.
 
-    ``find`` returns the exercise of the catalogue with an id, or raises UnknownExerciseError.
+    ``find`` returns the catalogue's exercise with an id, or raises UnknownExerciseError.
     """
 
     def build(content: dict[str, Any]) -> Assignment:
@@ -221,14 +212,15 @@ def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignmen
 
 
 def with_seeds(assignment: Assignment, seeds: Mapping[str, str]) -> Assignment:
-    """Return the assignment with variants of exercises; ``seeds`` has the seeds by exercise id.
+    """Return the assignment with one student's variants of the exercises.
 
-    The variants have the ids of the plain exercises. Raises NoVariantError.
+    ``seeds`` has the seed of each variant by exercise id. Raises NoVariantError.
     """
     exercises = []
     for each in assignment.exercises:
         exercise = each.exercise
         if exercise.id in seeds and isinstance(exercise, Exercise):
+            # The variant has the id of the plain exercise.
             variant = hidden_variant(exercise, seeds[exercise.id])
             kept = frozenset(part.id for part in exercise.parts)
             exercises.append(replace(each, exercise=_restricted(variant, kept)))
@@ -240,7 +232,6 @@ def with_seeds(assignment: Assignment, seeds: Mapping[str, str]) -> Assignment:
 def _assigned(
     spec: AssignedExerciseSpec, place: str, folder: Path, find: Callable[[str], SetExercise]
 ) -> AssignedExercise:
-    """Load an exercise of the assignment. Raises FieldError, or CatalogueError for its file."""
     path = folder / spec.path if spec.path is not None else None
     try:
         exercise = load_exercise(path) if path else find(spec.id or "")

@@ -1,7 +1,7 @@
 """Find the table or matrix in a LaTeX, Markdown or MATLAB document.
 
-Such a document may have words or statements around the answer; a pasted text may not. Unless there
-is exactly one table, the text stays as it is, and its reader explains what is wrong.
+Such a document may have other words or statements around the answer. Unless it has exactly one
+table or matrix, its text does not change.
 """
 
 import re
@@ -27,7 +27,7 @@ _CHANGED: Final = re.compile(r"\b([A-Za-z]\w{0,60})[ \t]*(?:\([^()\n]{0,80}\)[ \
 
 
 def pasted_from(text: str, suffix: str) -> str:
-    """Return the only table in a document with this suffix, or else the whole text."""
+    """Return the only table or matrix in a document with this suffix, or else the whole text."""
     tables = _TABLES.get(suffix)
     if tables is None:
         return text
@@ -37,7 +37,6 @@ def pasted_from(text: str, suffix: str) -> str:
 
 
 def _latex(text: str) -> Iterator[str]:
-    """Yield the environments with tables and matrices."""
     at = 0
     while opening := _ENVIRONMENT.search(text, at):
         end = f"\\end{{{opening[1]}}}"
@@ -49,7 +48,6 @@ def _latex(text: str) -> Iterator[str]:
 
 
 def _markdown(text: str) -> Iterator[str]:
-    """Yield code blocks, and groups of consecutive lines with bars."""
     block: list[str] = []
     is_code = False
     for line in [*text.splitlines(), ""]:
@@ -64,11 +62,6 @@ def _markdown(text: str) -> Iterator[str]:
 
 
 def _matlab(text: str) -> Iterator[str]:
-    """Yield assigned matrices, preceded by the assignments to their variables.
-
-    Yield nothing if the script changes a matrix or a variable in a way that this function cannot
-    follow.
-    """
     matrices: list[str] = []
     at = 0
     while len(matrices) < 2 and (opening := _ASSIGNED.search(text, at)):
@@ -81,13 +74,13 @@ def _matlab(text: str) -> Iterator[str]:
             or _SEVERAL_GIVEN.search(text)
             or opening[1] in _CHANGED.findall(text, at)
         ):
+            # The script changes a matrix or a variable in a way that this function cannot follow.
             return
         matrices.append("\n".join([*values, matrix]))
     yield from matrices
 
 
 def _values_given(text: str, letters: set[str]) -> list[str] | None:
-    """The assignments to these variables; None if one of them gets a matrix or a list."""
     found = []
     for given in _GIVEN.finditer(text):
         if given[1] in letters:
@@ -99,7 +92,6 @@ def _values_given(text: str, letters: set[str]) -> list[str] | None:
 
 
 def _closing(text: str, start: int) -> int:
-    """The position after the bracket that closes the bracket before ``start``; 0 if none does."""
     depth = 1
     for bracket in re.finditer(r"[\[\]]", text[start:]):
         depth += 1 if bracket[0] == "[" else -1

@@ -1,4 +1,4 @@
-"""What is wrong with a field, in words: a sentence for each type of pydantic's errors."""
+"""Pydantic's errors in words: a sentence for each type of error."""
 
 import re
 from collections.abc import Mapping, Sequence
@@ -49,11 +49,7 @@ _LIMITS: Final[Mapping[str, str]] = {
 
 
 def field_error(detail: Mapping[str, Any], fields: Sequence[str] = ()) -> Sentence:
-    """Return the message of an error that pydantic found; ``fields`` are all known fields.
-
-    A message that is a ``Sentence`` is returned as it is. For an unknown type of error, the result
-    quotes the message of pydantic.
-    """
+    """Return a sentence for an error that pydantic found; ``fields`` are all known fields."""
     message, kind, context = detail["msg"], detail["type"], detail.get("ctx", {})
     if kind == "value_error" and context["error"].args:
         message = context["error"].args[0]

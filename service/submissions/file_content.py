@@ -71,7 +71,7 @@ def read_content(data: bytes, name: str) -> FileContent:
     """Parse the content of a file with this name. Raises UnusableFileError.
 
     The suffix of the name determines the format. For ``.txt`` and standard input, the content
-    determines the format.
+    determines it.
     """
     if len(data) > MAX_BODY_SIZE:
         raise UnusableFileError(_too_large())
@@ -92,7 +92,6 @@ def read_content(data: bytes, name: str) -> FileContent:
 
 
 def _in_utf_8(data: bytes) -> bytes:
-    """Convert UTF-16, which spreadsheets and Windows write, to UTF-8; keep other data as it is."""
     if not data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
         return data
     try:
@@ -130,7 +129,6 @@ def _json_reason(error: MalformedError) -> str:
 
 
 def _json_without_suffix(data: bytes, found: str) -> object:
-    """Read JSON from a file with an unknown suffix."""
     try:
         return _json(data)
     except UnusableFileError as error:
@@ -149,7 +147,6 @@ def _json_without_suffix(data: bytes, found: str) -> object:
 
 
 def _recognised(data: bytes) -> FileContent:
-    """Detect JSON or TOML with answers; anything else is a pasted text."""
     text = _text(data).strip()
     if text.startswith(("{", "[")):
         try:
@@ -201,7 +198,6 @@ def _too_deep() -> UnusableFileError:
 
 
 def _as_json(value: Any) -> Any:
-    """Replace dates and times, which JSON lacks, by their text."""
     if isinstance(value, dict):
         return {key: _as_json(child) for key, child in value.items()}
     if isinstance(value, list):

@@ -38,10 +38,7 @@ class HandedFile:
 
     @property
     def own_name(self) -> str:
-        """The name that the student gave the file.
-
-        The name contains neither a path on this machine nor the student's name from a platform.
-        """
+        """The name that the student gave the file, without a path or the student's name."""
         if self.name != self.path.as_posix():
             return self.name
         found = platform_name(self.path.name)
@@ -56,17 +53,16 @@ class HandedFile:
 
 @dataclass(frozen=True, slots=True)
 class HandedIn:
-    """The files and folders that one student handed in.
+    """The submission of one student: files and folders."""
 
-    ``name`` is unique; ``learner`` is the student's name in a gradebook. ``folder`` is the class
-    folder, or None if the caller named the files. Symbolic links must not lead out of the class
-    folder, nor out of a student's own folder. ``problem`` says why nothing can be graded.
-    """
-
+    # Unique among all submissions.
     name: str
+    # The student's name in a gradebook.
     learner: str
     entries: tuple[HandedFile, ...]
+    # The class folder, out of which no link may lead; None if the caller named the files.
     folder: Path | None = None
+    # The reason why nothing can be graded.
     problem: str = ""
 
     def files(self) -> list[HandedFile]:
@@ -91,11 +87,11 @@ def all_handed_in(
     left_out: Path | None = None,
     parts: Collection[str] = (),
 ) -> Iterator[HandedIn]:
-    """Yield the submissions in files and folders, in the order of ``paths``, then by name.
+    """Yield the submissions in files and folders.
 
-    ``-`` is standard input, which is read immediately. With ``folder_is_one``, a folder is the
-    submission of one student. ``left_out``, the output file, is not a submission. Files named
-    ``STUDENT.PART.csv``, where PART is one of ``parts``, are grouped by student.
+    With ``folder_is_one``, a folder is the submission of one student. ``left_out`` is a file that
+    is not a submission. ``parts`` are the parts that file names such as ``STUDENT.PART.csv`` may
+    contain.
     """
     for path in paths:
         if str(path) == STANDARD_INPUT:
@@ -113,7 +109,6 @@ def all_handed_in(
 
 
 def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> Iterator[HandedIn]:
-    """Yield the submissions in the folder of a class."""
     try:
         names = _names(folder, MAX_SUBMISSIONS_IN_FOLDER)
     except UnusableFileError as error:
@@ -130,10 +125,6 @@ def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> It
 
 
 def _student(folder: Path, name: str, parts: Collection[str]) -> str:
-    """The key by which files of one student are grouped: "/STUDENT", or the whole file name.
-
-    No file name begins with "/", so the two do not collide.
-    """
     if found := platform_name(name):
         return f"/{found.student}"
     named = student_and_part(name, parts)
@@ -141,10 +132,6 @@ def _student(folder: Path, name: str, parts: Collection[str]) -> str:
 
 
 def _entry(folder: Path, name: str) -> HandedFile:
-    """A file or folder in a class folder.
-
-    A folder gets the name "", so that the names of its files do not begin with its own name.
-    """
     path = folder / name
     found = platform_name(name)
     own = found.file if found else name
@@ -152,7 +139,6 @@ def _entry(folder: Path, name: str) -> HandedFile:
 
 
 def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[HandedFile]:
-    """Yield the file, or the files in the folder; links out of ``boundary`` get a problem."""
     if entry.path != boundary and entry.path.is_symlink():
         yield HandedFile(entry.path, entry.name, _link_problem(entry.path, boundary))
     elif entry.content is not None or not entry.path.is_dir():
@@ -168,7 +154,6 @@ def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[Han
 
 
 def _names(folder: Path, most: int) -> list[str]:
-    """The sorted names in a folder, without hidden files and files of the operating system."""
     try:
         names = sorted(name for name in os.listdir(folder) if not _is_junk(name))  # noqa: PTH208
     except OSError as error:
@@ -185,7 +170,6 @@ def _is_junk(name: str) -> bool:
 
 
 def _link_problem(link: Path, boundary: Path) -> str:
-    """The reason not to read a symbolic link; empty if its target is a file in the folder."""
     try:
         target = link.resolve(strict=True)
         is_inside = target.is_relative_to(boundary.resolve())
@@ -205,7 +189,6 @@ def _is_same(path: Path, other: Path) -> bool:
 
 
 def _learner(entry: HandedFile, parts: Collection[str] = ()) -> str:
-    """The student's name on the platform, or else the name of the file or folder."""
     name = entry.path.name or entry.path.resolve().name
     if found := platform_name(name):
         return found.learner

@@ -28,7 +28,7 @@ class UnknownExerciseError(LookupError):
 
 
 def find_exercise(catalogue: Mapping[str, _T], exercise_id: str) -> _T:
-    """Return the exercise with this id; the id ``<exercise>~<seed>`` is a variant's.
+    """Return the exercise, or the variant ``<exercise>~<seed>``, with this id.
 
     Raises UnknownExerciseError.
     """

@@ -28,7 +28,7 @@ _COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
 
 @dataclass(frozen=True, slots=True)
 class PlatformName:
-    """The parts of an exported name.
+    """The parts of a file name that a learning platform has given.
 
     ``student`` is unique; ``learner`` is the student in the platform's gradebook; ``file`` is the
     student's own name of the file, empty for a folder.
@@ -40,7 +40,7 @@ class PlatformName:
 
 
 def platform_name(name: str) -> PlatformName | None:
-    """Split a name that a platform has given; return None for other names."""
+    """Split a name that a learning platform has given; return None for other names."""
     if found := _MOODLE.fullmatch(name):
         # Moodle's grading worksheet has this in the column "Identifier".
         learner = f"Participant {found['id']}"
@@ -58,10 +58,8 @@ def without_copy_number(stem: str) -> str:
 
 
 def student_and_part(name: str, parts: Collection[str]) -> tuple[str, str] | None:
-    """Split ``STUDENT.PART.csv`` into student and part; return None unless PART is in ``parts``.
-
-    The name of a student may contain dots; the name of a part does not.
-    """
+    """Split ``STUDENT.PART.csv`` into student and part; return None unless PART is in ``parts``."""
     student, _, part = PurePosixPath(name).stem.rpartition(".")
     part = without_copy_number(part).lower()
+    # The name of a student may contain dots; the name of a part does not.
     return (student, part) if student and part in parts else None

@@ -1,7 +1,7 @@
-"""Read untrusted JSON. Limit its size, and report the place of an error.
+"""Read untrusted JSON: limit its size, and report the place of an error.
 
-A number that JSON or a float cannot represent (NaN, 1e999, a thousand digits) becomes text. So the
-grader can explain it in its cell, and still grade all other cells.
+A number that JSON or a float cannot represent (NaN, 1e999) becomes text, so that it does not make
+the other values unreadable.
 """
 
 import json
@@ -66,11 +66,7 @@ class MalformedError(ValueError):
 
 
 def read_json(data: bytes) -> object:
-    """Return the value of a JSON text in UTF-8. Lone surrogates become U+FFFD.
-
-    Raises MalformedError for anything else, for duplicate keys in an object, and for nesting deeper
-    than ``MAX_DEPTH``.
-    """
+    """Return the value of a JSON text in UTF-8. Raises MalformedError."""
     try:
         text = data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -123,7 +119,6 @@ def _too_deep() -> MalformedError:
 
 
 def _unique(pairs: list[tuple[str, object]]) -> dict[str, object]:
-    """Return the object. Raises MalformedError for duplicate keys, which JSON leaves undefined."""
     result = dict(pairs)
     if len(result) != len(pairs):
         [(repeated, _)] = Counter(key for key, _ in pairs).most_common(1)
@@ -143,7 +138,6 @@ def _float(text: str) -> float | str:
 
 
 def _without_surrogates(value: object) -> object:
-    """Replace lone surrogates, which cannot be encoded, by U+FFFD."""
     if isinstance(value, str):
         return _LONE_SURROGATE.sub("\N{REPLACEMENT CHARACTER}", value)
     if isinstance(value, dict):
