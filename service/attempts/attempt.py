@@ -12,7 +12,10 @@ MOST_ON_A_PAGE: Final = 100
 
 
 def hint_points(price: float, max_points: float) -> float:
-    """Return the cost of hints: ``price`` times ``max_points``, but at most ``max_points``."""
+    """Return the points that hints cost, at most ``max_points``.
+
+    ``price`` is their price as a share of ``max_points``.
+    """
     return round(min(price, 1.0) * max_points, 6)
 
 

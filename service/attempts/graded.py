@@ -1,4 +1,4 @@
-"""Grading of an attempt: the report for the learner, and the outcome for statistics."""
+"""Grade an attempt: the report for the learner, and the outcome for statistics."""
 
 from dataclasses import dataclass, replace
 
@@ -32,7 +32,7 @@ class AttemptGrading:
         return _grading_level(self._level(most)) in self._graded
 
     def at(self, most: FeedbackLevel) -> AttemptReport:
-        """Return the report at the requested feedback level, but at most at the level ``most``."""
+        """Return the report at the requested feedback level, or at ``most`` if that is lower."""
         level = self._level(most)
         if level not in self._reports:
             self._reports[level] = self._report(most, level)

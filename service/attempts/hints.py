@@ -43,10 +43,11 @@ class HintRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class HintStepOf:
-    """One step of the hint for a message; ``row`` and ``cell`` are its place, or ""."""
+    """One step (sentence) of the hint for a message of a report."""
 
     part: str
     code: str
+    # The place of the message; "" if the message is not about a row or a cell.
     row: str
     cell: str
     step: int
@@ -76,7 +77,7 @@ def take(
     prices: Sequence[float],
     now: datetime,
 ) -> HintRefusedError | None:
-    """Record that the learner took a step of a hint. Return an error if it is refused."""
+    """Record that a learner took one step of a hint. Return an error if it is refused."""
     # Two requests for the same step wait for each other.
     attempt = connection.execute(
         select(attempts).where(attempts.c.id == attempt_id).with_for_update()

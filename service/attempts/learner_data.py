@@ -103,7 +103,10 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
 
 
 def is_older(before: datetime) -> ColumnElement[bool]:
-    """Return the SQL condition for attempts whose retention time began before ``before``."""
+    """Return the SQL condition for attempts that are too old to be kept.
+
+    Their retention time began before the moment ``before``.
+    """
     # In an assignment, the time begins when the last learner can no longer hand in; without a due
     # date, it never begins.
     later = and_(
@@ -122,7 +125,7 @@ def delete_older(connection: Connection, before: datetime) -> int:
 
 
 def delete_attempts(connection: Connection, chosen: ColumnElement[bool]) -> int:
-    """Delete attempts and all records about them; return the number of attempts."""
+    """Delete attempts with all records about them; return the number of attempts."""
     numbers = select(attempts.c.number).where(chosen)
     for table in (regrade_queue, earlier_reports, overrides, hints):
         connection.execute(delete(table).where(table.c.attempt.in_(numbers)))

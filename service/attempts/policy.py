@@ -29,9 +29,9 @@ class Ruling:
 
 
 def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
-    """Return number and factor of a learner's next attempt, or raise AttemptRefusedError.
+    """Return the number and the factor of a learner's next attempt.
 
-    ``counted`` is the number of attempts that the learner has already used.
+    ``counted`` is the number of attempts that the learner has used. Raises AttemptRefusedError.
     """
     if rules.opens is not None and now < rules.opens:
         opens = say("This exercise opens on {moment}.", moment=_formatted(rules.opens))

@@ -143,7 +143,7 @@ class AttemptStore:
         return await self.read(lambda connection: history(connection, attempt_id))
 
     async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:
-        """Return the statistics of the wanted attempts at ``wanted.exercise``."""
+        """Return the statistics of an exercise from the wanted attempts."""
         return await self.read(lambda connection: exercise_statistics(connection, wanted))
 
     async def export(
@@ -179,11 +179,11 @@ class AttemptStore:
             return await self._running.run(work)
 
     async def data_of(self, learner: str) -> LearnerData:
-        """Count the records of a learner."""
+        """Return the numbers of a learner's records."""
         return await self.read(lambda connection: data_of(connection, learner))
 
     async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
-        """Delete all records of a learner; return their counts, and True if they are overwritten.
+        """Delete a learner's records; return their numbers, and True if no trace stays on disk.
 
         The second value is None for PostgreSQL, which overwrites deleted rows by itself.
         """

@@ -1,4 +1,4 @@
-"""What tutors change: they override points, and delete the data of a learner."""
+"""Changes by tutors: they override points, and delete the data of a learner."""
 
 from dataclasses import dataclass
 from datetime import datetime
@@ -69,7 +69,7 @@ class LearnerData:
 
 
 def data_of(connection: Connection, learner: str) -> LearnerData:
-    """Count the records of a learner."""
+    """Return the numbers of a learner's records."""
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
     columns = (attempts.c.number, earlier_reports.c.attempt, overrides.c.attempt)
     counts = [select(func.count(column)).where(column.in_(mine)) for column in columns]

@@ -1,4 +1,4 @@
-"""Checks by grading: model answers, the file's own checks, and parts with the same answer."""
+"""Checks that grade answers: model answers, the file's own checks, and duplicate parts."""
 
 import math
 from collections import Counter

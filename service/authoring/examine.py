@@ -33,7 +33,7 @@ def examine(exercise: Exercise) -> list[Remark]:
 
 
 def failures(exercise: Exercise) -> list[str]:
-    """Return the failures of an exercise as sentences, without the warnings."""
+    """Return the failures of an exercise, without warnings, as sentences."""
     return [
         joined(": ", [remark.field, remark.text]) if remark.field else remark.text
         for remark in examine(exercise)

@@ -1,4 +1,4 @@
-"""The points of answers that need no knowledge: only zeros and joint variables."""
+"""The points of answers that consist only of zeros and joint variables."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -16,7 +16,7 @@ MOST_OF_A_POSE: Final = 0.5
 
 
 def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
-    """Return by part id the share of points that only zeros and joint variables earn."""
+    """Return the share of points that only zeros and joint variables earn, by part id."""
     from service.solutions.kinds import LAZY
 
     return {
@@ -28,7 +28,7 @@ def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
 
 
 def summary(exercise: Exercise) -> Sentence:
-    """Return a sentence with the numbers of parts and checks, and the points of trivial answers."""
+    """Return a sentence about the parts, the checks and the easy points of an exercise."""
     earned = [
         say("{share} % of {part}", share=math.floor(100 * share), part=part)
         for part, share in lazy_shares(exercise).items()

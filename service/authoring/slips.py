@@ -1,4 +1,4 @@
-"""Check that the mistake of a part ``find_slip`` is possible in a table of the robot."""
+"""Check that the planted mistake of a part ``find_slip`` is possible in a table of the robot."""
 
 from collections.abc import Iterator
 

@@ -20,7 +20,7 @@ class BundledFile:
 
 
 def zipped(files: Iterable[BundledFile]) -> bytes:
-    """Return a zip file of the files, sorted by name; equal files give equal bytes."""
+    """Return a zip file of the files; equal files give equal bytes."""
     written = io.BytesIO()
     with zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as archive:
         for file in sorted(files, key=lambda file: file.name):

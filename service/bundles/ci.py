@@ -5,10 +5,7 @@ from service.bundles.content import BundleContent, BundleError, setup_script, te
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """Return the files of the bundle, with the scripts ``setup.sh`` and ``grade``.
-
-    Raises BundleError.
-    """
+    """Return the files of the bundle for continuous integration. Raises BundleError."""
     if content.variants is not None:
         reason = "a job does not know whose files it grades, so this bundle cannot have variants"
         raise BundleError(f"{reason}; leave out variants in the assignment")

@@ -8,7 +8,7 @@ from service.bundles.content import BundleContent, setup_script, template
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """Return the files of the autograder, with both scripts at the top."""
+    """Return the files of the bundle for Gradescope."""
     script = template("gradescope", "run_autograder")
     return [
         *content.program(),

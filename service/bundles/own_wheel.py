@@ -1,9 +1,7 @@
 """Build a wheel of the running program from its installed files.
 
-A bundle with this wheel needs no package index for the program itself, and has the version of the
-running program. The program may be installed from a wheel or from a checkout.
-
-Source: https://packaging.python.org/en/latest/specifications/binary-distribution-format/.
+So a bundle contains exactly this version, whether installed from a wheel or a checkout. Source:
+https://packaging.python.org/en/latest/specifications/binary-distribution-format/.
 """
 
 import base64
@@ -23,7 +21,7 @@ _PACKAGE = Path(__file__).parents[1]
 
 
 def own_wheel() -> BundledFile:
-    """Return the wheel, with the file name that installers expect."""
+    """Return a wheel of the running program, with the file name that installers expect."""
     installed = distribution(_NAME)
     stem = f"{_NAME.replace('-', '_')}-{installed.version}"
     files = [*_program(), *_metadata(installed, f"{stem}.dist-info")]

@@ -25,7 +25,7 @@ _PATTERNS: Final = ", ".join(
 
 
 def files(content: BundleContent) -> list[BundledFile]:
-    """Return the files of the bundle, in the folders ``image`` and ``question``."""
+    """Return the files of the bundle for PrairieLearn."""
     dockerfile = template("prairielearn", "Dockerfile")
     script = template("prairielearn", "grade-submission")
     return [

@@ -1,8 +1,4 @@
-"""The variants of a bundle: which seed (and so which numbers) a student gets.
-
-PrairieLearn chooses by its own variant seed among pages in the bundle. On Gradescope, the seed
-follows from a secret of the tutor and the number of the student's account.
-"""
+"""The variants of a bundle: which seed (and so which numbers) a student gets."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -37,7 +33,7 @@ class BundleVariants:
         }
 
     def some(self, exercise: str) -> Sequence[str]:
-        """Return seeds of an exercise to choose from."""
+        """Return seeds to choose from for an exercise."""
         drawn = (seed_of(self.secret, f"variant {i}", exercise, 0) for i in range(DRAWN))
         return self.deployed[exercise] or tuple(drawn)
 
@@ -48,7 +44,7 @@ class BundleVariants:
 
 
 def variants_of(exercises: Sequence[Exercise], secret: str) -> BundleVariants:
-    """Return the variants of a bundle with these exercises."""
+    """Return the variants for a bundle with these exercises."""
     return BundleVariants(
         secret, {each.id: each.vary.deployed for each in exercises if each.vary is not None}
     )

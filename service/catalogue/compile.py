@@ -1,7 +1,6 @@
 """Compile the validated content of an exercise file into an exercise that can be graded.
 
-This module knows the symbols, so it checks what pydantic cannot: each formula can be read, each row
-has its joint variable in the right column, and each range is valid.
+This also checks formulas, joint variables and ranges, which pydantic cannot check.
 """
 
 import hashlib

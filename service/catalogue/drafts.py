@@ -1,4 +1,4 @@
-"""Exercises that are still being written, for the preview in the editor."""
+"""Drafts (exercises that are still being written) for the preview in the editor."""
 
 import os
 import re

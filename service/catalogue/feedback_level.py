@@ -20,5 +20,5 @@ _FROM_THE_MOST = tuple(FeedbackLevel)
 
 
 def least(*levels: FeedbackLevel) -> FeedbackLevel:
-    """Return the lowest of these feedback levels."""
+    """Return the level with the least feedback."""
     return max(levels, key=_FROM_THE_MOST.index)

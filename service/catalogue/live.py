@@ -20,15 +20,15 @@ _log = logging.getLogger(__name__)
 
 
 def open_catalogue(folders: Sequence[Path], *, reload: bool) -> Mapping[str, Exercise]:
-    """Return the exercises of these folders. Raises CatalogueError for a faulty file.
+    """Return the exercises of these folders. With ``reload``, changed files are read again.
 
-    With ``reload``, changed files are read again later.
+    Raises CatalogueError for a faulty file.
     """
     return LiveCatalogue(folders) if reload else load_catalogue(*folders)
 
 
 class LiveCatalogue(Mapping[str, Exercise]):
-    """The exercises by id; changed files are read again, at most once in ``REFRESH_SECONDS``.
+    """The exercises by id; changed files are read again.
 
     If a changed file is faulty, the last usable version stays.
     """

@@ -31,7 +31,7 @@ def shipped_folder() -> Path:
 
 
 def exercise_files(*folders: Path) -> list[Path]:
-    """Return the exercise files of folders, folder by folder, sorted by name.
+    """Return the exercise files of folders, sorted by name in each folder.
 
     Raises CatalogueError if there are none, or if two have the same name.
     """

@@ -1,7 +1,4 @@
-"""The base classes of answer kinds: the keys of every part, and the interface of a kind.
-
-The kinds are the modules of ``parts/``.
-"""
+"""The base classes of answer kinds, which are the modules of ``parts/``."""
 
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Annotated, ClassVar, Literal

@@ -80,7 +80,7 @@ def numbered(count: int) -> list[str]:
 
 
 def choices(**stated: str) -> Iterator[str]:
-    """Yield phrases such as "base frame, tool frame free" for choices that are free or given."""
+    """Yield phrases such as "frames free" and "tool frame given" from ``stated``."""
     for choice in ("free", "given"):
         names = [_NAMES.get(name, name) for name, value in stated.items() if value == choice]
         if names:

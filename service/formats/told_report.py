@@ -11,7 +11,7 @@ ChangedText = Callable[[str], str]
 
 
 def report_in(report: Report, language: Language) -> Report:
-    """Return the report with its sentences in a language; for English, the same object."""
+    """Return the report with its sentences in a language."""
     translation = language.translation
     if translation is None:
         return report
@@ -19,7 +19,7 @@ def report_in(report: Report, language: Language) -> Report:
 
 
 def with_texts(report: Report, changed: ChangedText) -> Report:
-    """Return a copy of the report, with ``changed`` applied to each of its sentences."""
+    """Return a copy of the report, with each sentence replaced by ``changed(sentence)``."""
     # Sentences are messages, corrections in words, and the reasons of lost points.
     return replace(report, parts=tuple(_part(part, changed) for part in report.parts))
 

@@ -15,8 +15,7 @@ _NO_MESSAGES: Final = (FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
 class ClassStatistics:
     """Counts the reports of a class, one by one.
 
-    Number the submissions, and add the score of each to ``scores``. ``untold`` counts reports whose
-    feedback level hides mistakes.
+    The caller adds the score of each submission to ``scores``.
     """
 
     def __init__(self) -> None:
@@ -27,7 +26,8 @@ class ClassStatistics:
         self._parts: dict[tuple[str, str], PartSuccess] = {}
 
     def add(self, submission: int, report: Report) -> None:
-        """Count a report of the submission with this number."""
+        """Count a report; ``submission`` is the number of its submission."""
+        # These reports hide mistakes.
         self.untold += report.feedback in _NO_MESSAGES
         for part in report.parts:
             self._parts.setdefault((report.exercise, part.part), PartSuccess()).add(part)

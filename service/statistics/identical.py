@@ -17,10 +17,7 @@ Mistake = tuple[str, str, str]
 
 @dataclass(slots=True)
 class MistakeGroup:
-    """Submissions with identical mistakes in a part.
-
-    ``mistakes`` are all wrong cells of the part; very long entries are truncated.
-    """
+    """Submissions with identical mistakes in a part; ``mistakes`` are its wrong cells."""
 
     exercise: str
     part: str

@@ -30,7 +30,8 @@ class CountedSlip:
     _sentences: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: int, part: tuple[str, str], sentence: str) -> None:
-        """Count the mistake in a part. Add all parts of a submission before the next submission."""
+        """Count a mistake in a part of a submission."""
+        # All parts of a submission come before the next submission.
         if not self.submissions or self.submissions[-1] != submission:
             self.submissions.append(submission)
         self.parts[part] += 1

@@ -12,14 +12,12 @@ _EDGE: Final = 1e-6
 
 @dataclass(frozen=True, slots=True)
 class ScoreBin:
-    """The submissions with a score from ``low`` up to, but not including, ``high``.
-
-    The last bin includes 1. ``passed`` is the number of these submissions that reach the pass mark.
-    """
+    """The submissions with a score from ``low`` to below ``high``; the last bin includes 1."""
 
     low: float
     high: float
     count: int
+    # The number of these submissions that reach the pass mark.
     passed: int
 
 

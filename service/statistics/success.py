@@ -15,7 +15,7 @@ DIFFERENT_ENTRIES: Final = 300
 
 @dataclass(slots=True)
 class Share:
-    """The number of answers, including unreadable ones, and of right answers."""
+    """The numbers of all answers and of right answers."""
 
     correct: int = 0
     answered: int = 0
@@ -32,7 +32,7 @@ class Share:
 
 
 class FrequentEntry(NamedTuple):
-    """A wrong entry of a cell, as the grader prints the formula, and how often it occurs."""
+    """A wrong entry of a cell, and how often it occurs."""
 
     row: str
     cell: str
@@ -48,7 +48,7 @@ class CellSuccess:
     wrong: Counter[str] = field(default_factory=Counter)
 
     def add(self, cell: CellReport) -> None:
-        """Count the cell of a report."""
+        """Add the cell of one report to the counts."""
         self.share.add(cell.verdict)
         if cell.verdict is Verdict.INCORRECT and cell.read is not None:
             text = shown_entry(cell.read.text)
@@ -70,7 +70,7 @@ class RowSuccess:
     seen: int = 0
 
     def add(self, row: RowReport) -> None:
-        """Count the row of a report."""
+        """Add the row of one report to the counts."""
         self.seen += 1
         self.share.add(row.verdict)
         for cell in row.cells:
@@ -90,7 +90,7 @@ class PartSuccess:
     _rows: dict[str, RowSuccess] = field(default_factory=dict)
 
     def add(self, part: PartReport) -> None:
-        """Count the part of a report."""
+        """Add the part of one report to the counts."""
         self.seen += 1
         self.share.add(part.verdict)
         self.points += part.points
@@ -100,7 +100,7 @@ class PartSuccess:
 
     @property
     def mean_points(self) -> float | None:
-        """The mean points of answers; None without answers."""
+        """The mean points of an answer; None without answers."""
         return self.points / self.share.answered if self.share.answered else None
 
     @property
@@ -110,7 +110,7 @@ class PartSuccess:
         return {label: row for label, row in self._rows.items() if 2 * row.seen > self.detailed}
 
     def commonest_wrong(self, most: int, at_least: int = 2) -> list[FrequentEntry]:
-        """Return the ``most`` commonest wrong entries with at least ``at_least`` occurrences."""
+        """Return the ``most`` commonest wrong entries that occur at least ``at_least`` times."""
         found = [entry for entry in self._wrong() if entry.times >= at_least]
         return sorted(found, key=lambda entry: -entry.times)[:most]
 
@@ -122,5 +122,5 @@ class PartSuccess:
 
 
 def columns(rows: Iterable[RowSuccess]) -> list[str]:
-    """Return the labels of all cells of the rows, in order."""
+    """Return the distinct labels of the cells in these rows, in order."""
     return list(dict.fromkeys(label for row in rows for label in row.cells))

@@ -1,7 +1,7 @@
 """Find the answers to each exercise of an assignment in the files of a student.
 
-The name of a file says which exercise and part the file answers. If the name does not, the key
-``exercise`` in the file names the exercise, unless the assignment has only one exercise.
+The name of a file says which exercise and part the file answers. Otherwise, the key ``exercise`` in
+the file names the exercise.
 """
 
 import json
@@ -269,7 +269,7 @@ def read_body(
 ) -> GradeRequest:
     """Read the answers in the content of a file. Raises UnusableFileError.
 
-    ``part`` is the part that the file answers, if its name or the caller says so.
+    ``part`` is the part that the file answers, if known.
     """
     part = part or assigned.only_part
     value = content.value

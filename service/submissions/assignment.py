@@ -115,13 +115,13 @@ class AssignedExercise:
 class Assignment:
     """Exercises that are set together, in order; a single exercise is also an assignment.
 
-    ``feedback`` is the highest feedback level for students; None means the level of each exercise.
     With ``variants``, each learner gets personal variants of the exercises.
     """
 
     exercises: tuple[AssignedExercise, ...]
     title: str = ""
     pass_mark: float = PASS_MARK
+    # The highest feedback level for students; None means the level of each exercise.
     feedback: FeedbackLevel | None = None
     variants: bool = False
 
@@ -131,7 +131,7 @@ class Assignment:
 
     @property
     def part_names(self) -> frozenset[str]:
-        """The ids of the parts if the assignment has only one exercise; otherwise empty."""
+        """The ids of the parts if there is only one exercise; otherwise empty."""
         if len(self.exercises) > 1:
             return frozenset()
         return frozenset(part.id for each in self.exercises for part in each.exercise.parts)
@@ -212,9 +212,9 @@ def load_assignment(file: Path, find: Callable[[str], SetExercise]) -> Assignmen
 
 
 def with_seeds(assignment: Assignment, seeds: Mapping[str, str]) -> Assignment:
-    """Return the assignment with one student's variants of the exercises.
+    """Return the assignment with variants of its exercises. Raises NoVariantError.
 
-    ``seeds`` has the seed of each variant by exercise id. Raises NoVariantError.
+    ``seeds`` has the seed of each variant by exercise id.
     """
     exercises = []
     for each in assignment.exercises:

@@ -1,7 +1,6 @@
 """Find the table or matrix in a LaTeX, Markdown or MATLAB document.
 
-Such a document may have other words or statements around the answer. Unless it has exactly one
-table or matrix, its text does not change.
+Such a document may have other words or statements around the answer.
 """
 
 import re

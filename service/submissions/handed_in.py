@@ -26,14 +26,14 @@ _JUNK: Final = frozenset({"__macosx", "thumbs.db", "desktop.ini", "__pycache__",
 
 @dataclass(frozen=True, slots=True)
 class HandedFile:
-    """One file of a submission; ``name`` is its path in the submission, as the student named it.
-
-    ``problem`` says why the file must not be read; ``content`` is set if it has been read already.
-    """
+    """One file of a submission."""
 
     path: Path
+    # The path in the submission, as the student named it.
     name: str
+    # The reason why the file must not be read.
     problem: str = ""
+    # Set if the file has been read already.
     content: bytes | None = field(default=None, repr=False)
 
     @property
@@ -90,8 +90,8 @@ def all_handed_in(
     """Yield the submissions in files and folders.
 
     With ``folder_is_one``, a folder is the submission of one student. ``left_out`` is a file that
-    is not a submission. ``parts`` are the parts that file names such as ``STUDENT.PART.csv`` may
-    contain.
+    is not a submission. ``parts`` are the possible parts in file names such as
+    ``STUDENT.PART.csv``.
     """
     for path in paths:
         if str(path) == STANDARD_INPUT:

@@ -28,14 +28,13 @@ _COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
 
 @dataclass(frozen=True, slots=True)
 class PlatformName:
-    """The parts of a file name that a learning platform has given.
+    """The parts of a file name that a learning platform has given."""
 
-    ``student`` is unique; ``learner`` is the student in the platform's gradebook; ``file`` is the
-    student's own name of the file, empty for a folder.
-    """
-
+    # Unique.
     student: str
+    # The student in the platform's gradebook.
     learner: str
+    # The student's own name of the file; empty for a folder.
     file: str
 
 

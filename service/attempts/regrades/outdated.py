@@ -61,11 +61,12 @@ class CountedPoints:
 
 @dataclass(frozen=True, slots=True)
 class RegradedAttempt:
-    """The points of an attempt before and after a regrade, on the scale of the exercise file."""
+    """The points of an attempt before and after a regrade."""
 
     id: str
     learner: str
     ordinal: int | None
+    # Points on the scale of the exercise file.
     before: float
     after: float
     max_points: float
@@ -85,7 +86,7 @@ class RegradedAttempt:
 
 
 class Regrading:
-    """Regrades the attempts at an exercise with its current version and the current program.
+    """Regrades attempts with the current versions of the exercise and the program.
 
     With ``course``, it regrades only attempts in this course.
     """
@@ -300,7 +301,7 @@ class Regrading:
 
 
 def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
-    """Return the exercise or variant of an attempt; None if the variant has other numbers now."""
+    """Return the exercise or variant of an attempt; None if its numbers have changed since."""
     if row.variant is None:
         return exercise
     make = variant_of if row.assignment is None else hidden_variant

@@ -57,9 +57,9 @@ def preview_step(engine: Engine, regrading: Regrading, cursor: str | None) -> Re
 
 
 def apply_step(engine: Engine, regrading: Regrading, cursor: str | None) -> RegradeStep:
-    """Regrade some outdated attempts. Raises BadCursorError, StoreDownError.
+    """Regrade some outdated attempts; several processes may do so at once.
 
-    The first step has no cursor. Several processes may do this at once.
+    The first step has no cursor. Raises BadCursorError, StoreDownError.
     """
     if cursor is not None:
         _read(cursor)

@@ -21,7 +21,7 @@ _DECODER: Final = json.JSONDecoder()
 
 
 def recorded_report(report: Report) -> str:
-    """Return a report for the database, as JSON with its sentences."""
+    """Return a report as JSON for the database, with its translatable sentences."""
     text = rendered(report).decode()
     found: dict[str, Sentence] = {}
 

@@ -39,7 +39,7 @@ _Slip: TypeAlias = tuple[str, str]
 
 
 def exercise_statistics(connection: Connection, wanted: AttemptFilter) -> ExerciseStatistics:
-    """Return the statistics of the wanted attempts at ``wanted.exercise``."""
+    """Return the statistics of an exercise from the wanted attempts."""
     assert wanted.exercise is not None
     chosen = condition(wanted)
     counts = _counts(connection, chosen)

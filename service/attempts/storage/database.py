@@ -44,8 +44,8 @@ _WHEN_SILENT: Final = {
 def open_database(url: str, *, create: bool = True) -> Engine:
     """Open the database at the URL and migrate it to the newest tables.
 
-    ``url`` is an SQLAlchemy URL or the path of an SQLite file, which ``create`` allows to create.
-    Raises UnusableDatabaseError.
+    ``url`` is an SQLAlchemy URL or the path of an SQLite file. With ``create``, a missing file is
+    created. Raises UnusableDatabaseError.
     """
     engine = unmigrated_database(url)
     is_sqlite = engine.dialect.name == "sqlite"
@@ -73,7 +73,7 @@ def open_database(url: str, *, create: bool = True) -> Engine:
 
 
 def migration_state(connection: Connection) -> tuple[str | None, str | None]:
-    """Return the version of the tables (None without tables), and the newest known version."""
+    """Return the version of the tables (None without tables) and the newest version."""
     config = Config()
     config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
     newest = ScriptDirectory.from_config(config).get_current_head()
@@ -220,6 +220,6 @@ def safe_url(engine: Engine) -> str:
 
 
 def reason(error: SQLAlchemyError) -> str:
-    """Return the database driver's message in one line, without values of rows."""
+    """Return the database driver's error message in one line, without values of rows."""
     said = str(getattr(error, "orig", None) or error).partition("\nDETAIL:")[0]
     return " ".join(said.split())[:300]

@@ -114,7 +114,7 @@ def queue_scores(
 
 
 def forget_scores(connection: Connection, learner: str) -> None:
-    """Remove a learner from the queue: clear sent scores at platforms, delete all others."""
+    """Delete a learner's scores: sent ones at the platforms, the others in the queue."""
     mine = scores.c.learner == learner
     connection.execute(scores.delete().where(mine, scores.c.stamp.is_(None)))
     # The platform's id of the learner stays until the platform has cleared the score.

@@ -20,15 +20,14 @@ _SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
 
 
 def with_line(field: str, line: int | None) -> str:
-    """Return the field with its line, as in "points (line 12)", or without a line if unknown."""
+    """Return the field with its line, if known, as in "points (line 12)"."""
     return field if line is None else say("{field} (line {line})", field=field, line=line)
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:
-    """Return the line of a field such as ``parts[1].points``.
+    """Return the line of a field such as ``parts[1].points``, or of what encloses the field.
 
-    If the field has no line, return that of the nearest enclosing field. ``lines`` comes from
-    ``value_lines``.
+    ``lines`` comes from ``value_lines``.
     """
     while field and field not in lines:
         field = field[: max(field.rfind("."), field.rfind("["), 0)]

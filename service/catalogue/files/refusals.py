@@ -60,10 +60,7 @@ _QUOTED: Final = re.compile(r"'([^']*)'")
 def refusals(
     error: ValidationError | FieldError | ExceptionGroup[FieldError], table_at: TableAt
 ) -> list[tuple[str, str]]:
-    """Return the field and the reason of each fault in an exercise file.
-
-    ``table_at`` takes a location of pydantic and returns the model of the TOML table there.
-    """
+    """Return the field and the reason of each fault that was found in an exercise file."""
     if isinstance(error, ExceptionGroup):
         return [fault for each in error.exceptions for fault in refusals(each, table_at)]
     if isinstance(error, FieldError):

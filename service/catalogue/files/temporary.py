@@ -1,4 +1,4 @@
-"""The folder for temporary folders that several processes share."""
+"""The place of temporary folders that several processes share."""
 
 import os
 import tempfile

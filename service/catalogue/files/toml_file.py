@@ -44,11 +44,7 @@ class CatalogueError(Exception):
 
 
 def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
-    """Read a TOML file, and return what ``build`` makes of its content.
-
-    Raises CatalogueError. ``table_at`` takes a location of pydantic and returns the model of the
-    TOML table there.
-    """
+    """Read a TOML file, and return what ``build`` makes of its content. Raises CatalogueError."""
     try:
         text = read_regular(file, _LARGEST).decode()
     except (OSError, ValueError) as error:
@@ -59,7 +55,7 @@ def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: Ta
 def read_toml(
     file: Path, text: str, build: Callable[[dict[str, Any]], Built], table_at: TableAt
 ) -> Built:
-    """Read a TOML text like the content of ``file``; see ``load_toml``. Raises CatalogueError."""
+    """Return what ``build`` makes of a TOML text. Raises CatalogueError, which names ``file``."""
     # Normalize line ends as in a file that is opened in text mode.
     text = text.replace("\r\n", "\n")
     try:

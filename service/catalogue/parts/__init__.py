@@ -1,7 +1,7 @@
-"""The answer kinds in exercise files, one module for each.
+"""The answer kinds in exercise files.
 
-A module ``<kind>.py`` has one subclass of ``PartSpec``, whose ``kind`` is the module's name. This
-package finds all kinds by their modules; nothing else lists them.
+A module ``<kind>.py`` has one subclass of ``PartSpec``. This package finds all kinds by their
+modules; nothing else lists them.
 """
 
 import inspect
@@ -61,7 +61,7 @@ else:
 
 
 def posted_forms() -> str:
-    """The JSON form of an answer of each kind: "`transform`: a list of rows, …"."""
+    """Return the JSON form of an answer of each kind: "`transform`: a list of rows, …"."""
     kinds: dict[str, list[str]] = {}
     for kind, shape in _SHAPES.items():
         kinds.setdefault(shape.posted, []).append(f"`{kind}`")

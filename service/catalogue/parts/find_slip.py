@@ -93,7 +93,7 @@ class FindSlipSpec(TablePartSpec):
 
     @property
     def table(self) -> DhTableSpec:
-        """Return a part of kind ``dh_table`` with the same convention, frames and points."""
+        """Return an equivalent part of the kind ``dh_table``."""
         return DhTableSpec(
             id=self.id,
             title=self.title,
@@ -104,7 +104,7 @@ class FindSlipSpec(TablePartSpec):
         )
 
     def shape(self, reference: Reference | None) -> FindSlipShape:
-        """Return the shape of an answer, still without the cells of the given table."""
+        """Return the shape of an answer, without the cells of the given table."""
         assert isinstance(reference, Robot)
         return FindSlipShape(
             columns=list(COLUMNS),

@@ -1,1 +1,1 @@
-"""The reference robot of an exercise and its formulas."""
+"""The reference robot of an exercise, from which right answers are computed."""

@@ -1,7 +1,6 @@
 """Read the formulas of an exercise file, and evaluate them at trial values of their symbols.
 
-This finds wrong reference answers before any student is graded: for example, a matrix that is not a
-rotation is refused.
+This finds faults in right answers, for example a matrix that is not a rotation.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -86,10 +85,7 @@ def screws_of(field: str, axes: Sequence[Screw]) -> WrittenFormulas:
 def fields_of(
     path: str, grid: FormulaGrid, quantities: Sequence[Sequence[Kind]]
 ) -> Iterator[FormulaField]:
-    """Yield each formula of a grid with its field and quantity (length, angle or number).
-
-    ``path`` is the field of row {i} and column {j}.
-    """
+    """Yield each formula of a grid with its field and quantity (length, angle or number)."""
     for i, (row, kinds) in enumerate(zip(grid, quantities, strict=True)):
         for j, (formula, kind) in enumerate(zip(row, kinds, strict=True)):
             yield path.format(i=i, j=j), formula, kind
@@ -163,10 +159,7 @@ class FormulaReader:
 
 
 def check_rotation(field: str, numbers: Numbers) -> None:
-    """Raise FieldError unless the upper left 3×3 blocks of the numbers are rotations.
-
-    The shape of ``numbers`` is ``(3 or 4, 3 or 4, samples)``.
-    """
+    """Raise FieldError unless the upper left 3×3 blocks of the numbers are rotations."""
     rotation = np.moveaxis(numbers[:3, :3], -1, 0)
     if np.abs(np.swapaxes(rotation, 1, 2) @ rotation - np.eye(3)).max() > EXACT:
         raise FieldError(

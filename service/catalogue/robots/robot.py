@@ -1,4 +1,4 @@
-"""The reference robot given by a DH table: its formulas and their numbers."""
+"""A reference robot given by a DH table: its formulas and their numbers."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -102,7 +102,7 @@ ALONG_Z = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, slots=True)
 class Robot:
-    """The reference robot. ``tables`` has a table in each convention that can express it."""
+    """A reference robot. ``tables`` has a table in each convention that can express it."""
 
     structure: str
     convention: Convention
@@ -137,7 +137,7 @@ class Robot:
         return frames(table.values(values, samples), table.convention)
 
     def frame_number(self, name: int | str) -> int:
-        """The number of table rows from the base frame to the frame ``name``."""
+        """The number of table rows between the base frame and the frame ``name``."""
         known = {"base": 0, "tool": len(self.tables[self.convention].rows)}
         return known[name] if isinstance(name, str) else name - self.joints[0].index + 1
 
@@ -161,7 +161,7 @@ class Robot:
 def tables_in_both_conventions(
     joints: tuple[Joint, ...], rows: Sequence[FormulaRow], convention: Convention, zero: Expression
 ) -> dict[Convention, ReferenceTable]:
-    """Return the author's table, and the same robot's table in the other convention if any."""
+    """Return the author's table and, if possible, the equivalent one in the other convention."""
     if convention is Convention.STANDARD:
         other, regrouped = Convention.MODIFIED, modified_rows(rows, zero)
     else:

@@ -21,7 +21,7 @@ from service.kinematics.transforms import Matrices, Numbers
 
 @dataclass(frozen=True, slots=True)
 class ScrewRobot:
-    """The reference robot. ``home`` is 4×4, ``axes`` has a six-vector (ω; v) for each joint."""
+    """A reference robot: ``home`` is 4×4, ``axes`` has a six-vector (ω; v) for each joint."""
 
     structure: str
     joints: tuple[Joint, ...]

@@ -15,8 +15,7 @@ TRIALS = 16
 class Variable:
     """A symbol that answers may contain, with the range of its test values.
 
-    Angles are in radians, lengths in ``unit``. ``joint`` is the joint's number if this is a joint
-    variable.
+    Angles are in radians, lengths in ``unit``. ``joint`` is set for a joint variable.
     """
 
     name: str

@@ -43,21 +43,19 @@ _NOT_GRADING: Final = frozenset({
 
 
 class Vary:
-    """An exercise file's content with a table ``[vary]``, from which variants are made.
-
-    ``table`` is ``[vary]`` as written. ``deployed`` are the only seeds for assignments; if empty,
-    assignments use any seed. ``base_version`` is the version of the file.
-    """
+    """An exercise file's content with a table ``[vary]``, from which variants are made."""
 
     def __init__(self, exercise_id: str, content: Mapping[str, Any]) -> None:
         """Read the table ``vary`` of a file's content. Raises FieldError."""
         written = content["vary"]
         if not isinstance(written, dict):
             raise FieldError("vary", say("must be a table; write [vary]"))
+        # The table as written.
         self.table: Mapping[str, Any] = written
         self._id = exercise_id
         self._content = {key: value for key, value in content.items() if key != "vary"}
         self._choices = choices_of(written)
+        # The only seeds for assignments; if there are none, assignments use any seed.
         self.deployed = deployed_seeds(written)
         numbers = {name: numeric_values(values) for name, values in self._choices.items()}
         self._numbers = {name: found for name, found in numbers.items() if found is not None}
@@ -75,14 +73,15 @@ class Vary:
             raise FieldError(f"vary.{CONDITIONS}", reason)
         # The exercise without a seed has the first choices if they meet the conditions.
         self._plain = chosen
+        # The version changes with every field that affects grading, in any variant.
         graded = {key: value for key, value in self._content.items() if key not in _NOT_GRADING}
         kept = {key: value for key, value in written.items() if key != DEPLOYED}
         self.base_version = _digest({**graded, "vary": kept}, 6)
 
     def with_choices(self, table: Mapping[str, Any]) -> "Vary":
-        """Return this content with the table ``[vary]`` of an earlier version of the file.
+        """Return this content with another table ``[vary]``, from an earlier version of the file.
 
-        Raises FieldError if the texts do not fit that table.
+        Raises FieldError if the other texts do not fit that table.
         """
         try:
             earlier = Vary(self._id, {**self._content, "vary": table})
@@ -125,7 +124,7 @@ class Vary:
         return f"{self.base_version}-{values_digest(values)}"
 
     def content(self, values: Mapping[str, VaryValue]) -> dict[str, Any]:
-        """Return the file's content with these values in all texts. Raises FieldError."""
+        """Return the file's content with these values filled into all texts. Raises FieldError."""
         return dict(self._filled(self._content, values, ""))
 
     def _draw(self, seed: str) -> Mapping[str, int] | None:

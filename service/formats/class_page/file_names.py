@@ -1,4 +1,4 @@
-"""Safe file names from the names of submissions, which anybody may have chosen."""
+"""Safe file names made from the names of submissions, which are untrusted."""
 
 import unicodedata
 from collections.abc import Callable
@@ -29,7 +29,7 @@ def distinct_file_names(ending: str) -> Callable[[str], str]:
 
 
 def file_stem(name: str) -> str:
-    """Return a name as a file name without an ending, or ``submission`` if nothing is left."""
+    """Return a name as a safe file name without an ending."""
     composed = unicodedata.normalize("NFC", name)
     kept = "".join(c if c.isalnum() or c in _SIGNS else " " for c in composed)
     stem = "-".join(kept.split())[:LONGEST].strip(_SIGNS)

@@ -39,7 +39,7 @@ class Overview:
     _learners: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: GradedSubmission, page: str) -> None:
-        """Count a submission, and add its line; its reports are not stored."""
+        """Count a submission and add its line; its reports are not stored."""
         number = len(self.lines)
         self.pass_mark = submission.pass_mark
         self._learners[submission.learner] += 1
@@ -65,7 +65,7 @@ class Overview:
                 self.statistics.add(number, file.report)
 
     def listed(self, numbers: Iterable[int]) -> list[SubmissionLine]:
-        """Return the lines of the submissions with these numbers."""
+        """Return the index's lines for the submissions with these numbers."""
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:

@@ -1,4 +1,4 @@
-"""Points as comma-separated values: one line for each submission, one column for each part."""
+"""Points as comma-separated values: a line for each submission, a column for each part."""
 
 from collections.abc import Iterable, Iterator
 from typing import Final

@@ -1,4 +1,4 @@
-"""Reports as JSON: always a list, with one entry for each file."""
+"""Reports as a JSON list with one entry for each file."""
 
 import json
 from collections.abc import Iterable, Iterator

@@ -92,14 +92,13 @@ class GradedFile:
 
 @dataclass(frozen=True, slots=True)
 class GradedSubmission:
-    """The submission of one learner: a file for each assigned exercise.
+    """The submission of one learner: a file for each assigned exercise."""
 
-    ``name`` is unique among all submissions. ``pass_mark`` is the score to reach, 0..1.
-    """
-
+    # Unique among all submissions.
     name: str
     learner: str
     files: tuple[GradedFile, ...]
+    # The score to reach, 0..1.
     pass_mark: float
 
     @property
@@ -144,10 +143,7 @@ class GradedSubmission:
 
 
 class Visibility(StrEnum):
-    """When students see a result, on platforms where the grader decides this.
-
-    The names are Gradescope's.
-    """
+    """When students see a result on a grading platform, with Gradescope's names."""
 
     VISIBLE = "visible"
     AFTER_DUE_DATE = "after_due_date"

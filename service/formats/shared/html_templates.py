@@ -1,8 +1,7 @@
-"""HTML from Jinja2 templates that escape every text.
+"""HTML from Jinja2 templates, which are named by their path below ``service/``.
 
-A template is named by its path below ``service/``. Only HTML that the service itself made
-(``own_html``) is not escaped. Each language has its own Jinja2 environment, which translates ``{%
-trans %}``, ``_("…")`` and each ``Sentence``.
+Only HTML that the service itself made (``own_html``) is not escaped. Each language has its own
+Jinja2 environment.
 """
 
 import base64
@@ -35,7 +34,7 @@ _SHARED_STYLE: Final = Path(__file__).with_name("templates") / "report.css"
 
 @dataclass(frozen=True, slots=True)
 class StyleSheet:
-    """A style sheet to print in a page, and its hash for the page's Content-Security-Policy."""
+    """The CSS to print in a page, and its hash for the page's Content-Security-Policy."""
 
     html: Markup
     hash: str
@@ -88,7 +87,7 @@ def formula(text: str) -> Markup:
 
 @cache
 def environment(language: Language = ENGLISH) -> "Environment":
-    """Return the Jinja2 environment of a language; in a process, it compiles each template once."""
+    """Return the Jinja2 environment of a language, which keeps its compiled templates."""
     # Imported here, so that a program that writes no HTML starts without it.
     from jinja2 import Environment, FileSystemLoader, StrictUndefined
 

@@ -17,5 +17,5 @@ def json_document(content: Mapping[str, object]) -> bytes:
 
 
 def printable(document: bytes) -> bytes:
-    """Return equivalent JSON without control characters and without commands to a build log."""
+    """Return equivalent JSON that is safe to print to a terminal or the log of a build."""
     return _UNPRINTABLE.sub(lambda sign: b"\\u%04x" % ord(sign[0].decode()), document)

@@ -52,7 +52,7 @@ class PartResult:
 
     @property
     def verdict(self) -> Verdict:
-        """Return the verdict on the part; unreadable if the part has no report."""
+        """Return the verdict on the part; without a report, the part is unreadable."""
         return self.report.verdict if self.report else Verdict.UNREADABLE
 
     @property

@@ -1,4 +1,4 @@
-"""Untrusted texts, and numbers, in a form that is safe and short to print."""
+"""Untrusted texts, and numbers, as short text that is safe to print."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -70,7 +70,7 @@ def percent(score: float) -> str:
 
 
 def whole_percent(share: float) -> str:
-    """Return a share, 0..1, in whole per cent; 2/3 is ``67 %``, only 1 is ``100 %``."""
+    """Return a share, 0..1, in whole per cent. Only 1 is ``100 %``."""
     return f"{min(int(share * 100 + 0.5), 99) if share < 1 else 100} %"
 
 

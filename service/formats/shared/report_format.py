@@ -34,7 +34,7 @@ class UnusableSettingError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class Document:
-    """A file of a folder: its path in the folder, with ``/`` between names, and its content."""
+    """A file of a folder: its path in the folder, and its content."""
 
     path: str
     pieces: Iterable[bytes]
@@ -63,7 +63,7 @@ class ReportFormat:
 def single(
     document: Callable[[GradedSubmission, Setting], bytes],
 ) -> Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]:
-    """Return a format's function ``pieces``, made from a function that writes one submission.
+    """Return the function ``pieces`` of a format whose documents hold one submission.
 
     It raises UnusableSettingError for any other number of submissions.
     """

@@ -17,7 +17,7 @@ GRADEBOOK_HEAD: Final = ("Identifier", "Grade", "Maximum Grade", "Feedback comme
 
 
 def line(cells: Iterable[str | float | None]) -> bytes:
-    """Return one line of visible texts; a text like a formula gets a leading apostrophe."""
+    """Return one line of cells; a text that looks like a formula gets a leading apostrophe."""
     written = io.StringIO(newline="")
     csv.writer(written, lineterminator="\r\n").writerow([_cell(cell) for cell in cells])
     return written.getvalue().encode()

@@ -1,7 +1,4 @@
-"""Add variants to attempts and assignments.
-
-Count how many variants each learner has been given.
-"""
+"""Add variants to attempts and assignments, and the number of variants that a learner has got."""
 
 import sqlalchemy as sa
 from alembic import op

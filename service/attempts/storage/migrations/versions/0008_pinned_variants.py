@@ -11,5 +11,5 @@ down_revision = "0007"
 
 
 def upgrade() -> None:
-    """Add the column ``choices``. It is filled in when a learner next hands in."""
+    """Add the column ``choices``."""
     op.add_column("assignments", sa.Column("choices", sa.Text))
