@@ -179,11 +179,11 @@ class AttemptStore:
             return await self._running.run(work)
 
     async def data_of(self, learner: str) -> LearnerData:
-        """Return the numbers of a learner's records."""
+        """Count the records of a learner."""
         return await self.read(lambda connection: data_of(connection, learner))
 
     async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
-        """Delete a learner's records; return their numbers, and True if no trace stays on disk.
+        """Delete a learner's records; return their counts, and True if no trace stays on disk.
 
         The second value is None for PostgreSQL, which overwrites deleted rows by itself.
         """

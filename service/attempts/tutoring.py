@@ -60,7 +60,7 @@ def override(
 
 @dataclass(frozen=True, slots=True)
 class LearnerData:
-    """The numbers of a learner's attempts, earlier reports, overrides and courses."""
+    """Counts of a learner's attempts, earlier reports, overrides and courses."""
 
     attempts: int
     earlier_reports: int
@@ -69,7 +69,7 @@ class LearnerData:
 
 
 def data_of(connection: Connection, learner: str) -> LearnerData:
-    """Return the numbers of a learner's records."""
+    """Count the records of a learner."""
     mine = select(attempts.c.number).where(attempts.c.learner == learner)
     columns = (attempts.c.number, earlier_reports.c.attempt, overrides.c.attempt)
     counts = [select(func.count(column)).where(column.in_(mine)) for column in columns]
@@ -79,7 +79,7 @@ def data_of(connection: Connection, learner: str) -> LearnerData:
 
 
 def forget(connection: Connection, learner: str) -> LearnerData:
-    """Delete all records of a learner, also in courses; return the numbers of records."""
+    """Delete all records of a learner, also in courses; return their counts."""
     for _ in range(_TRIES):
         try:
             with connection.begin_nested():

@@ -28,7 +28,7 @@ def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
 
 
 def summary(exercise: Exercise) -> Sentence:
-    """Return a sentence about the parts, the checks and the easy points of an exercise."""
+    """Return one sentence about an exercise: its parts, its checks and its easiest points."""
     earned = [
         say("{share} % of {part}", share=math.floor(100 * share), part=part)
         for part, share in lazy_shares(exercise).items()

@@ -42,9 +42,10 @@ class FrequentEntry(NamedTuple):
 
 @dataclass(slots=True)
 class CellSuccess:
-    """The answers to a cell, counted from reports; ``wrong`` counts wrong entries by text."""
+    """The answers to a cell, counted from reports."""
 
     share: Share = field(default_factory=Share)
+    # Wrong entries by their text.
     wrong: Counter[str] = field(default_factory=Counter)
 
     def add(self, cell: CellReport) -> None:
@@ -63,10 +64,11 @@ def shown_entry(text: str) -> str:
 
 @dataclass(slots=True)
 class RowSuccess:
-    """The answers to a row, counted from reports; ``seen`` is the number of reports."""
+    """The answers to a row, counted from reports."""
 
     share: Share = field(default_factory=Share)
     cells: dict[str, CellSuccess] = field(default_factory=dict)
+    # The number of reports with this row.
     seen: int = 0
 
     def add(self, row: RowReport) -> None:

@@ -102,7 +102,7 @@ class Regrading:
         self._memoized = MemoizedReports()
 
     def outdated(self, connection: Connection) -> list[int]:
-        """Return the numbers of attempts graded with another version of exercise or program."""
+        """Return the row numbers of attempts that were graded with another version."""
         numbers = select(attempts.c.number).where(self._is_outdated()).order_by(attempts.c.number)
         return list(connection.scalars(numbers))
 
@@ -113,7 +113,7 @@ class Regrading:
     def outdated_after(
         self, connection: Connection, place: TimePlace | None, most: int
     ) -> list[TimePlace]:
-        """Return time and number of outdated attempts later than ``place``, the oldest first."""
+        """Return time and row number of outdated attempts after ``place``, the oldest first."""
         following = select(*BY_TIME).where(self._is_outdated())
         if place is not None:
             following = following.where(later_than(place))
@@ -301,7 +301,7 @@ class Regrading:
 
 
 def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
-    """Return the exercise or variant of an attempt; None if its numbers have changed since."""
+    """Return the exercise or variant of an attempt; None if the variant has other values now."""
     if row.variant is None:
         return exercise
     make = variant_of if row.assignment is None else hidden_variant

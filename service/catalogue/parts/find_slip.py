@@ -1,4 +1,4 @@
-"""Answer kind ``find_slip``: the slip in a given Denavit-Hartenberg table."""
+"""Answer kind ``find_slip``: the one mistake (slip) in a given Denavit-Hartenberg table."""
 
 from collections.abc import Iterator
 from typing import Annotated, ClassVar, Literal, TypeAlias

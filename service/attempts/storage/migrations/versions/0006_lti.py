@@ -1,4 +1,4 @@
-"""Add platforms that launch by LTI, their courses, assignments and users, and scores to send."""
+"""Add tables for LTI: platforms, their courses, assignments and users, and scores to send."""
 
 import sqlalchemy as sa
 from alembic import op
