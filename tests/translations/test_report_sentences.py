@@ -3,6 +3,7 @@
 import re
 from collections.abc import Iterator, Mapping
 from functools import cache
+from itertools import islice
 from string import Formatter
 from unicodedata import lookup
 
@@ -22,6 +23,8 @@ from tests.grading.diagnosis.traces import exercises
 
 # The names of values that quote a text of an author or a student.
 QUOTED = {"part"}
+# The example answers are divided into this many shares.
+SHARES = 4
 _WORDS = re.compile(r"[^\W\d_]{3,} [^\W\d_]{2,}")
 
 
@@ -42,12 +45,12 @@ class Pseudo:
 
 
 @cache
-def reports() -> tuple[PartReport, ...]:
-    """Return the reports on the example answers in docs/sentences.md."""
+def reports(share: int) -> tuple[PartReport, ...]:
+    """Return the reports on one share of the example answers in docs/sentences.md."""
     catalogue = exercises()
     return tuple(
         part
-        for each in answers(catalogue)
+        for each in islice(answers(catalogue), share, None, SHARES)
         for part in grade(
             catalogue[each.exercise],
             Submission(each.answers, each.angle_unit, FeedbackLevel.FULL),
@@ -72,25 +75,36 @@ def said_of(part: PartReport) -> Iterator[tuple[str, str]]:
 
 
 @cache
+def said(share: int) -> tuple[tuple[str, str], ...]:
+    """Return one share of the messages and corrections in docs/sentences.md, with their codes."""
+    given = [*said_of_formulas(formulas())]
+    given += said_of_pasted(pasted_texts(), exercises()["planar-rr"])
+    return (
+        *((each.sentence, each.code) for each in given[share::SHARES]),
+        *(each for part in reports(share) for each in said_of(part)),
+    )
+
+
+@cache
 def texts() -> Mapping[str, str]:
-    """Return all messages and corrections for the examples in docs/sentences.md, with codes.
+    """Return all messages and corrections in docs/sentences.md, with their codes.
 
     A plain text replaces a ``Sentence`` with the same text.
     """
-    given = [*said_of_formulas(formulas())]
-    given += said_of_pasted(pasted_texts(), exercises()["planar-rr"])
-    said = [(each.sentence, each.code) for each in given]
-    said += [each for part in reports() for each in said_of(part)]
-    said.sort(key=lambda each: isinstance(each[0], Sentence))
+    pairs = [each for share in range(SHARES) for each in said(share)]
+    pairs.sort(key=lambda each: isinstance(each[0], Sentence))
     found: dict[str, str] = {}
-    for text, code in said:
+    for text, code in pairs:
         found.setdefault(text, code)
     return found
 
 
-def sentences() -> list[Sentence]:
-    """Return those texts that are a ``Sentence``."""
-    return [each for each in texts() if isinstance(each, Sentence)]
+def sentences(share: int) -> list[Sentence]:
+    """Return the different sentences in one share of the messages and corrections."""
+    return [text for text in dict.fromkeys(t for t, _ in said(share)) if isinstance(text, Sentence)]
+
+
+each_share = pytest.mark.parametrize("share", range(SHARES))
 
 
 def leaves(sentence: Sentence) -> Iterator[tuple[str, str]]:
@@ -118,8 +132,11 @@ def test_every_message_and_correction_is_a_sentence() -> None:
     assert [text for text in texts() if not isinstance(text, Sentence)] == []
 
 
-def test_another_language_keeps_the_values_and_no_english_words() -> None:
-    for sentence in sentences():
+@pytest.mark.sampled(SHARES)
+@each_share
+def test_another_language_keeps_the_values_and_no_english_words(share: int) -> None:
+    assert sentences(share)
+    for sentence in sentences(share):
         values = [value for _, value in leaves(sentence)]
         text = told(sentence, Pseudo())
         assert all(value in text for value in values), sentence
@@ -128,10 +145,12 @@ def test_another_language_keeps_the_values_and_no_english_words() -> None:
         assert not re.search(r"[a-z]{2}", text), sentence
 
 
-def test_values_of_sentences_contain_no_prose() -> None:
+@pytest.mark.sampled(SHARES)
+@each_share
+def test_values_of_sentences_contain_no_prose(share: int) -> None:
     found = {
         (sentence.template, value)
-        for sentence in sentences()
+        for sentence in sentences(share)
         for name, value in leaves(sentence)
         if name not in QUOTED and is_prose(value)
     }
