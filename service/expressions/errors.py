@@ -31,7 +31,7 @@ Cause = Literal[
 
 @dataclass(frozen=True, slots=True)
 class Note:
-    """A remark on how a text was read; ``code`` is stable."""
+    """A remark on how a text was read."""
 
     code: str
     message: str
@@ -39,7 +39,7 @@ class Note:
 
 
 class TextError(Exception):
-    """A text cannot be read. ``code`` is stable, so that errors of the same kind can be counted."""
+    """A text cannot be read. All errors of one kind have the same ``code``."""
 
     def __init__(self, code: str, message: str, span: Span, *details: object) -> None:
         super().__init__(code, message, span, *details)
@@ -54,8 +54,8 @@ class TextError(Exception):
 class ExpressionError(TextError):
     """A formula cannot be read.
 
-    ``suggestion`` is the whole repaired text, or None. ``tried`` is the number of symbols in all
-    texts that were read to find the suggestion.
+    ``suggestion`` is the whole repaired text, or None. ``tried`` is the number of symbols that were
+    read to find a suggestion.
     """
 
     def __init__(self, code: str, message: str, span: Span, suggestion: str | None = None) -> None:
@@ -64,16 +64,16 @@ class ExpressionError(TextError):
         self.tried = 0
 
     def without_traceback(self) -> "ExpressionError":
-        """Return a copy of this error without a traceback. Memoized errors are raised as copies."""
+        """Return a copy of this error without a traceback."""
         error = ExpressionError(self.code, self.message, self.span, self.suggestion)
         error.tried = self.tried
         return error
 
 
 class UnreadableError(Exception):
-    """The reader stopped at ``span``.
+    """A formula cannot be read further than the place ``span``.
 
-    ``cause`` is the kind of problem. ``details`` are values for the repair rules of this kind.
+    ``cause`` is the kind of problem, and ``details`` are values for the message about it.
     """
 
     def __init__(self, cause: Cause, span: Span, **details: Any) -> None:

@@ -1,4 +1,4 @@
-"""Formula as typed -> expression: characters, tokens, syntax tree, program."""
+"""Read a typed formula in four stages: characters, tokens, syntax tree, program."""
 
 import math
 import re
@@ -59,11 +59,7 @@ _NO_SYMBOLS: Final = Vocabulary([])
 
 
 class ReadingOptions(NamedTuple):
-    """How a text is read.
-
-    With ``degrees``, angles are in degrees; then ``is_angle`` is True if the whole entry is an
-    angle.
-    """
+    """How a text is read: whether in degrees, and whether the whole entry is an angle."""
 
     vocabulary: Vocabulary
     is_angle: bool
@@ -73,13 +69,13 @@ class ReadingOptions(NamedTuple):
 class Expression:
     """A text that was read. Immutable.
 
-    ``notes`` describe ambiguous readings, ``symbols`` are the canonical names used, and
+    ``notes`` describe ambiguous passages, ``symbols`` are the canonical names used, and
     ``has_decimal`` is True if the text contains a decimal number.
-
-    Thousands of expressions are memoized, each as a program and a few other objects, but without
-    their trees: these would be a million objects, which the garbage collector would visit in each
-    round. The tree is parsed from the text again when it is needed.
     """
+
+    # Thousands of expressions are memoized, each as a program and a few other objects, but without
+    # their trees: these would be a million objects, which the garbage collector would visit in each
+    # round. The tree is parsed from the text again when it is needed.
 
     __slots__ = (
         "_degrees", "_is_angle", "_program", "_tree", "_vocabulary", "has_decimal", "notes",
@@ -94,7 +90,7 @@ class Expression:
         symbols: frozenset[str],
         options: ReadingOptions | None = None,
     ) -> None:
-        """Store ``tree`` only if ``options`` is None; else ``source`` can be parsed again."""
+        # Store ``tree`` only if ``options`` is None; else ``source`` can be parsed again.
         self.source: Final = source
         self.notes: Final = notes
         self.symbols: Final = symbols
@@ -108,7 +104,8 @@ class Expression:
 
     @property
     def tree(self) -> Node:
-        """The syntax tree, with units on numbers that are degrees. It must not be changed."""
+        """The syntax tree, which must not be changed."""
+        # It has units on numbers that are degrees.
         if self._tree is not None:
             return self._tree
         assert self._vocabulary is not None
@@ -116,19 +113,19 @@ class Expression:
 
     @property
     def typed(self) -> TypedFormula:
-        """The text with its tree, from which the student's spelling can be found."""
+        """The formula as typed, with its syntax tree."""
         return TypedFormula(self.source, self.tree, self._degrees)
 
     def evaluate(
         self, values: SymbolValues, memo: dict[str, Any] | None = None
     ) -> SampleArray | float:
-        """Return the value for each sample, ``(samples,)``, or a float if no symbol is used.
+        """Return the value at each sample ``(samples,)``, or a float if no symbol is used.
 
-        ``values`` maps each symbol of ``symbols`` to an array ``(samples,)``, angles in radians.
-        Undefined values are nan or infinite, without warnings. Expressions evaluated at the same
-        ``values`` may share a ``memo``. The result must not be changed: it may be one of
-        ``values``, or in the memo.
+        ``values`` maps each symbol to an array ``(samples,)``, angles in radians. Do not change the
+        result.
         """
+        # Undefined values are nan or infinite, without warnings. Expressions evaluated at the same
+        # ``values`` may share a ``memo``. The result may be one of ``values``, or in the memo.
         program = self._program
         if isinstance(program, float):
             return program
@@ -139,15 +136,15 @@ class Expression:
         return result
 
     def text(self) -> str:
-        """Return the formula as normal text, which reads back to the same tree."""
+        """Return the formula as plain text. Reading the text gives the same tree."""
         return to_text(self.tree)
 
     def latex(self) -> str:
-        """Return the formula in LaTeX for math mode, as typed and not rearranged."""
+        """Return the formula in LaTeX for math mode."""
         return to_latex(self.tree)
 
     def mathml(self) -> str:
-        """Return the formula as one presentation ``<math>`` element, as typed, not rearranged."""
+        """Return the formula as one presentation ``<math>`` element."""
         return to_mathml(self.tree)
 
     def __repr__(self) -> str:
@@ -159,7 +156,8 @@ def evaluate_all(
     values: Mapping[str, SampleArray],
     memo: dict[str, Any],
 ) -> list[SampleArray | float]:
-    """Return the value of each expression, and nan for None; faster than calls of ``evaluate``."""
+    """Return the value of each expression, and nan for None."""
+    # This is faster than calls of ``evaluate``.
     with np.errstate(all="ignore"):
         programs = [math.nan if each is None else each._program for each in expressions]
         return [each if isinstance(each, float) else each(values, memo) for each in programs]
@@ -173,14 +171,13 @@ def read(
     angle_unit: AngleUnit = "radians",
     repairs: bool = True,
 ) -> Expression:
-    """Read ``source`` as an expression in the names of ``vocabulary``.
+    """Read ``source`` in the names of ``vocabulary``. Raises only ExpressionError.
 
-    With ``angle_unit`` "degrees", bare numbers are degrees inside sin, cos and tan, and in the
-    whole entry if ``quantity`` is "angle". The result or the error is memoized. Without
-    ``repairs``, no repaired texts are tried; trying them is the most expensive part. If the
-    vocabulary allows a decimal comma, the source of the expression has points instead.
-    Raises only ExpressionError, for any text or number.
+    With ``angle_unit`` "degrees", angles without a unit are in degrees. ``quantity`` is "angle" if
+    the whole entry is an angle. Without ``repairs``, no corrected texts are tried.
     """
+    # Trying corrected texts is the most expensive part. The result or the error is memoized. If the
+    # vocabulary allows a decimal comma, the source of the expression has points instead.
     if isinstance(source, str):
         text = with_points_and_commas(source) if vocabulary.decimal_comma else source
     else:
@@ -210,7 +207,6 @@ def _number_as_text(number: int | float) -> str:
 
 
 def _explained(text: str, error: UnreadableError, vocabulary: Vocabulary) -> ExpressionError:
-    """Return the error for a text that is refused before it is parsed."""
     return explain(Failure(text, vocabulary, error, lambda _: None))
 
 
@@ -229,8 +225,6 @@ _memoized: Final = [lru_cache(maxsize=number)(_read) for number in _CACHED_TEXTS
 
 
 class _Reading:
-    """Reads a text, and tries a limited number of corrections if it is unreadable."""
-
     def __init__(self, options: ReadingOptions, attempts: int) -> None:
         self.options = options
         self.attempts = attempts
@@ -258,8 +252,6 @@ class _Reading:
 
 
 class _Parsed(NamedTuple):
-    """A text's syntax tree, the notes on it and the canonical names in it."""
-
     tree: Node
     notes: tuple[Note, ...]
     symbols: frozenset[str]
@@ -267,7 +259,6 @@ class _Parsed(NamedTuple):
 
 @lru_cache(maxsize=_CACHED_TREES)
 def _parsed(text: str, vocabulary: Vocabulary, is_angle: bool, degrees: bool) -> _Parsed:
-    """Parse ``text``. May raise UnreadableError."""
     notes: list[Note] = []
     text, note = right_side(text, vocabulary)
     notes += (note,) if note else ()
@@ -306,10 +297,8 @@ def _is_small(tokens: list[Token]) -> bool:
 
 
 def _check_limits(tree: Node) -> None:
-    """Raise UnreadableError if ``tree`` is too large or deep.
-
-    A run of sums, or of products, counts as one level of depth.
-    """
+    """Raise UnreadableError if ``tree`` is too large or deep."""
+    # A run of sums, or of products, counts as one level of depth.
     count, depth = 0, 0
     nodes: list[Any] = [tree]
     while nodes:
@@ -338,7 +327,6 @@ def _is_beyond_depth(tree: Node) -> bool:
 
 
 def _broken_limit(tree: Node) -> str:
-    """Return the limit, "depth" or "nodes", that the tree exceeds first, from right to left."""
     count = 0
     pending: list[tuple[Any, int]] = [(tree, 1)]
     while pending:
@@ -355,5 +343,4 @@ def _broken_limit(tree: Node) -> str:
 
 
 def _is_run(node: Binary) -> bool:
-    """True if ``node`` and its left operand belong to one run of sums or one run of products."""
     return type(node.left) is Binary and node.left.operator in _RUNS[node.operator]

@@ -52,15 +52,15 @@ class _Count(NamedTuple):
 
 
 def symbols_in(text: str) -> int:
-    """Estimate the number of names, numbers and signs in a text, never much too low."""
+    """Estimate the number of names, numbers and signs in a text."""
+    # The estimate is never much too low.
     return _of_text(text).symbols
 
 
 def reading_cost(text: str) -> int:
-    """Return the number of symbols in a text; in a long text, weighted by their cost.
-
-    Braces and similar symbols of LaTeX cost little.
-    """
+    """Estimate the cost of reading a text, as a number of symbols."""
+    # In a long text, symbols are weighted by their cost. Braces and similar symbols of LaTeX cost
+    # little.
     symbols, extra = _of_text(text)
     return symbols + extra if len(text) > _WORTH_IT else symbols
 
@@ -88,17 +88,14 @@ def _by_words(text: str) -> _Count:
 
 
 def _of_numbers(text: str) -> int:
-    """Return the extra cost of sines and other functions of a plain number, such as cos(0.3)."""
     if "n(" in text or "s(" in text:
         return _EXTRA_OF_NUMBER * len(_OF_NUMBER.findall(text))
     return 0
 
 
 def _packed(word: str) -> int:
-    """Return the number of symbols in a word and their extra cost, packed into one integer.
-
-    So the counts of many words can be summed at once.
-    """
+    # Return the number of symbols in a word and their extra cost, packed into one integer.
+    # So the counts of many words can be summed at once.
     # A fast path: numbers are the words that are new most often.
     symbols, extra = (1, 1) if _NUMBER.fullmatch(word) else _scanned(word)
     return symbols + _PACKED * extra

@@ -8,10 +8,11 @@
     Call cos ─ arguments          cos(q1), c1, atan2(y, x)
 
 The tree does not store brackets, spelling or the c12 shorthand, so formulas that differ only in
-these have equal trees. ``start`` and ``end`` are offsets in the text as typed, brackets included,
-and are ignored by equality. The classes are not frozen, because a frozen dataclass takes four times
-as long to construct; trees are not changed after the reader has built them.
+these have equal trees. ``start`` and ``end`` are offsets in the text as typed, and are ignored by
+equality. Do not change a finished tree.
 """
+
+# The classes are not frozen, because a frozen dataclass takes four times as long to construct.
 
 from dataclasses import dataclass, field
 from typing import Literal
@@ -61,7 +62,7 @@ class Unit:
 
 @dataclass(slots=True)
 class Negation:
-    """The operand with its sign changed."""
+    """A minus sign and its operand."""
 
     operand: "Node"
     start: int = field(default=0, compare=False)

@@ -23,10 +23,8 @@ _PARTS: Final = re.compile(rf"(?<![^\W\d_])(?:{_SPELLED})|.", re.DOTALL)
 
 
 def spellings(name: str) -> set[str]:
-    """Return all ways to write ``name``: each Greek letter as a letter or as its name.
-
-    Student texts are not converted this way, because ``bη`` (b times η) would become ``beta``.
-    """
+    """Return all ways to write ``name``: each Greek letter as a letter or as its name."""
+    # Student texts are not converted this way, because ``bη`` (b times η) would become ``beta``.
     both = NAMES | LETTERS
     parts = [{part, both.get(part, part)} for part in _PARTS.findall(name)]
     return {"".join(choice) for choice in product(*parts)}

@@ -1,8 +1,8 @@
 r"""Convert typed text to plain characters, each with its position in the typed text.
 
-Unambiguous characters (× · − ² ₁ ½ ° π, variants of Greek letters) and LaTeX are converted. A
-look-alike or invisible character is an error that names the character; nothing is guessed.
-\frac{a}{b} becomes ⟨{a}/{b}⟩, where ⟨ and ⟩ are private brackets that no student can type.
+Unambiguous characters (× · − ² ₁ ½ ° π, variants of Greek letters) and LaTeX are converted.
+Look-alike or invisible characters are errors. \frac{a}{b} becomes ⟨{a}/{b}⟩, where ⟨ and ⟩ are
+private brackets that no student can type.
 """
 
 import re
@@ -35,14 +35,11 @@ def normalise(source: str) -> Characters:
 
 
 class _Normaliser(CharacterWriter):
-    """Converts the source in one pass: runs of plain characters, and LaTeX commands."""
-
     def run(self) -> Characters:
         self._range(0, len(self.source), 0)
         return Characters("".join(self.letters), self.starts, self.ends)
 
     def _range(self, position: int, end: int, depth: int) -> None:
-        """Convert ``source[position:end]``, which is inside ``depth`` nested arguments."""
         if depth > LIMITS.depth:
             raise UnreadableError("beyond", (position, end), limit="depth")
         while position < end:
@@ -81,7 +78,7 @@ class _Normaliser(CharacterWriter):
     # --- indices and powers
 
     def _caret(self, at: int, stop: int, depth: int) -> int:
-        """Read ^ as a power, a raised circle (degrees) or a raised star (joint variable)."""
+        """Read the sign ^ as a power, a degree sign or the star of a joint variable."""
         if circle := latex_commands.RAISED_CIRCLE.match(self.source, at):
             return self._emit("°", at, circle.end())
         star = latex_commands.RAISED_STAR.match(self.source, at)
@@ -160,7 +157,6 @@ class _Normaliser(CharacterWriter):
         return self._structure(name, at, after, end, depth)
 
     def _structure(self, name: str, at: int, after: int, end: int, depth: int) -> int:
-        """Read a command that has arguments or affects its surroundings."""
         if name in latex_commands.STYLES:
             is_word = name == "operatorname"
             return self._styled(self._argument(at, after, end), at, depth, is_word=is_word)
@@ -182,10 +178,6 @@ class _Normaliser(CharacterWriter):
         raise UnreadableError(causes.get(name, "command"), (at, after), name=name)
 
     def _without_meaning(self, name: str, at: int, after: int, end: int) -> int | None:
-        """Return the end of a command that means nothing in a formula, including its argument.
-
-        Return None for any other command.
-        """
         if name in latex_commands.IGNORED:
             return self._argument(at, after, end)[2]
         environment = latex_commands.ENVIRONMENT.match(self.source, after, end)
@@ -220,7 +212,6 @@ class _Normaliser(CharacterWriter):
     def _styled(
         self, argument: tuple[int, int, int], at: int, depth: int, *, is_word: bool = False
     ) -> int:
-        """Read the argument of a styling command; return the place after it."""
         start, stop, after = argument
         inside = self.source[start:stop]
         is_word = is_word or sum(map(str.isalpha, inside)) > 1
@@ -245,7 +236,7 @@ class _Normaliser(CharacterWriter):
             self._emit(*place)
 
     def _switch(self, at: int, after: int, end: int, depth: int) -> int:
-        r"""Read {\rm cos} as \mathrm{cos}. Skip a command such as \rm elsewhere."""
+        r"""Read {\rm cos} as \mathrm{cos}."""
         if not self.letters or self.letters[-1] != "{" or self.source[self.starts[-1]] != "{":
             return self._emit(" ", at, after)
         opener = self.starts[-1]
@@ -309,7 +300,6 @@ class _Normaliser(CharacterWriter):
         return self._emit(unit, unit_at if has_number else at, unit_end)
 
     def _angle_unit(self, at: int, after: int, end: int) -> tuple[str, int]:
-        """Return the unit in the argument that begins at ``after``, and the argument's end."""
         start, stop, unit_end = self._argument(at, after, end)
         unit = latex_commands.ANGLE_UNITS.get(self.source[start:stop].strip().lstrip("\\"))
         if unit is None:

@@ -84,7 +84,6 @@ def plain(letter: str) -> str | None:
 
 
 def _compatible(letter: str) -> str | None:
-    """Return the plain character that is Unicode's compatible form of ``letter``, or None."""
     form = unicodedata.normalize("NFKC", letter)
     if _FRACTION.fullmatch(form):
         return f"{OPEN}{form.replace('⁄', '/')}{CLOSE}"

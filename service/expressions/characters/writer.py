@@ -1,4 +1,4 @@
-"""Write plain characters with their positions in the typed text; read raised or lowered digits."""
+"""Collect plain characters with their positions in the typed text."""
 
 import re
 from collections.abc import Mapping
@@ -18,7 +18,7 @@ BREAKS: Final = frozenset("\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029")
 
 @dataclass(frozen=True, slots=True)
 class Characters:
-    """Plain text, with the [start, end) of each character in the text as typed.
+    """Plain text, and the position [start, end) of each of its characters in the typed text.
 
     ``starts`` and ``ends`` are None if the text was not changed.
     """
@@ -29,7 +29,7 @@ class Characters:
 
 
 class CharacterWriter:
-    """Collects plain characters, and has helpers to read LaTeX arguments and indices."""
+    """Collects plain characters, and reads arguments and indices in LaTeX."""
 
     def __init__(self, source: str, partners: dict[int, int] | None = None) -> None:
         self.source = source
@@ -110,7 +110,6 @@ class CharacterWriter:
             self._emit(table[self.source[place]], place, place + 1)
 
     def _argument(self, at: int, after: int, end: int) -> tuple[int, int, int]:
-        """Return the start and the end of a command's argument, and the position after it."""
         start = self._skip_blanks(after, end)
         if start >= end or self.source[start] in "}+-*/)]":
             raise UnreadableError("argument", (at, after), name=self.source[at:after])
@@ -127,7 +126,6 @@ class CharacterWriter:
         return at
 
     def _partner(self, at: int, end: int) -> int:
-        """Return the place of the closing brace for the opening brace at ``at``."""
         if self.partners is None:
             self.partners = latex_commands.brace_partners(self.source)
         place = self.partners.get(at, end)

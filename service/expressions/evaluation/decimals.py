@@ -28,8 +28,8 @@ LEAST_FIGURES: Final = 3
 class Decimals:
     """The ``m`` rounded decimals of one formula, from left to right. Immutable.
 
-    ``units`` ``(m,)`` has the unit of each decimal, such as 0.01 for 1.57. If the whole formula is
-    one decimal, ``sign`` is the decimal's sign, 1 or -1; else ``sign`` is 0.
+    ``units`` ``(m,)`` has the unit of each decimal, such as 0.01 for 1.57. ``sign`` is 1 or -1 for
+    a formula that is a single decimal, else 0.
     """
 
     __slots__ = ("_names", "_numbers", "_program", "sign", "units")
@@ -44,13 +44,13 @@ class Decimals:
         self.sign: Final = _sign(replaced)
 
     def shifted(self, shifts: NDArray[np.float64], values: SymbolValues) -> SampleArray:
-        """Return the values ``(K, samples)`` of the formula, with its decimals shifted in K ways.
+        """Return the formula's values ``(K, samples)``, one row for each row of ``shifts``.
 
-        ``shifts`` ``(K, m)`` are numbers of units that are added to the decimals.
-
-        The shape is ``(K, 1)`` if the formula has no symbols. Undefined values are NaN or infinite,
-        without warnings.
+        ``shifts`` ``(K, m)`` are added to the decimals, as multiples of 1 in a decimal's last
+        place.
         """
+        # The shape is ``(K, 1)`` if the formula has no symbols. Undefined values are NaN or
+        # infinite, without warnings.
         assert isinstance(self._program, Program)
         moved = self._numbers + shifts * self.units
         named = {name: moved[:, i, None] for i, name in enumerate(self._names)}
@@ -72,10 +72,6 @@ def _name(i: int) -> str:
 
 
 def _sign(replaced: Node) -> int:
-    """Return 1 for a tree that is a single decimal, -1 for a decimal with a minus sign, else 0.
-
-    The tree ``replaced`` has a symbol in place of each decimal.
-    """
     match replaced:
         case SymbolNode(Symbol(name)) if name == _name(0):
             return 1
@@ -106,10 +102,8 @@ def _with_names(node: Node, found: list[Number]) -> Node:
 
 
 def _unit(literal: str) -> float:
-    """Return 1 in the last place of a decimal of three or more figures (0.01 for 1.57), else 0.
-
-    Leading zeros are not figures.
-    """
+    """Return 1 in the last place of a decimal of three or more figures (0.01 for 1.57), else 0."""
+    # Leading zeros are not figures.
     mantissa, _, exponent = literal.lower().partition("e")
     whole, _, fraction = mantissa.partition(".")
     if not fraction or len((whole + fraction).lstrip("0")) < LEAST_FIGURES:

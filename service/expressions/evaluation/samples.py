@@ -8,11 +8,12 @@ notation), then its function and the places of its operands. The program of 2*co
      5  "theta1 cos", "cos", 3, None
      9  "#2.0 theta1 cos *", "*", 0, 5
 
-Equal parts have equal keys, so programs with a common ``memo`` compute cos(theta1) only once. Parts
-without symbols are folded to constants. The programs of thousands of texts are memoized as flat
-tuples, because the garbage collector skips a tuple of strings and numbers but visits every tree and
-closure.
+Equal parts have equal keys, so programs with a common ``memo`` compute cos(theta1) only once.
 """
+
+# Parts without symbols are folded to constants. The programs of thousands of texts are memoized as
+# flat tuples, because the garbage collector skips a tuple of strings and numbers but visits every
+# tree and closure.
 
 import operator
 from collections.abc import Callable, Mapping
@@ -72,8 +73,8 @@ _FUNCTIONS.update({strict: _strict(_FUNCTIONS[name]) for name, strict in _STRICT
 class Program:
     """The compiled form of one expression with at least one symbol. Immutable.
 
-    ``steps[whole]`` is the beginning of the step that computes the whole expression. If the
-    expression is a single symbol, ``symbol`` is its name; else None.
+    The step at index ``whole`` computes the whole expression. ``symbol`` is the name of an
+    expression that is a single symbol, else None.
     """
 
     __slots__ = ("steps", "symbol", "whole")
@@ -84,11 +85,13 @@ class Program:
         self.symbol: Final[str | None] = steps[0] if whole == 0 else None
 
     def __call__(self, values: SymbolValues, memo: Memo) -> Any:
-        """Return the value for each sample, given the ``values`` of each symbol, ``(samples,)``.
+        """Return the value at each sample.
 
-        ``memo`` must be empty or used before with the same values. An undefined part makes the
-        whole result undefined; numpy warns of it unless warnings are off.
+        ``values`` has an array ``(samples,)`` for each symbol. A ``memo`` may be used again only
+        with the same values.
         """
+        # An undefined part makes the whole result undefined; numpy warns of it unless warnings are
+        # off.
         if not memo:
             memo.update(values)
         result = memo.get(self.steps[self.whole])
@@ -96,7 +99,6 @@ class Program:
 
 
 def _value(steps: Steps, at: int, memo: Memo) -> Any:
-    """Compute the value of the part at ``at``, which is not in the memo yet."""
     key, name = steps[at], steps[at + 1]
     if name is None:
         if key[0] != "#":
@@ -134,11 +136,6 @@ def _sine_or_cosine_key(function: str, symbol: str) -> str:
 
 
 class _Compiler:
-    """Compiles one tree to a list of steps.
-
-    It also has the indices of constants, and of parts whose value may be infinite or undefined.
-    """
-
     __slots__ = ("constants", "maybe_non_finite", "steps")
 
     def __init__(self) -> None:
@@ -147,7 +144,7 @@ class _Compiler:
         self.maybe_non_finite: set[int | None] = set()
 
     def part(self, node: Node) -> int:
-        """Append the steps that compute ``node``. Return the index at which the last one begins."""
+        """Append the steps that compute ``node``. Return the index of the last step."""
         # Comparing types takes a third of the time of ``match``, and this is on the grading path.
         kind = type(node)
         if kind is Binary:
@@ -192,10 +189,6 @@ class _Compiler:
         return at
 
     def _apply(self, name: str, left: int, right: int | None = None) -> int:
-        """Append the step that applies a function to one or two operands. Return its index.
-
-        If the operands are constants, append the result as a constant.
-        """
         constants, steps = self.constants, self.steps
         if constants:
             if name == "^" and right is not None and constants.get(right) == 2.0:
@@ -218,7 +211,6 @@ class _Compiler:
         return at
 
     def _remove(self, *places: int | None) -> list[float]:
-        """Remove the last steps, which are constants. Return their values."""
         taken = [at for at in places if at is not None]
         self.maybe_non_finite.difference_update(taken)
         del self.steps[taken[0] :]

@@ -1,4 +1,4 @@
-"""Refuse degrees with two readings: π/2° is π/2 or 90°, and 180/2° is 90° or 180 over 2°."""
+"""Refuse ambiguous degree signs: π/2° may mean π/2 or 90°."""
 
 from typing import Final
 
@@ -11,14 +11,14 @@ _MOST_PARTS: Final = 64
 
 
 def check_unit(operand: Node, span: Span) -> None:
-    """Raise UnreadableError if ``operand`` contains π. It is followed by the unit of degrees."""
+    """Raise UnreadableError if ``operand``, which has a degree sign, contains π."""
     if _is_of_pi(operand):
         inside = (operand.start, operand.end)
         raise UnreadableError("ambiguous_unit", span, opens=False, of_pi=True, inside=inside)
 
 
 def check_divisor(left: Node, right: Unit) -> None:
-    """Raise UnreadableError if the divisor of a quotient is in degrees but the dividend is not."""
+    """Raise UnreadableError for a quotient in which only the divisor is in degrees: 180/2°."""
     inside = right.operand
     # The unit of deg2rad(2) belongs to the divisor.
     if right.unit != "deg" or inside.start != right.start or _has(left, Unit):
@@ -43,7 +43,6 @@ def _has(node: Node, kind: type[Node]) -> bool:
 
 
 def _parts(node: Node) -> list[Node]:
-    """Return ``node`` and the nodes inside it, up to a limited number."""
     found = [node]
     for part in found:
         if len(found) > _MOST_PARTS:

@@ -25,12 +25,9 @@ from service.translations import say
 
 
 class _Facts(NamedTuple):
-    """Facts about a node of a formula.
-
-    ``constant``: the node has no symbol. ``angle``: it is an angle in radians. ``pi``: it is an
-    angle in radians because it contains π.
-    """
-
+    # Facts about a node of a formula.
+    # ``constant``: the node has no symbol. ``angle``: it is an angle in radians. ``pi``: it is an
+    # angle in radians because it contains π.
     constant: bool
     angle: bool
     pi: bool
@@ -39,8 +36,7 @@ class _Facts(NamedTuple):
 def in_degrees(tree: Node, *, is_angle: bool, notes: list[Note]) -> Node:
     """Return ``tree`` with the unit of degrees on bare constants that are angles.
 
-    ``is_angle`` is True if the whole entry is an angle. A constant written with π stays in radians,
-    with a note in ``notes``.
+    ``is_angle`` is True if the whole entry is an angle. Constants written with π stay in radians.
     """
     conversion = _Conversion(tree, notes, TRIGONOMETRIC)
     return conversion.angle(tree) if is_angle else conversion.plain(tree)
@@ -52,11 +48,6 @@ def without_degree_functions(tree: Node, *, notes: list[Note]) -> Node:
 
 
 class _Conversion:
-    """The conversion of one tree, which adds degrees to bare constants.
-
-    The facts about each node are computed once.
-    """
-
     def __init__(self, tree: Node, notes: list[Note], functions: frozenset[str]) -> None:
         self.notes = notes
         self.functions = functions
@@ -105,7 +96,6 @@ class _Conversion:
                 return self.plain(node)
 
     def _constant(self, node: Node) -> Node:
-        """Add degrees to a constant term, unless it is an angle already."""
         facts = self.facts[id(node)]
         if facts.pi:
             message = say(
@@ -118,7 +108,7 @@ class _Conversion:
         return Unit(self.plain(node), "deg", node.start, node.end)
 
     def _product(self, node: Node, left: Node, right: Node) -> Node:
-        """Add degrees in the one factor that is an angle: q1 + 45 in 2*(q1 + 45), or 90 in k*90."""
+        # Add degrees in the one factor that is an angle: q1 + 45 in 2*(q1 + 45), or 90 in k*90.
         one, other = self.facts[id(left)], self.facts[id(right)]
         angles = one.angle, other.angle
         if angles == (False, False):
@@ -129,7 +119,6 @@ class _Conversion:
 
 
 def _facts(node: Node, below: list[_Facts]) -> _Facts:
-    """Return the facts about ``node``, given the facts about its children."""
     constant = all(facts.constant for facts in below)
     angle = any(facts.angle for facts in below)
     pi = any(facts.pi for facts in below)

@@ -40,10 +40,7 @@ _OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 class LeftSide(NamedTuple):
-    """The name before an equals sign. Between its words are single blanks.
-
-    ``span`` includes the equals sign.
-    """
+    """The name before an equals sign. ``span`` is the place of both."""
 
     name: str
     span: Span
@@ -62,7 +59,10 @@ def left_side(source: str, vocabulary: Vocabulary) -> LeftSide | None:
 
 
 def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
-    """Replace a name and its equals sign by blanks. Return the text, and a note if it changed."""
+    """Replace a name and its equals sign by blanks.
+
+    Return the new text and a note on the change.
+    """
     left = left_side(source, vocabulary)
     if left is None:
         return source, None

@@ -53,12 +53,9 @@ def parse(tokens: Sequence[Token], builder: Builder) -> Node:
 
 
 class _Parser:
-    """One method for each rule of the grammar; ``at`` is the index of the next token.
-
-    The method ``power`` implements the rules ``power``, ``exponent``, ``postfix``, ``bare_call``
-    and ``argument`` without recursion.
-    """
-
+    # One method for each rule of the grammar; ``at`` is the index of the next token.
+    # The method ``power`` implements the rules ``power``, ``exponent``, ``postfix``, ``bare_call``
+    # and ``argument`` without recursion.
     __slots__ = ("at", "builder", "tokens")
 
     def __init__(self, tokens: Sequence[Token], builder: Builder) -> None:
@@ -75,7 +72,7 @@ class _Parser:
         return token
 
     def unexpected(self) -> UnreadableError:
-        """Return the error for a next token that the grammar does not allow."""
+        """Return the error that the grammar does not allow the next token."""
         place = self.tokens[self.at][2:]
         return UnreadableError("grammar", place, tokens=self.tokens, index=self.at)
 

@@ -1,6 +1,6 @@
-"""Build the node of each rule of the grammar, and note passages with another possible reading.
+"""Build the syntax tree of a formula, and note its ambiguous passages.
 
-The parser calls the method of a rule after the rule's operands are built.
+The parser calls one method for each rule of the grammar.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -56,7 +56,7 @@ class Builder:
         *,
         degrees: bool = False,
     ) -> None:
-        """``turning`` maps each revolute joint to its variable."""
+        # ``turning`` maps each revolute joint to its variable.
         self.source = source
         self.notes = notes
         self.turning = turning
@@ -82,9 +82,9 @@ class Builder:
         return Binary("*", left, right, left.start, right.end)
 
     def divide(self, left: Node, right: Node) -> Node:
-        """Build left / right, with a note on ``sin q1/2``, but not on √2/2.
+        """Build left / right, with a note on ``sin q1/2``, which may mean sin(q1/2).
 
-        Raises UnreadableError for 180/2°.
+        Raises UnreadableError for 180/2°, which is ambiguous.
         """
         if type(right) is Unit and self._is_open(right):
             check_divisor(left, right)
@@ -95,7 +95,7 @@ class Builder:
         return Binary("/", left, right, left.start, right.end)
 
     def join(self, left: Node, right: Node) -> Node:
-        """Build a product without a sign, with a note on ``1/2q1``.
+        """Build a product without a sign, such as 2q1.
 
         Raises UnreadableError for two values, such as 90° (π/2).
         """
@@ -113,7 +113,7 @@ class Builder:
         return Binary("*", left, right, left.start, right.end)
 
     def tight(self, left: Node, right: Node) -> Node:
-        """Build the product inside ``sin 2q1``."""
+        """Build the product 2q1 in ``sin 2q1``."""
         if self.source[right.start] == "(":
             self._note_argument(left.start, right.end)
         return Binary("*", left, right, left.start, right.end)
@@ -123,7 +123,7 @@ class Builder:
         return Negation(operand, sign, operand.end)
 
     def keep(self, sign: int, operand: Node) -> Node:
-        """Return the operand of +operand. The operand's span includes the sign."""
+        """Build +operand: the same node, but its span includes the sign."""
         operand.start = sign
         return operand
 
@@ -137,11 +137,11 @@ class Builder:
         return Binary("^", base, exponent, base.start, exponent.end)
 
     def unit(self, operand: Node, unit: UnitName, end: int, start: int | None = None) -> Node:
-        """Build an operand with a unit; ``start`` is the place where deg2rad(…) starts.
+        """Build an operand with a unit, such as 90°.
 
-        Raises UnreadableError if the operand is an angle or a length. π° is also refused, but
-        (π)deg is read.
+        Raises UnreadableError if the operand is an angle or a length already.
         """
+        # ``start`` is the place where deg2rad(…) starts. π° is also refused, but (π)deg is read.
         span = (operand.start, end)
         for node in _outside_calls(operand):
             if type(node) is Unit or (type(node) is Call and node.function in INVERSE):
@@ -231,14 +231,12 @@ class Builder:
         return self._called(("FUNCTION", ("atan2", power), start, stop), (y, x), end)
 
     def _may_be_degrees(self, base: Node) -> bool:
-        """True if ``base`` has only numbers, except the ten of a power of ten such as 3*10^0."""
         if type(base) is Number and base.literal == "10":
             times = ("*", "×", "·", "⋅", r"\cdot", r"\times")
             return not self.source[: base.start].rstrip().endswith(times)
         return all(type(part) in {Number, Negation, Binary} for part in _outside_calls(base))
 
     def _is_open(self, node: Node) -> bool:
-        """True if ``node`` was written without brackets or a fraction bar."""
         return id(node) not in self.grouped and id(node) not in self.barred
 
     def _note_degrees(self, left: Node, right: Node) -> None:
@@ -298,10 +296,7 @@ class Builder:
 
 
 def _outside_calls(node: Node) -> Iterator[Node]:
-    """Yield the nodes in ``node`` that are not an argument of a function.
-
-    Functions abs do not count.
-    """
+    """Yield the nodes in ``node`` that are outside all functions except abs."""
     pending = [node]
     while pending:
         part = pending.pop()
@@ -311,10 +306,6 @@ def _outside_calls(node: Node) -> Iterator[Node]:
 
 
 def _names(node: Node) -> set[str]:
-    """Return the names of functions in ``node``, and the last letter of each symbol.
-
-    Only the first 64 nodes are examined.
-    """
     found: set[str] = set()
     pending = [node]
     # The arguments of atan2 may be long and nested.
@@ -331,7 +322,6 @@ def _names(node: Node) -> set[str]:
 
 
 def _arity(name: str, arguments: Sequence[Node] = ()) -> int:
-    """Return how many arguments a function takes: ``len(arguments)`` if it takes any number."""
     number = BUILT.get(name)
     return ARITY.get(name, 1) if number is None else number or len(arguments)
 

@@ -35,7 +35,6 @@ def check_product(source: str, left: Node, right: Node) -> None:
 
 
 def _is_name(node: Node) -> bool:
-    """True for the symbol of an angle or a length, with or without a sign."""
     inside = node.operand if type(node) is Negation else node
     return type(inside) is SymbolNode and inside.symbol.kind != "number"
 
@@ -55,10 +54,6 @@ def _is_decimal(value: Node) -> bool:
 
 
 def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
-    """True for two angles.
-
-    If ``is_whole``, also True for an angle and a number that is rarely a factor, such as 90.
-    """
     of_left, of_right = _parts(left), _parts(right)
     if 180.0 in {part.value for part in (*of_left, *of_right) if type(part) is Number}:
         return False
@@ -76,7 +71,6 @@ def _is_value(number: Number) -> bool:
 
 
 def _text(source: str, node: Node) -> str:
-    """Return the text of a value, without its brackets."""
     text = source[node.start : node.end]
     return text[1:-1] if text[0] in "([{" and text[-1] in ")]}" else text
 
@@ -87,7 +81,6 @@ def _is_constant(node: Node) -> bool:
 
 
 def _parts(node: Node) -> list[Node]:
-    """Return ``node`` and the nodes inside it, up to a limited number."""
     found = [node]
     for part in found:
         if len(found) > _MOST_PARTS:

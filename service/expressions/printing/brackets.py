@@ -1,10 +1,11 @@
 """The rule for brackets that all three printers share.
 
 An operand needs brackets if it binds less tightly than its place requires, or if its sign would
-follow an operator. A drawn formula (LaTeX, MathML) needs fewer brackets than text for quotients,
-because a fraction bar groups, but more for the base of a power, because ``90°`` and ``1·10⁻³``
-consist of several signs.
+follow an operator. In a drawn formula (LaTeX, MathML), a fraction bar replaces brackets.
 """
+
+# A drawn formula needs more brackets than text for the base of a power, because ``90°`` and
+# ``1·10⁻³`` consist of several signs.
 
 from typing import Final
 
@@ -25,10 +26,9 @@ _OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
 
 
 def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
-    """True if ``node`` needs brackets as an operand where the precedence ``place`` is required.
+    """True if ``node`` needs brackets as an operand in a place of this precedence.
 
-    ``signed`` is True if the sign of ``node`` would follow an operator, ``drawn`` is False for
-    text.
+    ``signed`` is True if a sign of ``node`` would follow an operator. ``drawn`` is False for text.
     """
     precedence = ATOM
     # Comparing types takes a third of the time of ``match``.
@@ -44,7 +44,7 @@ def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) 
 
 
 def is_power_of_ten(node: Node) -> bool:
-    """True if ``node`` is a number that is drawn as a product: ``1e-3``."""
+    """True if ``node`` is a number such as 1e-3, which is drawn as 1·10⁻³."""
     return type(node) is Number and "e" in node.literal.lower()
 
 
@@ -67,7 +67,7 @@ def _has_symbol(node: Node) -> bool:
 
 
 def begins_with_digit(node: Node) -> bool:
-    """True if ``node`` is drawn with a digit first, so that a product needs a dot before it."""
+    """True if ``node`` is drawn with a digit first."""
     match node:
         case Number():
             return True

@@ -1,4 +1,4 @@
-"""Print a tree as LaTeX, as typed and not rearranged."""
+"""Print a tree as LaTeX, without rearranging the formula."""
 
 from typing import Final
 

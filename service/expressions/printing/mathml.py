@@ -1,4 +1,4 @@
-"""Print a tree as presentation MathML, as typed and not rearranged."""
+"""Print a tree as presentation MathML, without rearranging the formula."""
 
 import re
 from html import escape  # that of xml.sax would load an HTTP client
@@ -39,7 +39,7 @@ def to_mathml(node: Node) -> str:
 
 
 def row(node: Node) -> str:
-    """Return ``node`` as one element inside ``<math>``."""
+    """Return ``node`` as one MathML element, which belongs inside ``<math>``."""
     match node:
         case Number(literal=literal):
             return _number(literal)
@@ -89,7 +89,6 @@ def _number(literal: str) -> str:
 
 
 def _variable(symbol: Symbol) -> str:
-    """Return a symbol as its LaTeX shows it: a letter with a subscript and a superscript."""
     match = None if symbol.latex is None else _LATEX.fullmatch(symbol.latex)
     if match is None:
         stem, index = stem_and_index(symbol.name)
@@ -112,7 +111,6 @@ def _unbraced(part: str) -> str:
 
 
 def _identifier(text: str) -> str:
-    """Return the element of a letter, a word or an index, given in LaTeX."""
     in_command = _IN_COMMAND.fullmatch(text)
     plain = in_command[1] if in_command else text.removeprefix("\\")
     plain = _STARS.get(plain, plain)
@@ -139,7 +137,6 @@ def _at(node: Node, place: int, *, first: bool = False) -> str:
 
 
 def _begins_with_sign(node: Node) -> bool:
-    """True if ``node`` is drawn with a sign first, also in brackets or above a fraction bar."""
     while type(node) is Binary and node.operator != "^":
         node = node.left
     return type(node) is Negation

@@ -58,7 +58,7 @@ class Spelling:
         return self.names.get(symbol.name, symbol.name)
 
     def in_shorthand(self, call: Call) -> str | None:
-        """Return a sine or cosine of joint angles in shorthand such as c12; None if it has none."""
+        """Return a call such as cos(q1 + q2) in shorthand (c12), or None."""
         if not self.shorthand or call.function not in ("sin", "cos"):
             return None
         joints = _added_joints(call.arguments[0])
@@ -87,7 +87,7 @@ PLAIN: Final = Spelling()
 
 
 class TypedFormula(NamedTuple):
-    """A formula as typed and as a tree; ``degrees`` is True if its bare angles are degrees."""
+    """A formula as typed and as a tree. With ``degrees``, angles without a unit are in degrees."""
 
     source: str
     tree: Node
@@ -100,7 +100,6 @@ def _spelled_out(name: str) -> str:
 
 
 def _added_joints(node: Node) -> list[int]:
-    """Return the joints in a sum of joint angles, from left to right; [] for any other node."""
     match node:
         case SymbolNode(Symbol(kind="angle", joint=int(joint))):
             return [joint]
@@ -136,8 +135,9 @@ def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: 
     """Return one spelling for several formulas.
 
     It has the most frequent unit of angles and, for each symbol, the name that is used first.
-    ``degrees`` is True if the student works in degrees; it decides the unit if no formula has one.
     """
+    # ``degrees`` is True if the student works in degrees; it decides the unit if no formula has
+    # one.
     names: dict[str, str] = {}
     angles: Counter[str] = Counter()
     shorthand = False
@@ -170,10 +170,6 @@ def _with_unit(spelling: Spelling, unit: str, *, degrees: bool) -> Spelling:
 
 
 def _unit(formula: TypedFormula) -> str | None:
-    """Return how a formula writes constant angles, or None if it has none.
-
-    The result is "pi" or "π", or the unit after a number of degrees: "deg", "°" or "".
-    """
     source, tree, degrees = formula
     if type(tree) is SymbolNode:  # as most are
         return None
@@ -200,7 +196,6 @@ def _nodes(tree: Node) -> Iterator[Node]:
 
 
 def _names(formula: TypedFormula, vocabulary: Vocabulary) -> dict[str, str]:
-    """Map the canonical name of each symbol in a formula to its typed name."""
     names: dict[str, str] = {}
     # Shorthand such as c12 contains no names of angles. Remember it, because it may occur often.
     nameless: set[tuple[str, str]] = set()
@@ -225,7 +220,6 @@ def _typed(node: Node, formula: TypedFormula) -> str:
 
 
 def _is_name(typed: str, symbol: Symbol, vocabulary: Vocabulary) -> bool:
-    """True if the reader accepts ``typed`` as a name of the symbol."""
     if typed == symbol.name:
         return True
     known = _NAME.fullmatch(typed) and vocabulary.by_name.get(normal_form(typed))

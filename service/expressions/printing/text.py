@@ -1,4 +1,4 @@
-"""Print a tree as normal text, which reads back to the same tree."""
+"""Print a tree as plain text. Reading the text gives the same tree."""
 
 from service.expressions.printing.brackets import ATOM, POWER, PRODUCT, needs_brackets
 from service.expressions.printing.spelling import PLAIN, Spelling
@@ -16,7 +16,7 @@ from service.expressions.tree import (
 
 
 def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
-    """Return ``node`` as normal text with all product signs, in canonical names or ``spelling``."""
+    """Return ``node`` as plain text with all product signs."""
     match node:
         case Number(literal=literal):
             return literal

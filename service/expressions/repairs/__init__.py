@@ -1,7 +1,7 @@
 """Repair rules, one file each: why a text cannot be read, and how to repair it.
 
-The rules are tried in order. The first rule that recognizes the slip returns the error: what is
-wrong, where, and what to write instead, with the repaired text if there is one.
+The rules are tried in order, until one of them recognizes the typing mistake and returns an error
+with a suggestion.
 """
 
 from typing import Final
@@ -49,7 +49,7 @@ _LONG_TEXT_RULES: Final = tuple(rule for rule in RULES if rule not in _SHORT_TEX
 
 
 def explain(failure: Failure) -> ExpressionError:
-    """Return the error for ``failure``. Its suggestion can be read without error, or is None."""
+    """Return the error for ``failure``. Any suggestion in it is readable."""
     is_long = len(failure.source) > LIMITS.repaired
     rules = _LONG_TEXT_RULES if is_long else RULES
     error = next(found for rule in rules if (found := rule.repair(failure)) is not None)

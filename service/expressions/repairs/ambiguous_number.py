@@ -1,4 +1,4 @@
-"""2e1 if e1 is a declared symbol: a power of ten or a product."""
+"""The text 2e1 if e1 is a symbol: it may be a power of ten or a product."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.translations import say
@@ -6,7 +6,7 @@ from service.translations import say
 
 @for_causes("ambiguous_number")
 def repair(failure: Failure) -> Repair:
-    """Name both readings, and suggest the product."""
+    """Explain that 2e1 is ambiguous, and suggest the product."""
     product = failure.details["product"]
     message = say(
         "{written} may be a power of ten or a product. For the product, write {product}.",

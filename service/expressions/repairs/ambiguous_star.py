@@ -6,7 +6,7 @@ from service.translations import say
 
 @for_causes("ambiguous_star")
 def repair(failure: Failure) -> Repair:
-    """Name both readings, and suggest the text without the star."""
+    """Explain that the star is ambiguous, and suggest the text without it."""
     (start, end) = failure.details["star"]
     variable = failure.source[failure.span[0] : start].strip()
     message = say(

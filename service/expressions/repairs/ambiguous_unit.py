@@ -1,4 +1,4 @@
-"""A unit with two readings: 2deg(q1), degrees(90), π/2°, 180/2°."""
+"""A unit that is ambiguous: 2deg(q1), degrees(90), π/2°, 180/2°."""
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
 from service.translations import say
@@ -6,7 +6,7 @@ from service.translations import say
 
 @for_causes("ambiguous_unit")
 def repair(failure: Failure) -> Repair:
-    """Ask for the unit after the number."""
+    """Ask the student to write the unit after a number."""
     if "inside" in failure.details:
         return _inside(failure)
     if not failure.details["opens"]:
@@ -19,7 +19,6 @@ def repair(failure: Failure) -> Repair:
 
 
 def _inside(failure: Failure) -> Repair:
-    """Suggest π/2 for π/2°, and (180/2)° for 180/2°."""
     (start, end), inside = failure.span, failure.details["inside"]
     value = failure.source[slice(*inside)]
     if failure.details["of_pi"]:

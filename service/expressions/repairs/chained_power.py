@@ -1,4 +1,4 @@
-"""2^3^2, a power of a power, which has two readings."""
+"""A power of a power, such as 2^3^2, which is ambiguous."""
 
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
@@ -7,7 +7,7 @@ from service.translations import say
 
 @for_causes("grammar")
 def repair(failure: Failure) -> Repair:
-    """Ask for brackets."""
+    """Ask the student to add brackets."""
     if failure.terminal() != "POWER" or failure.terminal(1) not in OPERAND_ENDS:
         return None
     message = say("A power of a power has two readings. Add brackets: (a^b)^c or a^(b^c).")

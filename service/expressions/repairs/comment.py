@@ -12,7 +12,7 @@ _OPERATOR = re.compile(r"[-+*/^=(,]")
 
 
 def repair(failure: Failure) -> Repair:
-    """Suggest the text before the comment, or one slash instead of // if this may be a division."""
+    """Suggest the text without the comment, or one slash instead of two."""
     match = _COMMENT.search(failure.source)
     if match is None:
         return None

@@ -13,7 +13,7 @@ _IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
 
 @for_causes("grammar", "transpose")
 def repair(failure: Failure) -> Repair:
-    """Suggest a point; for 1,000, which may be a thousand, name both readings."""
+    """Suggest a decimal point, or explain that 1,000 is ambiguous."""
     if failure.cause == "transpose":
         return _apostrophe(failure)
     start, end = failure.span
@@ -29,7 +29,6 @@ def repair(failure: Failure) -> Repair:
 
 
 def _apostrophe(failure: Failure) -> Repair:
-    """Suggest a point for 1’5, but not for 1’000, which may be a thousand."""
     numbers = _APOSTROPHE.finditer(failure.source)
     number = next((match for match in numbers if match.span(1) == failure.span), None)
     if number is None:

@@ -11,7 +11,7 @@ _NAME = re.compile(r"\s*\\?[^\W\d]\w{0,20}\s*")
 
 
 def repair(failure: Failure) -> Repair:
-    """Suggest the right side if all left sides are names, but not if one is a formula."""
+    """Suggest the right side of the equation if each left side is a name."""
     signs = list(_EQUALS.finditer(failure.source))
     if not signs or right_side(failure.source, failure.vocabulary)[1] is not None:
         return None

@@ -15,8 +15,7 @@ Repair = ExpressionError | None
 class Failure:
     """A text that could not be read, and the ``error`` that stopped the reader.
 
-    ``repaired`` is a function that tries another text. It returns that text if it is readable, else
-    a readable correction of it, else None.
+    The function ``repaired`` returns a readable form of another text, or None.
     """
 
     __slots__ = ("cause", "details", "repaired", "source", "span", "vocabulary")
@@ -47,21 +46,18 @@ class Failure:
         return self.source[:start] + text + self.source[end:]
 
     def terminal(self, back: int = 0) -> str:
-        """Return the terminal of the token that is ``back`` tokens before the refused token.
-
-        Return "" if there is no such token, or if the grammar did not refuse the text.
-        """
+        """Return the kind of the token ``back`` tokens before the unreadable token, or ""."""
         at = self.details["index"] - back if self.cause == "grammar" else -1
         return "" if at < 0 else self.details["tokens"][at][0]
 
     def place(self, back: int = 0) -> Span:
-        """Return the place of the token that is ``back`` tokens before the refused token."""
+        """Return the place of the token ``back`` tokens before the unreadable token."""
         token = self.details["tokens"][self.details["index"] - back]
         return token[2], token[3]
 
 
 class RepairRule(Protocol):
-    """A module with the repair rule for one kind of slip."""
+    """A module with the repair rule for one kind of typing mistake."""
 
     __name__: str
 
@@ -72,7 +68,7 @@ class RepairRule(Protocol):
 def for_causes(
     *causes: Cause,
 ) -> Callable[[Callable[[Failure], Repair]], Callable[[Failure], Repair]]:
-    """Decorate a rule so that it applies only to these causes."""
+    """Return a decorator that limits a rule to these causes."""
 
     def decorate(rule: Callable[[Failure], Repair]) -> Callable[[Failure], Repair]:
         @wraps(rule)
@@ -85,7 +81,7 @@ def for_causes(
 
 
 def refusal(cause: Cause, code: str, message: str) -> Callable[[Failure], Repair]:
-    """Return a rule that gives every failure of this cause the same message."""
+    """Return a rule that answers each failure of this cause with the same message."""
     return for_causes(cause)(lambda failure: error(failure, code, message))
 
 

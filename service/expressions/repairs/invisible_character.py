@@ -9,7 +9,7 @@ from service.translations import say
 
 @for_causes("invisible")
 def repair(failure: Failure) -> Repair:
-    """Name the character. Unless it is an accent, suggest the text without invisible characters."""
+    """Name the character, and suggest the text without invisible characters."""
     letter = failure.written
     name = unicodedata.name(letter, f"U+{ord(letter):04X}").lower()
     if unicodedata.category(letter) in {"Mn", "Me"} and not "\ufe00" <= letter <= "\ufe0f":

@@ -23,7 +23,7 @@ _WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise."
 
 @for_causes("name", "quantity")
 def repair(failure: Failure) -> Repair:
-    """Ask for a bare number. Suggest one only for metres: other units would change its value."""
+    """Ask for a number without a unit; suggest it if the unit is metres."""
     if failure.cause == "quantity":
         return _quantity(failure)
     written = unicodedata.normalize("NFKC", failure.written)
@@ -45,7 +45,6 @@ def repair(failure: Failure) -> Repair:
 
 
 def _brackets(failure: Failure) -> Span:
-    """Return the place of the unit with the brackets around it, as in 0.4 [m]."""
     start, end = failure.span
     opening = _OPENING.search(failure.source, 0, start)
     closing = _CLOSING.match(failure.source, end)

@@ -7,7 +7,7 @@ from service.translations import say
 
 @for_causes("name")
 def repair(failure: Failure) -> Repair:
-    """Suggest * if x has a value before it and something after it."""
+    """Suggest * for an x between two values."""
     run, (start, end) = failure.details["run"], failure.span
     after = failure.source[end - len(run) + 1 :].strip()
     if run[0] not in "xX" or not after or failure.details["before"] not in OPERAND_ENDS:

@@ -10,7 +10,7 @@ _NUMBER = re.compile(r"([0-9.]+)\s*$")
 
 @for_causes("mixed_number")
 def repair(failure: Failure) -> Repair:
-    """Name both readings, and suggest the sum."""
+    """Explain that 2½ may be a sum or a product, and suggest the sum."""
     fraction = failure.details["fraction"]
     start, end = failure.span
     number = _NUMBER.search(failure.source[:start])

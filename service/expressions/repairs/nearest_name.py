@@ -60,7 +60,6 @@ def nearest(run: str, vocabulary: Vocabulary, called: bool) -> str | None:
 
 
 def _is_slip(name: str, typed: str) -> bool:
-    """True if both names have at least three letters, and nearly the same letters."""
     letters, other = _DIGITS.sub("", name), _DIGITS.sub("", typed)
     if min(len(letters), len(other)) < _FEWEST_LETTERS:
         return False

@@ -6,10 +6,8 @@ from service.translations import say
 
 @for_causes("invalid_shorthand")
 def repair(failure: Failure) -> Repair:
-    """Say why the joint has no angle.
-
-    There is no suggestion: the exercise may test whether students leave out the joint.
-    """
+    """Say why the joint has no angle."""
+    # There is no suggestion: the exercise may test whether students leave out the joint.
     joint = failure.details["joint"]
     if joint in failure.vocabulary.turning:
         return None

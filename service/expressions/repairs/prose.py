@@ -28,7 +28,6 @@ def repair(failure: Failure) -> Repair:
 
 
 def _is_prose(failure: Failure) -> bool:
-    """True if the text contains at least two unknown words and no formula."""
     if failure.cause != "name" or _FORMULA.search(failure.source):
         return False
     words = [word for word in _WORD.findall(failure.source) if len(word) > 1]

@@ -14,7 +14,7 @@ _RAISED = re.compile(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o"
 
 @for_causes("raised_zero", "name")
 def repair(failure: Failure) -> Repair:
-    """Suggest the degree sign; for 90^0, which may be a power, name both readings."""
+    """Suggest the degree sign, or explain that 90^0 may also be a power."""
     span = _raised_letter(failure) if failure.cause == "name" else failure.span
     if span is None:
         return None
@@ -28,7 +28,6 @@ def repair(failure: Failure) -> Repair:
 
 
 def _raised_letter(failure: Failure) -> Span | None:
-    """Return the place of a raised o at the failure, including ^ and brackets, or None."""
     if failure.written not in {"o", "O"}:
         return None
     start, end = failure.span

@@ -15,7 +15,7 @@ _JOINTS = re.compile(r"[1-9]{1,9}(?:\+[1-9]{1,9}|-[1-9](?![1-9])){1,9}")
 
 @for_causes("subscript")
 def repair(failure: Failure) -> Repair:
-    """Ask for a plain index; suggest cos(…) for c with a sum of angles or joints as index."""
+    r"""Ask for a plain index, and suggest a cosine such as cos(θ1+θ2) for c_{\theta_1+\theta_2}."""
     start, end = failure.span
     inside = failure.details["index"]
     letter = failure.source[start - 1 : start]
@@ -35,7 +35,6 @@ def repair(failure: Failure) -> Repair:
 
 
 def _sum_of_joints(inside: str, failure: Failure) -> str:
-    """Return the sum of angles that an index such as 12-4 means; "" for any other index."""
     index = "".join(inside.split()).translate(_MINUS)
     if _JOINTS.fullmatch(index) is None:
         return ""

@@ -12,7 +12,8 @@ _RAISED_T = re.compile(r"\^\s*\{?\s*(?:\\top|T)\s*\}?|\.'")
 
 @for_causes("transpose", "name", "command", "character")
 def repair(failure: Failure) -> Repair:
-    """Refuse the prime; suggest the text without it, unless this would join digits."""
+    """Suggest the text without the prime."""
+    # There is no suggestion if this would join digits.
     span = failure.span
     if failure.cause != "transpose":
         match = _RAISED_T.search(failure.source)

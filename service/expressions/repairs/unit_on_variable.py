@@ -17,17 +17,15 @@ _BRACKETS = re.compile(r"[(\[{|\\]")
 
 @for_causes("unit_on_variable")
 def repair(failure: Failure) -> Repair:
-    """Ask for the unit after the number."""
+    """Ask the student to write the unit after a number."""
     name = quoted(failure.source[slice(*failure.details["variable"])])
     message = say("A unit belongs after a number. Write it there, and not after {name}.", name=name)
     return error(failure, "unit_on_variable", message, _repaired(failure))
 
 
 def _repaired(failure: Failure) -> str | None:
-    """Return the text without the unit if it follows only the variable (q1° -> q1); else None.
-
-    In 90 + q1°, the unit belongs to the number, so it is moved to the number.
-    """
+    # Return the text without the unit if it follows only the variable (q1° -> q1); else None.
+    # In 90 + q1°, the unit belongs to the number, so it is moved to the number.
     start, end = failure.span
     inside = failure.details["variable"]
     rest = failure.source[inside[1] : end].strip()

@@ -28,10 +28,6 @@ _OF_NUMBERS = re.compile(r"\(\s*[0-9]+(?:\s*[,;]\s*[0-9]+)*\s*\)")
 
 
 def _after_factor(failure: Failure) -> str | None:
-    """Return "l1 cos" for l1c, which lacks the sign of a product.
-
-    Return None for any other text.
-    """
     factor, letter = failure.details["run"][:-1], failure.details["run"][-1:]
     if letter not in _SHORT or not factor or _OF_NUMBERS.match(failure.source, failure.span[1]):
         return None

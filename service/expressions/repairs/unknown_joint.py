@@ -44,17 +44,12 @@ def repair(failure: Failure) -> Repair:
 
 
 def _place(failure: Failure, goes_on: bool) -> Span:
-    """Return the span of the unknown name, without a function that follows it directly."""
     start, end = failure.span
     found = _AS_TYPED.match(failure.source, start, end) if goes_on else None
     return (start, found.end()) if found else (start, end)
 
 
 def _total(index: str, vocabulary: Vocabulary, *, latex: bool) -> str | None:
-    """Return the sum of the angles of the joints in ``index``, or None if there is no such sum.
-
-    Joints that slide are left out, because they have no angle.
-    """
     digits = [int(digit) for digit in index]
     if not 1 < len(digits) < 7 or len(set(digits)) < len(digits):
         return None

@@ -37,14 +37,12 @@ def repair(failure: Failure) -> Repair:
 
 
 def _angle(run: str, vocabulary: Vocabulary) -> str | None:
-    """Return the joint angle that t1 may mean, or None."""
     match = _SHORT_ANGLE.fullmatch(normal_form(run))
     angle = vocabulary.turning.get(int(match[1])) if match else None
     return angle.name if angle else None
 
 
 def _product(run: str, vocabulary: Vocabulary) -> str | None:
-    """Return the product that a run would be without its underscores (a*b for a_b), or None."""
     plain = run.replace("_", "")
     pieces = split(plain, vocabulary) if plain != run else None
     return None if pieces is None else "*".join(_written(piece, plain) for piece in pieces)
@@ -55,10 +53,6 @@ def _written(piece: Piece, run: str) -> str:
 
 
 def _names(name: str, vocabulary: Vocabulary) -> str:
-    """Return a sentence that lists the names which the student may mean.
-
-    These are the names with the same letter, else those of the same kind, else all names.
-    """
     siblings = _siblings(name, vocabulary)
     if name in _OF_JOINTS:
         siblings = [symbol for symbol in vocabulary.symbols if symbol.joint is not None]
@@ -82,7 +76,6 @@ def _all_names(symbols: list[Symbol], vocabulary: Vocabulary) -> str:
 
 
 def _names_of_kind(kind: Kind, constants: list[Symbol], vocabulary: Vocabulary) -> str:
-    """Return a sentence that lists the lengths or the angles which are not joint variables."""
     names = _joined(constants)
     if vocabulary.of_books:
         if kind == "length":
@@ -104,7 +97,6 @@ def _siblings(name: str, vocabulary: Vocabulary) -> list[Symbol]:
 
 
 def _kind(name: str) -> Kind | None:
-    """Return the kind of quantity that a name's letter suggests, or None."""
     match = _STEM.match(name)
     if match is None:
         return None

@@ -6,7 +6,7 @@ from service.translations import paragraph, say
 
 @for_causes("arguments")
 def repair(failure: Failure) -> Repair:
-    """Count the arguments; suggest atan2 for atan(y, x), and a point for a decimal comma."""
+    """Say how many arguments the function takes, and suggest atan2 for atan(y, x)."""
     name, wanted = failure.details["name"], failure.details["wanted"]
     places = failure.details["places"]
     if len(places) == 2 * wanted and (point := _with_points(failure)) is not None:
@@ -22,7 +22,6 @@ def repair(failure: Failure) -> Repair:
 
 
 def _counted(name: str, wanted: int, found: int) -> str:
-    """Return the sentence that says how many arguments a function takes and how many it has."""
     if wanted == 1:
         return say(
             "The function {name} takes one value, and {found} values stand here.",
@@ -44,7 +43,6 @@ def _counted(name: str, wanted: int, found: int) -> str:
 
 
 def _with_points(failure: Failure) -> str | None:
-    """Return the source with a point for each comma between arguments, or None if impossible."""
     places = failure.details["places"]
     source = failure.source
     for left, right in reversed(list(zip(places[::2], places[1::2], strict=True))):

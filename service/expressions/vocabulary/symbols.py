@@ -22,11 +22,13 @@ _SUBSCRIPT_DIGITS: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123
 class Symbol:
     """A declared symbol.
 
-    ``name`` is its canonical ASCII name ("theta1", "l1"); an angle's values are radians.
-    ``aliases`` are its other names; Greek spellings and subscripts need no alias. ``joint`` is the
-    joint's index if the symbol is a joint variable: an angle for a revolute joint, a length for a
-    prismatic one. ``latex`` overrides the LaTeX that is derived from the name.
+    ``name`` is its canonical ASCII name, such as theta1. ``aliases`` are its other names. ``joint``
+    is the index of the joint of which the symbol is the variable, or None. ``latex`` overrides the
+    LaTeX that is derived from the name.
     """
+
+    # Values of angles are radians. Greek spellings and subscripts need no alias. A joint variable
+    # is an angle for a revolute joint, and a length for a prismatic joint.
 
     name: str
     kind: Kind
@@ -40,17 +42,15 @@ Operand = tuple[str, tuple[Symbol, ...]]
 
 
 def normal_form(name: str) -> str:
-    """Return ``name`` with subscripts as plain digits: θ_1, θ₁ and θ_{1} -> θ1.
-
-    Greek letters stay letters; ``Vocabulary`` knows each name in both spellings.
-    """
+    """Return ``name`` with subscripts as plain digits: θ_1, θ₁ and θ_{1} -> θ1."""
+    # Greek letters stay letters; ``Vocabulary`` knows each name in both spellings.
     plain = name.strip().replace("\\", "").translate(_SUBSCRIPT_DIGITS)
     plain = _SUBSCRIPT.sub(r"\1", plain).replace("_", "")
     return "".join(greek.VARIANTS.get(letter, letter) for letter in plain)
 
 
 def joint_variable(index: int, *, sliding: bool = False) -> Symbol:
-    """Return the variable of joint ``index``: theta1 or q1; if ``sliding``, d3 or q3."""
+    """Return the variable of a joint: theta1 (or q1), for a sliding joint d3 (or q3)."""
     if sliding:
         return Symbol(f"d{index}", "length", (f"q{index}",), joint=index)
     return Symbol(f"theta{index}", "angle", (f"q{index}",), joint=index)
@@ -64,12 +64,13 @@ def _shared(symbols: tuple[Symbol, ...]) -> tuple[Symbol, ...]:
 class Vocabulary:
     """The declared symbols, by all their names. Immutable, equal by content.
 
-    The symbols are those of an exercise. With ``of_books``, they are those of textbooks, and
-    messages do not mention an exercise. With ``decimal_comma``, numbers may have a decimal comma.
-
-    Raises ValueError if two symbols have the same name, two joint variables have the same index, or
-    a name cannot be written in an expression.
+    The symbols are those of an exercise, or with ``of_books`` those of textbooks. With
+    ``decimal_comma``, numbers may have a decimal comma. Raises ValueError for symbols that clash.
     """
+
+    # Symbols clash if two have the same name, or two joint variables have the same index.
+    # ValueError also if a name cannot be written in an expression. With ``of_books``, messages do
+    # not mention an exercise.
 
     __slots__ = (
         "_hash", "_shared", "by_name", "decimal_comma", "joints", "longest", "of_books", "operands",

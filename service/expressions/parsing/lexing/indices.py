@@ -16,11 +16,11 @@ _STEM: Final = re.compile(rf"[A-Za-z{greek.CLASS}]+$")
 
 
 class Indexed(NamedTuple):
-    """A name and its index in brackets, read together.
+    """A name and its index in brackets, such as q[0].
 
-    ``pieces`` are the names in this text, or None if it has no meaning: ``[q1]`` for q[0].
-    ``style`` is the kind of brackets. ``digits`` is the index as the exercise counts it, here "1".
-    ``end`` is the position after the brackets.
+    ``pieces`` are the names that the text means, here q1, or None. ``style`` is the kind of
+    brackets. ``digits`` is the index as the exercise counts it, here "1". ``end`` is the position
+    after the brackets.
     """
 
     pieces: tuple[Piece, ...] | None
@@ -32,10 +32,9 @@ class Indexed(NamedTuple):
 def indexed(
     run: str, text: str, end: int, vocabulary: Vocabulary, *, from_one: bool = False
 ) -> Indexed | None:
-    """Read the letters ``run``, which end at ``text[end]``, and the index in brackets after them.
+    """Read the index in brackets after the letters ``run``, which end at ``text[end]``.
 
-    Return None if no index follows. With ``from_one``, indices in square brackets count from 1, not
-    from 0.
+    Return None if no index follows. With ``from_one``, indices in square brackets count from 1.
     """
     match = INDEX.match(text, end)
     if match is None or _STEM.search(run) is None:
@@ -52,12 +51,11 @@ def indexed(
 
 
 def is_family(run: str, vocabulary: Vocabulary) -> bool:
-    """True if the letters ``run`` with some index are a known name: q, if q1 is declared."""
+    """True if the letters ``run`` are a known name without its index: q, if q1 is known."""
     return any(split(f"{run}{index}", vocabulary) for index in {1, 2, *vocabulary.joints})
 
 
 def _first(run: str, vocabulary: Vocabulary) -> int:
-    """Return the index of the first joint if ``run`` names joint variables; else 1."""
     for joint in vocabulary.joints:
         pieces = split(f"{run}{joint}", vocabulary)
         if pieces and pieces[-1].kind == "symbol" and pieces[-1].symbols[0].joint is not None:

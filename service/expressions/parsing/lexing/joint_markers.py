@@ -1,4 +1,4 @@
-r"""The star after a joint variable: the marker that tables print, or a product.
+"""The star after a joint variable: the marker that tables print, or a product.
 
 Followed by nothing    θ1*, (d3*), atan2(q1*, k)    the marker
 Followed by +          θ1* + 90°, d3*+l1            the marker: nobody writes a product like this
@@ -6,10 +6,12 @@ Followed by -          θ1* - 90°, θ1*-π/2           the marker, with a note
                        d3*-l1                       a product, with a note
 Followed by other text q1*k                         a product
 
-A marked variable is the first factor of its term. If another factor precedes it (k*q1*+s1), a star
-before + or before a subtracted angle is ambiguous. If a blank precedes the star (q1 * + k), a star
-before + is ambiguous. A raised star is always the marker.
+A raised star is always the marker.
 """
+
+# A marked variable is the first factor of its term. If another factor precedes it (k*q1*+s1), a
+# star before + or before a subtracted angle is ambiguous. If a blank precedes the star (q1 * + k),
+# a star before + is ambiguous.
 
 import re
 from typing import Final, Literal

@@ -19,9 +19,9 @@ _PLAIN: Final = frozenset(ascii_letters + digits)
 def split_in_other_case(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
     """Split a run of letters and digits into known names, ignoring letter case.
 
-    Return None if this is impossible. A single letter of another case is a name only if it is the
-    whole run.
+    Return None if this is impossible.
     """
+    # A single letter of another case is a name only if it is the whole run.
     pieces = split(run, _with_other_capitals(vocabulary))
     if pieces is None:
         return None

@@ -1,4 +1,4 @@
-"""Plain characters -> tokens: numbers, operators, brackets and words."""
+"""Split plain characters into tokens: numbers, operators, brackets and words."""
 
 import math
 import re
@@ -55,10 +55,8 @@ class Lexer(WordLexer):
         return self.tokens
 
     def _plain_run(self, text: str) -> int:
-        """Read a text in which no character was converted, as far as a fast and simple split works.
-
-        Return the position up to which the text was read. ``_run_from`` reads the rest.
-        """
+        # Read a text in which no character was converted, as far as a fast and simple split works.
+        # Return the position up to which the text was read. ``_run_from`` reads the rest.
         tokens, operands, end = self.tokens, self.vocabulary.operands, 0
         for string in _STRING.findall(text):
             start, end = end, end + len(string)
@@ -83,11 +81,9 @@ class Lexer(WordLexer):
         return end
 
     def _run_from(self, position: int, text: str) -> int:
-        """Read tokens from ``position`` on. Return the position up to which the text was read.
-
-        Stop after a token that is longer than the regular expression's match, such as a function
-        with its power.
-        """
+        """Read tokens from ``position`` on. Return the position up to which the text was read."""
+        # Stop after a token that is longer than the regular expression's match, such as a function
+        # with its power.
         tokens, in_place = self.tokens, self.starts is None
         # The last alternative takes any character, so no character is skipped.
         for found in _TOKEN.finditer(text, position):
@@ -127,7 +123,7 @@ class Lexer(WordLexer):
         self._operand("NUMBER", Number(value, literal, a, b), a, b)
 
     def _check_power_of_ten(self, literal: str, span: Span) -> None:
-        """Raise UnreadableError for 2e1 if e1 is declared, and for 2e-1 if e is declared."""
+        """Raise UnreadableError for a power of ten such as 2e1 that may contain a symbol e1."""
         match = _E_NAME.search(literal)
         assert match is not None
         letter, sign, digits = match.groups()
@@ -138,7 +134,6 @@ class Lexer(WordLexer):
     # --- operators and brackets
 
     def _operator(self, text: str, start: int, end: int) -> int:
-        """Read an operator or a bracket; return the place after it."""
         span = self._span(start, end)
         if text in "([{":
             self._open(text, start, span)
@@ -163,7 +158,6 @@ class Lexer(WordLexer):
         return end
 
     def _close(self, bracket: str, span: Span, end: int) -> int:
-        """Close a bracket; return the place after it."""
         opener = self.brackets.close(bracket, span)
         if bracket == "}" and self.last == "FUNCTION" and opener == len(self.tokens) - 2:
             # Braces around the name of a function mean nothing: {cos}^2 θ.
@@ -198,10 +192,8 @@ class Lexer(WordLexer):
             self.brackets.open(bracket, span, len(self.tokens) - 1)
 
     def _bar(self, span: Span) -> None:
-        r"""Read a bar of |x|.
-
-        A bar after an operand closes the pair. Any other bar opens one, and so does \left|.
-        """
+        """Read a bar of |x|."""
+        # A bar after an operand closes the pair. Any other bar opens one, and so does \left|.
         closes = self.last in OPERAND_ENDS and self.brackets.in_bars()
         if closes and not _LEFT_BAR.search(self.source, max(0, span[0] - _LEFT_REACH), span[1]):
             self.brackets.close("|", span)
@@ -261,7 +253,7 @@ class Lexer(WordLexer):
     # --- characters that cannot be read
 
     def _is_percent_pi(self, letter: str, at: int) -> bool:
-        """True if a % begins Maxima's %pi; after a value it begins a comment."""
+        """True if a % begins Maxima's %pi, and not a comment."""
         return letter == "%" and self.last not in OPERAND_ENDS and self.text.startswith("pi", at)
 
     def _stray(self, letter: str, span: Span) -> UnreadableError:

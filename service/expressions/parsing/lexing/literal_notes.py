@@ -23,7 +23,7 @@ _DOTS: Final = ("·", "⋅", "∙", "•")
 
 
 def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
-    """Return a note if θ1 + 90 was read in radians but may mean degrees; else None."""
+    """Return a note on a sum such as θ1 + 90, which may mean degrees; else None."""
     for one, other in ((left, right), (right, left)):
         number = _number(other)
         if number is not None and not degrees and _is_large(number) and _is_angle(one):
@@ -80,10 +80,7 @@ def on_product(source: str, left: Number, right: Number) -> Note | None:
 def on_call(
     function: str, argument: Node, turning: Mapping[int, Symbol], *, degrees: bool
 ) -> Note | None:
-    """Return a note on cos(1), which may mean joint angle 1, or cos(90), which may mean 90°.
-
-    Return None for any other call.
-    """
+    """Return a note on cos(1), which may mean joint angle 1, or cos(90), which may mean 90°."""
     number = _number(argument)
     if number is None or function not in TRIGONOMETRIC:
         return None
@@ -115,18 +112,15 @@ def _radians(number: Number) -> Note:
 
 
 def _number(node: Node) -> Number | None:
-    """Return ``node`` without its sign if it is a number; else None."""
     node = node.operand if type(node) is Negation else node
     return node if type(node) is Number else None
 
 
 def _is_large(number: Number) -> bool:
-    """True if a number is more than a whole turn in radians, and a multiple of 0.5."""
     return number.value > _WHOLE_TURN and (2 * number.value).is_integer()
 
 
 def _is_angle(node: Node) -> bool:
-    """True if a node, or its left or right operand, is the symbol of an angle."""
     parts: list[Node] = [node]
     if type(node) is Binary:
         parts += [node.left, node.right]
@@ -135,6 +129,5 @@ def _is_angle(node: Node) -> bool:
 
 
 def _last_joint(argument: Node) -> int | None:
-    """Return the number of the last joint in c12 and the like, or None."""
     last = argument.right if type(argument) is Binary else argument
     return last.symbol.joint if type(last) is SymbolNode else None

@@ -31,7 +31,7 @@ class WordNotes:
             self.notes.append(Note(code, message, span))
 
     def star(self, star: Star, span: Span) -> None:
-        """Add a note if a star marks a joint variable (θ1*), or may mark it."""
+        """Add a note on a star that may mark a joint variable, as in θ1*."""
         if star == "product":
             return
         code = "joint_marker" if star == "marker" else "marker_or_product"
@@ -60,7 +60,7 @@ class WordNotes:
             self._add("shorthand", message, (a, b))
 
     def product(self, letter: str, angle: Symbol, a: int, b: int) -> None:
-        """Note a product that looks like the cosine or sine of an angle."""
+        """Add a note on a product that looks like the cosine or sine of an angle."""
         if letter in {"c", "C"}:
             message = say(
                 "This was read as {letter}*{angle}. For the cosine, write cos({angle}).",
@@ -77,21 +77,19 @@ class WordNotes:
             self._add("shorthand", message, (a, b))
 
     def other_capitals(self, name: str, a: int, b: int) -> None:
-        """Note a name in another letter case: l1 if only L1 is declared."""
+        """Add a note on a name in another letter case: l1 if only L1 is declared."""
         message = say("{written} was read as {name}.", written=quoted(self.source[a:b]), name=name)
         self._add("letter_case", message, (a, b))
 
     def pi(self, a: int, b: int) -> None:
-        """Note that Pi or PI was read as the number π."""
+        """Add a note that Pi or PI was read as the number π."""
         of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 2] == "()"
         if self.source[a:b] in PI_CAPITALS and not of_program:
             self._add("letter_case", say("This was read as the number pi."), (a, b))
 
     def function(self, name: str, a: int, b: int) -> None:
-        """Add a note on a function in capitals, or on a function of degrees such as sind.
-
-        If ``a`` is a symbol, also add one on acos, which could mean a·cos.
-        """
+        """Add a note on a function in capitals, or on a function of degrees such as sind."""
+        # If ``a`` is a symbol, also add one on acos, which could mean a·cos.
         written = self.source[a:b]
         # Mathematica writes Cos[q1], and C# Math.Cos(q1).
         of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 1] == "["

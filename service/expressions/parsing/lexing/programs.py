@@ -19,21 +19,18 @@ _COUNTS_FROM_ONE: Final = re.compile(
 
 
 def degrees_function_end(text: str, at: int) -> int | None:
-    """Return the end of a function that converts degrees to radians, or None.
-
-    The functions are radians, toRadians and rad, each after the name of a module, as in sympy.rad.
-    """
+    """Return the end of a function such as sympy.rad, which converts degrees, or None."""
     found = _RADIANS.match(text, at)
     return found and found.end()
 
 
 def is_more_than_a_turn(text: str, at: int) -> bool:
-    """True if ``text`` has a number in brackets at ``at`` that is more than a turn in radians."""
+    """True if the number in brackets at ``text[at]`` is more than a turn in radians."""
     return _MANY.match(text, at) is not None
 
 
 def subscripted(text: str, at: int) -> tuple[str, int] | None:
-    """Return the name and the end of ``Subscript[name, index]``, given the place of its bracket."""
+    """Return the name and the end of ``Subscript[name, index]``; ``at`` is the place of its [."""
     found = _SUBSCRIPT.match(text, at)
     return found and (f"{found[1]}{found[2]}", found.end())
 

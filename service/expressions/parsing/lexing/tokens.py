@@ -58,7 +58,6 @@ class TokenWriter:
         self.from_one: bool | None = None
 
     def _span(self, start: int, end: int) -> Span:
-        """Return the span in the typed text of the plain characters [start, end)."""
         if self.starts is None or self.ends is None:
             return start, end
         return self.starts[start], self.ends[end - 1]
@@ -68,7 +67,6 @@ class TokenWriter:
         self.last = terminal
 
     def _operand(self, terminal: str, value: Any, start: int, end: int) -> None:
-        """Emit the first token of an operand; after another operand, emit a product token first."""
         if self.last in OPERAND_ENDS:
             tokens = self.tokens
             before = tokens[-1]

@@ -33,7 +33,6 @@ class WordLexer(TokenWriter):
     __slots__ = ()
 
     def _word(self, run: str, start: int, end: int) -> int:
-        """Read a run of letters and digits; return the place after it."""
         operand = sole_operand(run, self.vocabulary) if self.starts is None else None
         if operand is None:
             return self._split_word(run, start, end)
@@ -72,18 +71,13 @@ class WordLexer(TokenWriter):
         return end
 
     def _note_product(self, run: str, pieces: tuple[Piece, ...], angle: Piece, start: int) -> None:
-        """Note cβ if c is a symbol: it is read as a product, not as a cosine."""
+        """Add a note on cβ, which is read as a product if c is a symbol."""
         before = pieces[pieces.index(angle) - 1]
         if before.kind == "symbol":
             a, b = self._span(start + before.start, start + angle.end)
             self.notes.product(run[before.start : before.end], angle.symbols[0], a, b)
 
     def _piece(self, piece: Piece, start: int, end: int) -> int:
-        """Emit the token of a constant, number or unit, which is a part of the run at ``start``.
-
-        Return the position up to which the text was read. It is ``end``, or later if brackets after
-        the run were read as well.
-        """
         kind, word, stop = piece.kind, piece.word, start + piece.end
         a, b = self._span(start + piece.start, stop)
         if kind == "pi":
@@ -120,11 +114,6 @@ class WordLexer(TokenWriter):
         )
 
     def _unsplit(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
-        """Read a run of letters that is no known name by itself.
-
-        It may have another letter case, or an index in brackets. Return its parts and the position
-        after it.
-        """
         if len(run) > LONGEST_RUN:
             raise self._unknown(run, start, end)
         if run == "Subscript" and (found := subscripted(self.text, end)):
@@ -197,7 +186,6 @@ class WordLexer(TokenWriter):
             self.last = "NAME"
 
     def _function(self, name: str, at: int, end: int, a: int, b: int) -> int:
-        """Emit a function with the power after its name, if any; return the place after it."""
         if name == "rad2deg" or (name in IN_DEGREES and not self.degrees):
             raise UnreadableError("degrees", (a, b), name=name)
         self.notes.function(name, a, b)
@@ -212,10 +200,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _function_power(self, name: str, at: int, a: int, b: int) -> tuple[int | None, int]:
-        """Read the power after a function's name, as in sin^2. Return it and the position after it.
-
-        The power is None if there is none.
-        """
+        """Read the power after a function's name, as in sin^2. Return it, or None, and its end."""
         raised = _FUNCTION_POWER.match(self.text, at)
         if raised is None:
             return None, at

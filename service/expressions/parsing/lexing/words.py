@@ -43,13 +43,15 @@ _NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEG
 
 @dataclass(frozen=True, slots=True)
 class Piece:
-    """One name, function, number or unit in a run of letters and digits, ``run[start:end]``.
+    """One name, function, number or unit in a run of letters and digits.
 
-    ``word`` is the canonical name of a function or unit, or the digits of a number. ``symbols`` has
-    one symbol, or the joint angles that a shorthand such as c12 adds. ``ambiguous`` is True for a
-    shorthand that could also mean something else, such as sin12. ``joint`` is the joint number in a
-    shorthand whose joint has no angle.
+    ``word`` is the name of a function or unit, or the digits of a number. ``symbols`` are the
+    symbols in the piece: one, or the joint angles that a shorthand such as c12 adds.
     """
+
+    # ``ambiguous`` is True for a shorthand that could also mean something else, such as sin12.
+    # ``joint`` is the joint number in a shorthand whose joint has no angle. The piece is
+    # ``run[start:end]``.
 
     kind: PieceKind
     start: int
@@ -86,11 +88,9 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 
 
 def sole_operand(run: str, vocabulary: Vocabulary) -> Operand | None:
-    """Return the meaning of ``run`` if it is a single symbol or shorthand such as c12; else None.
-
-    Return None also if ``run`` is the name of a module, or if its shorthand may get a note. A
-    meaning that is found is stored in ``vocabulary``.
-    """
+    """Return the meaning of ``run`` if it is one symbol or a shorthand such as c12; else None."""
+    # None also if ``run`` is the name of a module, or if its shorthand may get a note. A meaning
+    # that is found is stored in ``vocabulary``.
     pieces = None if run in functions.MODULES else split(run, vocabulary)
     if pieces is None or len(pieces) > 1:
         return None
@@ -111,7 +111,6 @@ def _with_underscores(piece: Piece, kept: list[int], run: str) -> Piece:
 
 
 def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
-    """Split ``run`` from right to left, so that the rest after each position is split only once."""
     length = len(run)
     # For each position: the first pieces of the rest of the run, and True if no piece is invalid.
     first: list[tuple[Piece, ...] | None] = [None] * length
@@ -134,7 +133,6 @@ def _split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
 
 
 def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
-    """Join the pieces that begin at each position. Return None if there is a gap."""
     found: list[Piece] = []
     at = 0
     while at < len(first):
@@ -163,7 +161,6 @@ def _with_other_readings(pieces: tuple[Piece, ...], run: str) -> tuple[Piece, ..
 
 
 def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piece, ...]]:
-    """Return the possible pieces at ``start``, longest first; of equal length, symbols first."""
     shorthand = _shorthand(run, start, vocabulary) or _angle_shorthand(run, start, vocabulary)
     found: list[tuple[Piece, ...]] = [] if shorthand is None else [(shorthand,)]
     for end in range(min(len(run), start + vocabulary.longest), start, -1):
@@ -228,7 +225,6 @@ def _angle_shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | No
 
 
 def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
-    """Return the joints in ``index``: one for each digit, or one joint with number 10 or more."""
     digits = tuple(map(int, index))
     if len(set(digits)) == len(digits) and set(digits).issubset(vocabulary.joints):
         return digits
