@@ -1,4 +1,4 @@
-"""Pasted text -> a grid of cells. Each cell keeps its place in the pasted text.
+"""Read a pasted table or matrix as a grid of cells.
 
 This package knows nothing about robots. It imports only spans, errors and function names from
 ``service.expressions``.

@@ -1,4 +1,4 @@
-"""All formats, in the order in which they are tried."""
+"""All formats of grids, in the order in which they are tried."""
 
 import re
 from dataclasses import replace
@@ -50,10 +50,8 @@ _THIN_SPACE: Final = "\\,"
 
 
 def read_grid(text: str) -> Grid:
-    """Return the grid in a pasted text. Raises only GridError, for any text.
-
-    Takes linear time. The length of the text is bounded by ``GRID_LIMITS``.
-    """
+    """Return the grid in a pasted text, in linear time. Raises only GridError, for any text."""
+    # The length of the text is bounded by ``GRID_LIMITS``.
     source = pasted_source(text)
     if named_values.FORMAT.matches(source.text):
         # The label of the first row would be a title.
@@ -69,7 +67,7 @@ def read_grid(text: str) -> Grid:
 def read_robot(text: str) -> RobotTable | None:
     """Return the DH table of the robot that a pasted script describes; None for any other text.
 
-    Raises GridError for a script that does not determine the table. Takes linear time.
+    Raises GridError if the table is not certain. Takes linear time.
     """
     if describes_print(text) and not describes_robot(text):
         return read_print(_limited(text))
@@ -81,15 +79,13 @@ def read_robot(text: str) -> RobotTable | None:
 def pasted_source(text: str, *, named: bool = False) -> SourceText:
     """Return a pasted text without the prompts of an interpreter.
 
-    With ``named``, the name typed at a prompt becomes a heading above its output.
-
-    Raises GridError if the text is empty or exceeds the limits.
+    Raises GridError if the text is empty or too long.
     """
+    # With ``named``, the name typed at a prompt becomes a heading above its output.
     return session_outputs(_limited(text), named=named)
 
 
 def _limited(text: str) -> SourceText:
-    """Return the text as a SourceText. Raises GridError if it is empty or exceeds the limits."""
     if len(text) > GRID_LIMITS.characters:
         most = GRID_LIMITS.characters
         message = say(
@@ -119,7 +115,7 @@ def _limited(text: str) -> SourceText:
 
 
 def grid_of(source: SourceText) -> Grid:
-    """Return the grid in a piece of a pasted text. Raises GridError if it is no grid."""
+    """Return the grid in a piece of a pasted text. Raises GridError if there is none."""
     for candidate in FORMATS:
         if candidate.matches(source.text):
             return candidate.parse(source)

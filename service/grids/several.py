@@ -48,7 +48,7 @@ _BLANK_LINES: Final = re.compile(r"\n(?:[ \t]*\r?\n)+")
 
 @dataclass(frozen=True, slots=True)
 class NamedGrid:
-    """One matrix of several, or the error if it cannot be read.
+    """One of several matrices, or the error if it cannot be read.
 
     ``name`` is the name before the matrix; it may be empty.
     """
@@ -60,7 +60,7 @@ class NamedGrid:
 def read_grids(text: str) -> tuple[NamedGrid, ...]:
     """Return the matrices in a pasted text, in order.
 
-    Takes linear time. Raises GridError if the text cannot be split into matrices.
+    Raises GridError if the text cannot be split into matrices. Takes linear time.
     """
     source = pasted_source(text, named=True)
     pieces = latex_list.several(source) if latex.FORMAT.matches(source.text) else _several(source)
@@ -73,10 +73,8 @@ def read_grids(text: str) -> tuple[NamedGrid, ...]:
 
 
 def _is_made_later(each: NamedGrid, later: Sequence[NamedGrid]) -> bool:
-    """True if a later matrix has the same name, and ``each`` is only a formula for it.
-
-    ``A1 = trotz(q1)`` above ``A1 = […]`` is an example.
-    """
+    # True if a later matrix has the same name, and ``each`` is only a formula for it.
+    # ``A1 = trotz(q1)`` above ``A1 = […]`` is an example.
     name = each.name.text
     if not isinstance(each.grid, GridError) or each.grid.code != "no_grid" or not name:
         return False
@@ -111,7 +109,6 @@ def _headings_out_of_comments(source: SourceText) -> SourceText:
 
 
 def _masked(source: SourceText) -> str:
-    """Return the text with each character inside brackets or quotes replaced by a mask."""
     pieces, start, after = [], 0, 0
     text = source.text
     ends = strict_pairs(source)
@@ -124,7 +121,6 @@ def _masked(source: SourceText) -> str:
 
 
 def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
-    """Yield each name outside brackets with the text that follows it."""
     name, start = source.cut(0, 0), 0
     for heading in _HEADING.finditer(_masked(source)):
         content = source.cut(start, heading.start())
@@ -142,7 +138,7 @@ def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
 
 
 def _holds_something(content: SourceText) -> bool:
-    """True unless the text is only prose or a product of named matrices."""
+    # True unless the text is only prose or a product of named matrices.
     text = content.text.strip(TAIL)
     return _PRODUCT.fullmatch(text) is None and _PROSE.fullmatch(text) is None
 
@@ -164,7 +160,6 @@ def _listed(content: SourceText) -> list[SourceText]:
 
 
 def _groups(content: SourceText) -> list[SourceText]:
-    """Return consecutive brackets with the functions around them; [] if there is other text."""
     masked = _masked(content)
     groups = list(islice(_GROUP.finditer(masked), _MOST_GROUPS + 1))
     if len(groups) > _MOST_GROUPS or _GROUP.sub("", masked).strip(TAIL):
@@ -178,7 +173,8 @@ def _content(group: SourceText) -> SourceText:
 
 
 def _is_matrix(group: SourceText) -> bool:
-    """True if a bracket, possibly the argument of a function, is a matrix and not a row."""
+    """True if a bracket is a matrix and not a row."""
+    # The bracket may be the argument of a function.
     content = _content(group)
     maker = group.text[: len(group.text) - len(content.text) - 2].strip().rpartition(".")[2]
     if maker:

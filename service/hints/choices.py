@@ -1,7 +1,7 @@
-"""Other valid tables of a robot, made by choosing frames of a correct table differently.
+"""Other valid tables of a robot, made by choosing a frame of a correct table differently.
 
-A frame between two rows may be turned by a half turn about its x or z axis, and slid along its z
-axis if the next axis is parallel. Grading decides which of these changes the exercise allows.
+The x or z axis of a frame may point the other way. If the next axis is parallel, the frame may
+slide along its z axis. The grader decides which of these changes the exercise allows.
 """
 
 import re
@@ -63,10 +63,8 @@ def other_choices(
 def _changed(
     rows: Sequence[Cells], convention: Convention, lengths: Sequence[str]
 ) -> Iterator[FrameChoice]:
-    """Yield tables in which one frame between two rows is chosen differently.
-
-    The first tables differ in as many ways as possible.
-    """
+    """Yield tables in which one frame between two rows is chosen differently."""
+    # The first tables differ in as many ways as possible.
     ways: list[Callable[[list[Cells], int, Convention], FrameChoice]]
     ways = [_reversed_x, _reversed_z, *(partial(_slid, length=length) for length in lengths[:1])]
     inner = len(rows) - 1

@@ -31,12 +31,9 @@ _SYMBOLS: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
 @dataclass(frozen=True, slots=True)
 class _Scene:
-    """Two frames, the corner of the path between them, and the indices of the parameters.
-
-    The columns of ``before`` and ``after`` are x, z and the origin. The path has two straight
-    pieces, a and d, which meet at the corner.
-    """
-
+    # Two frames, the corner of the path between them, and the indices of the parameters.
+    # The columns of ``before`` and ``after`` are x, z and the origin. The path has two straight
+    # pieces, a and d, which meet at the corner.
     before: Numbers
     after: Numbers
     corner: Numbers
@@ -52,13 +49,13 @@ class _Scene:
         return self.indices["a"] == "i"
 
     def length(self, name: str) -> Numbers:
-        """Return the two end points of a or d, as an array ``(2, 3)``."""
+        """Return the two end points of the length a or d, as an array ``(2, 3)``."""
         ends = [self.before[:, 2], self.corner, self.after[:, 2]]
         first = (name == "d") == self.is_standard
         return np.array(ends[:2] if first else ends[1:])
 
     def angle(self, name: str) -> tuple[Numbers, Numbers, Numbers, Numbers]:
-        """Return the centre, the axis, and the first and last direction of α or θ."""
+        """Return the arc of the angle α or θ: centre, axis, first direction and last direction."""
         column = 0 if name == "theta" else 1
         axis = (
             self.x if name == "alpha" else (self.before if self.is_standard else self.after)[:, 1]
@@ -73,7 +70,7 @@ class _Scene:
 def rule_picture(
     name: RuleName, convention: Convention, theme: Theme, language: Language = ENGLISH
 ) -> str:
-    """Return the picture of a rule as SVG, with its text alternative in a language.
+    """Return the picture of a rule as SVG, with a text alternative.
 
     Raises KeyError if the rule has no picture.
     """
@@ -113,7 +110,6 @@ def _scene(convention: Convention) -> _Scene:
 
 
 def _turned(vector: Numbers, axis: Numbers, angle: float | Numbers) -> Numbers:
-    """Return a vector perpendicular to ``axis``, turned about it."""
     across = np.cross(axis, vector)
     return np.asarray(
         np.multiply.outer(np.cos(angle), vector) + np.multiply.outer(np.sin(angle), across)
@@ -121,7 +117,6 @@ def _turned(vector: Numbers, axis: Numbers, angle: float | Numbers) -> Numbers:
 
 
 def _axes(sheet: Sheet, scene: _Scene) -> None:
-    """Draw the two joint axes, the path between the two frames, and the frames."""
     for frame in (scene.before, scene.after):
         ends = np.array([scene.corner, frame[:, 2]])
         along = (ends - frame[:, 2]) @ frame[:, 1]
@@ -148,7 +143,6 @@ def _head(line: Numbers, kind: str) -> str:
 
 
 def _parameter(sheet: Sheet, scene: _Scene, name: str) -> None:
-    """Draw a length as a line with a head, or an angle as an arc."""
     if name in ("a", "d"):
         first, last = scene.length(name)
         line = sheet.camera.seen(np.linspace(first, last, 9))

@@ -1,11 +1,13 @@
 """The rules of DH and of kinematics that hints explain, each in three sentences.
 
-The field ``rule`` in a record of a misconception names a rule. No sentence contains a value: a hint
-names only rows, columns, axes and frames of the exercise. ``look`` and ``apply`` may have these
-fields: ``{row}``, the axes ``{z_before}`` and ``{z}``, ``{x_before}`` and ``{x_here}``, the axis
-``{x}`` of the parameters a and α, the axis ``{axis}`` of d and θ, and ``{entry}``, the place in an
-answer that is not a table.
+A rule never contains a value of the answer. Its sentences ``look`` and ``apply`` may name rows,
+axes and frames of the exercise, by fields such as ``{row}`` and ``{z_before}``.
 """
+
+# The field ``rule`` in a record of a misconception names a rule. ``look`` and ``apply`` may have
+# these fields: ``{row}``, the axes ``{z_before}`` and ``{z}``, ``{x_before}`` and ``{x_here}``, the
+# axis ``{x}`` of the parameters a and α, the axis ``{axis}`` of d and θ, and ``{entry}``, the place
+# in an answer that is not a table.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -18,12 +20,13 @@ from service.translations import say, template
 
 @dataclass(frozen=True, slots=True)
 class Rule:
-    """A rule: what to look at, what it says, and how it applies to a place.
+    """A rule: where to look, what the rule says, and how it applies to a row.
 
-    ``look`` and ``apply`` are templates, the other texts are sentences.
     ``modified`` is the statement in the modified convention if it differs from ``statement``.
-    ``pictured`` are the parameters that the picture shows; if there are none, there is no picture.
+    ``pictured`` are the parameters in the rule's picture; without them, there is no picture.
     """
+
+    # ``look`` and ``apply`` are templates, the other texts are sentences.
 
     title: str
     look: str
@@ -33,7 +36,7 @@ class Rule:
     pictured: tuple[str, ...] = ()
 
     def stated(self, convention: Convention) -> str:
-        """Return the statement in a convention."""
+        """Return what the rule says in a convention."""
         is_modified = convention is Convention.MODIFIED
         return self.modified if is_modified and self.modified else self.statement
 

@@ -1,7 +1,7 @@
 """The three steps of a hint for a message of a report.
 
-A step is made from the message, its place and the convention of the part, never from the reference:
-it contains no more of the answer than the message.
+A hint is made from the message and its place, never from the correct answer. So it reveals no more
+than the message.
 """
 
 from collections.abc import Mapping
@@ -43,7 +43,7 @@ _OF_KIND: Final[Mapping[str, RuleName]] = {
 
 @dataclass(frozen=True, slots=True)
 class Topic:
-    """A message of a report that a hint is about, by its code and one of its places."""
+    """The message of a report that a hint explains, by its code and one of its places."""
 
     part: str
     code: str
@@ -55,8 +55,8 @@ class Topic:
 class HintStep:
     """A step of a hint.
 
-    ``rule`` is the rule whose picture the step shows, if any. ``screen`` is the screen of *DH in
-    ten minutes* that explains the rule, or "".
+    ``rule`` is the rule whose picture is shown with the step, or None. ``screen`` is the page of
+    *DH in ten minutes* that explains the rule, or "".
     """
 
     title: str
@@ -96,7 +96,6 @@ def hint_step(
 
 
 def _message(report: PartReport, topic: Topic) -> Feedback | None:
-    """Return the report's message that the topic names; None if it is missing or has no hints."""
     for message, places, verdict in messages_of(report):
         at = {(place.row, place.cell) for place in places}
         is_there = (topic.row, topic.cell) in at if at else topic.row is None
@@ -121,11 +120,9 @@ def _has_axes(part: PartSpec) -> bool:
 def _convention(
     exercise: Exercise, part: PartSpec, answer: object, report: PartReport
 ) -> Convention:
-    """Return the convention in which the answer was read.
-
-    For a part without a convention, return the robot's convention. If the robot has no DH table,
-    return the standard convention.
-    """
+    """Return the convention in which the answer was read."""
+    # For a part without a convention, return the robot's convention. If the robot has no DH table,
+    # return the standard convention.
     if isinstance(part, DhRowSpec | FramesSpec | LinkTransformsSpec):
         return part.convention
     if not isinstance(part, DhTableSpec):
@@ -144,7 +141,6 @@ def _convention(
 def _fields(
     topic: Topic, part: PartSpec, convention: Convention, report: PartReport
 ) -> dict[str, str]:
-    """Return the values for the fields in the sentences of a rule."""
     labels = [row.label for row in report.rows if row.label != MARKED]
     if isinstance(part, DhTableSpec) and topic.row in labels:
         index = labels.index(topic.row)
@@ -179,7 +175,6 @@ def _axis(letter: str, label: str) -> str:
 
 
 def _entry(topic: Topic) -> Sentence:
-    """Return the name of a place in an answer."""
     if topic.row is None:
         return say("the answer")
     if topic.cell is None:

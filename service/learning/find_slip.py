@@ -1,4 +1,4 @@
-"""Draw a table with one slip by seed, such that the grader finds exactly this slip."""
+"""Draw a table with one mistake, so that the grader finds exactly this mistake."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
@@ -17,8 +17,8 @@ from service.time_slices import checkpoint
 class TableBlame:
     """The grader's judgement of a wrong table.
 
-    ``codes`` are the codes of the grader's messages on errors. ``cells`` are the wrong cells.
-    Repairing any one of the cells ``single`` makes the table valid.
+    ``codes`` are the codes of its messages, and ``cells`` are the wrong cells. To correct the
+    table, it is enough to correct any one of the cells ``single``.
     """
 
     codes: frozenset[str]
@@ -28,12 +28,13 @@ class TableBlame:
 
 @dataclass(frozen=True, slots=True)
 class DrawnSlip:
-    """A table with one slip.
+    """A table with one mistake, which a student must find.
 
-    ``texts`` is the wrong table, and ``model`` is the right table. ``misconception`` is the code of
-    the slip. ``places`` are the sets of cells that explain the slip; there are several sets if
-    parallel axes share an offset.
+    ``texts`` is the wrong table, ``model`` the right table, and ``misconception`` the code of the
+    mistake. ``places`` are the sets of cells that explain the mistake.
     """
+
+    # There are several sets if parallel axes share an offset.
 
     misconception: str
     texts: TableTexts
@@ -59,7 +60,7 @@ CONFIRMATIONS: Final = 5
 
 
 class NoSlipError(ValueError):
-    """No slip of the wanted kind fits the robot."""
+    """No mistake of the wanted kind fits the robot."""
 
 
 def drawn_slip(
@@ -69,10 +70,11 @@ def drawn_slip(
     judge_table: JudgeTable,
     wanted: str | None = None,
 ) -> DrawnSlip:
-    """Return the table with one slip that a seed draws; ``wanted`` may be the code of the slip.
+    """Return the table with one mistake that a seed draws; ``wanted`` may be its code.
 
-    Raises NoSlipError if no table has exactly one slip that the grader finds.
+    Raises NoSlipError if there is no such table.
     """
+    # The grader must find exactly one slip in the table.
     table = model_table(exercise.robot, convention, exercise.symbols)
     for _, (name, change) in zip(range(MAX_TRIES), _tries(table, seed, wanted), strict=False):
         checkpoint()
@@ -87,7 +89,6 @@ def drawn_slip(
 
 
 def _tries(table: ModelTable, seed: int, wanted: str | None) -> Iterator[tuple[str, SlipChange]]:
-    """Yield codes in turn, each with a change that may cause it; ``seed`` sets the order."""
     draws = SlipDraws(f"find the slip\n{seed}")
     codes = draws.shuffled(list(SLIPS)) if wanted is None else [wanted]
     left = {name: draws.shuffled(changes_of(name, table)) for name in codes}
@@ -98,7 +99,6 @@ def _tries(table: ModelTable, seed: int, wanted: str | None) -> Iterator[tuple[s
 
 
 def _places(name: str, change: SlipChange, blame: TableBlame) -> tuple[frozenset[TableCell], ...]:
-    """Return the places of a slip; none if the grader finds another slip or several slips."""
     cells = frozenset(change)
     if blame.codes != {name} or blame.cells != cells:
         return ()

@@ -1,8 +1,9 @@
 """The mistakes that can be put into a correct table, by the code of the message about them.
 
-Each function yields changes: other texts for some cells of the table. The grader may explain a
-change by another code; ``find_slip`` refuses such changes.
+Each function yields changes: new texts for some cells of the table.
 """
+
+# The grader may explain a change by another code; ``find_slip`` refuses such changes.
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -38,12 +39,11 @@ def _negative(text: str) -> str:
 
 
 def _is_single(cell: CellText) -> bool:
-    """True if the constant is one number or one symbol, so that a sign can be put before it."""
     return not any(sign in cell.constant[1:] for sign in "+- ")
 
 
 def _own(table: ModelTable) -> Iterator[tuple[TableCell, CellText, Joint]]:
-    """Yield each cell of a joint variable with its text and its joint."""
+    """Yield each cell with a joint variable, its text and its joint."""
     for (i, j), cell in _each(table):
         joint = table.joint_of(i)
         if joint is not None and cell.variable:
@@ -51,7 +51,6 @@ def _own(table: ModelTable) -> Iterator[tuple[TableCell, CellText, Joint]]:
 
 
 def _lengths(table: ModelTable) -> list[str]:
-    """Return the different lengths of the table, without signs."""
     found = [
         cell.constant.removeprefix("-")
         for (_, j), cell in _each(table)
@@ -239,7 +238,6 @@ def _link_columns_shifted(table: ModelTable) -> Iterator[SlipChange]:
 
 
 def _other_convention(table: ModelTable) -> Iterator[SlipChange]:
-    """Yield the table of the other convention if it only moves a and α by one row."""
     count = len(table.cells)
     step = 1 if table.convention is Convention.STANDARD else -1
     end = count - 1 if step == 1 else 0
@@ -306,7 +304,8 @@ SLIPS: Final[Mapping[str, SlipMaker]] = {
 
 
 def changes_of(name: str, table: ModelTable) -> list[SlipChange]:
-    """Return the changes that may cause the code ``name``, without unchanged cells."""
+    """Return the changes of the table that may lead to the message with this code."""
+    # Unchanged cells are left out.
     texts = table.texts
     found: list[SlipChange] = []
     for change in SLIPS[name](table):

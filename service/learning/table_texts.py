@@ -1,4 +1,4 @@
-"""The model table of a robot as texts that mean the same in every angle unit."""
+"""The correct table of a robot as texts that mean the same in every angle unit."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -49,7 +49,7 @@ class CellText:
 
 @dataclass(frozen=True, slots=True)
 class ModelTable:
-    """The model table in one convention, with its joints.
+    """The correct table of a robot in one convention, with its joints.
 
     ``names`` are all symbols of the exercise.
     """
@@ -66,19 +66,19 @@ class ModelTable:
         return tuple(tuple(cell.text() for cell in row) for row in self.cells)
 
     def changed(self, changes: Mapping[TableCell, str]) -> TableTexts:
-        """Return the texts with the given changes in some cells."""
+        """Return the texts of the table with new texts in some cells."""
         return tuple(
             tuple(changes.get((i, j), cell.text()) for j, cell in enumerate(row))
             for i, row in enumerate(self.cells)
         )
 
     def joint_of(self, row: int) -> Joint | None:
-        """Return the joint of a row; None for a fixed row."""
+        """Return the joint of a row; None for a row without a joint."""
         return self.joints[row] if row < len(self.joints) else None
 
 
 def model_table(robot: Robot, convention: Convention, names: frozenset[str]) -> ModelTable:
-    """Return the robot's table in a convention."""
+    """Return the correct table of a robot in a convention."""
     table = robot.tables[convention]
     return ModelTable(convention, table.joints, table.labels, _cells(table), names)
 
@@ -112,7 +112,7 @@ def _cell(formula: Expression, variable: str, is_angle: bool) -> CellText:
 
 
 def angle_text(degrees: float) -> str:
-    """Return an angle with its unit; 0 has none."""
+    """Return an angle with its unit, such as 90deg; 0 has no unit."""
     return f"{degrees:.12g}deg" if degrees else "0"
 
 

@@ -1,9 +1,11 @@
 """Sentences and their translations.
 
-``sentence`` makes sentences, ``languages`` has the catalogues. Each language is a folder with the
-sentences of reports (``sentences.po``), of pages (``pages.po``) and of the command line
-(``commands.po``). This is the lowest package: it imports no other.
+``sentence`` makes sentences, ``languages`` has the catalogues of translations. Each language has a
+folder with the sentences of reports (``sentences.po``), of pages (``pages.po``) and of the command
+line (``commands.po``).
 """
+
+# This is the lowest package: it imports no other.
 
 from service.translations.languages import (
     ENGLISH,

@@ -1,4 +1,4 @@
-"""The languages of sentences, and the choice of a language for a reader."""
+"""The languages of the service, and the choice of a language for a reader."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -21,26 +21,29 @@ class Language:
     tag: str
 
     def __getstate__(self) -> dict[str, str]:
-        """Return the language without its catalogue, which other processes read themselves."""
+        """Return the language without its catalogue of translations."""
+        # Other processes read the catalogue themselves.
         return {"code": self.code, "name": self.name, "tag": self.tag}
 
     @cached_property
     def translation(self) -> NullTranslations | None:
-        """The catalogue of the language; None for English, the language of the templates."""
+        """The catalogue of translations; None for English, the language of the templates."""
         return self._catalogue(("sentences", "pages"))
 
     @cached_property
     def translation_of_scripts(self) -> NullTranslations | None:
-        """The catalogue for scripts; it prefers the translations of pages to those of reports."""
+        """The catalogue of translations for scripts."""
+        # It prefers the translations of pages to those of reports.
         return self._catalogue(("pages", "sentences"))
 
     @cached_property
     def translation_of_commands(self) -> NullTranslations | None:
-        """The catalogue for the command line, which also prints sentences of reports."""
+        """The catalogue of translations for the command line."""
+        # The command line also prints sentences of reports.
         return self._catalogue(("commands", "sentences"))
 
     def _catalogue(self, domains: Sequence[str]) -> NullTranslations | None:
-        """Return the merged catalogue of these domains; an earlier domain takes precedence."""
+        """Return the merged catalogues of these domains; an earlier domain takes precedence."""
         if self.code == "en":
             return None
         # A template that no catalogue has stays English.
@@ -77,10 +80,8 @@ def language_named(tag: str | None) -> Language | None:
 
 
 def accepted_language(header: str | None) -> Language:
-    """Return the known language that the reader of an ``Accept-Language`` header likes best.
-
-    Return English if the header names no known language. The header may be invalid.
-    """
+    """Return the language for a reader, from the header ``Accept-Language``, or else English."""
+    # The header may be invalid.
     wanted = []
     for i, each in enumerate((header or "")[:500].split(",")):
         tag, _, parameters = each.partition(";")

@@ -1,4 +1,4 @@
-"""Formulas and matrices of formulas in MathML, from text that the program reads itself."""
+"""Formulas and matrices in MathML, made from plain text."""
 
 import re
 from collections.abc import Iterator
@@ -24,11 +24,9 @@ _NAME: Final = re.compile(
 
 
 def formula(text: str) -> str:
-    """Return a formula as HTML with MathML, or as text if it is unreadable.
-
-    Every word may be a name. Browsers do not break a formula into lines. So each term of a sum
-    becomes a separate formula, and a long term becomes text.
-    """
+    """Return a formula as HTML with MathML, or as text if it is unreadable."""
+    # Every word may be a name. Browsers do not break a formula into lines. So each term of a sum
+    # becomes a separate formula, and a long term becomes text.
     try:
         tree = _read(text).tree
     except (ExpressionError, ValueError):
@@ -60,9 +58,10 @@ def _term(tree: Node, sign: str = "") -> str:
 def matrix(text: str, name: str = "") -> str | None:
     """Return a matrix in brackets as HTML with MathML, or None if the text is not a matrix.
 
-    Each line of the text is a row, with commas between the entries; other forms of a pasted matrix
-    are read, too. ``name`` is shown before the matrix, with an equals sign.
+    Each line of the text is a row, with commas between the entries. ``name`` is shown before the
+    matrix.
     """
+    # Other forms of a pasted matrix are read, too.
     try:
         rows = [[row(_read(cell.text).tree) for cell in line] for line in read_grid(text).rows]
     except (ExpressionError, GridError, ValueError):
@@ -76,10 +75,8 @@ def matrix(text: str, name: str = "") -> str | None:
 
 
 def _read(text: str) -> Expression:
-    """Read a formula in which every word that is no function, unit or constant is a name.
-
-    Raises ExpressionError, or ValueError if two names differ only in their underscores.
-    """
+    # Read a formula in which every word that is no function, unit or constant is a name.
+    # Raises ExpressionError, or ValueError if two names differ only in their underscores.
     symbols = [Symbol(name, "number") for name in sorted(_names(text))]
     return read(text, Vocabulary(symbols), repairs=False)
 

@@ -69,14 +69,14 @@ class TypesetName(NamedTuple):
 
     @property
     def unicode(self) -> str:
-        """Return the name for places without markup: θ₁."""
+        """Return the name in Unicode: θ₁."""
         index = self.below.translate(_LOWERED) if self.below.isdigit() else f"_{self.below}"
         above = f"^{self.above}" if self.above else ""
         return f"{greek.LETTERS.get(self.stem, self.stem)}{index if self.below else ''}{above}"
 
 
 def typeset(text: str, symbols: Container[str] = ()) -> str:
-    """Return a text as HTML with its names in MathML; all else is escaped.
+    """Return a text as HTML with its names in MathML; everything else is escaped.
 
     ``symbols`` are the names that the exercise declares.
     """
@@ -84,12 +84,13 @@ def typeset(text: str, symbols: Container[str] = ()) -> str:
 
 
 def unbound(text: str, symbols: Container[str]) -> str:
-    """Return a part of a line as HTML with its names in MathML, as input of ``in_one_line``."""
+    """Return a part of a line as HTML with its names in MathML."""
+    # Pass the result to ``in_one_line``.
     return "".join(_html(text, symbols))
 
 
 def in_one_line(html: str) -> str:
-    """Return HTML in which no line breaks between a formula and brackets or signs next to it."""
+    """Return HTML in which no line break separates a formula from brackets or signs next to it."""
     return _RUN.sub(lambda run: f'<span class="maths">{run[0]}</span>', html)
 
 
@@ -99,13 +100,13 @@ def _html(text: str, symbols: Container[str]) -> Iterator[str]:
 
 
 def in_unicode(text: str, symbols: Container[str] = ()) -> str:
-    """Return a text with its names in Unicode, for places without markup."""
+    """Return a text with its names in Unicode (θ₁), for places without HTML."""
     found = pieces(text, symbols)
     return "".join(piece if isinstance(piece, str) else piece.unicode for piece in found)
 
 
 def pieces(text: str, symbols: Container[str] = ()) -> Iterator[str | TypesetName]:
-    """Yield the names in a text, and the texts between them."""
+    """Yield the names in a text and the texts between the names, in order."""
     text = _SIGN.sub("−", text)
     done = 0
     for match in _NAME.finditer(text):

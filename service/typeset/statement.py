@@ -1,11 +1,11 @@
-r"""Statements as HTML, from Markdown with LaTeX between dollar signs, which becomes MathML.
+"""Statements of exercises as HTML, from Markdown with LaTeX between dollar signs.
 
-Names in the text (``service/typeset/names.py``) and fenced blocks ``matrix`` are typeset.
-
-Authors of exercise files write text, never HTML: tags and scripts in it are shown as text. The
-library that converts formulas to MathML lets tags through (``\text{<b>}``, ``\href``), so only the
-plain MathML of its result is kept.
+Authors write text, never HTML: tags and scripts in it are shown as text. Names in the text and
+fenced blocks ``matrix`` are typeset.
 """
+
+# The library that converts formulas to MathML lets tags through (``\text{<b>}``, ``\href``), so
+# only the plain MathML of its result is kept.
 
 import re
 import xml.etree.ElementTree as ET
@@ -50,15 +50,15 @@ _SYMBOLS: Final = "symbols"
 def statement_html(statement: str, symbols: frozenset[str] = frozenset()) -> str:
     """Return the statement as HTML that is safe in any page: no scripts, styles or pictures.
 
-    ``symbols`` are the names that the exercise declares. A formula that cannot be converted to
-    MathML is shown as it is written.
+    ``symbols`` are the names that the exercise declares.
     """
+    # A formula that cannot be converted to MathML is shown as it is written.
     shown = _TURNING.sub(lambda mark: f"[U+{ord(mark[0]):04X}]", statement)
     return in_one_line(_markdown().render(shown, {_SYMBOLS: symbols}))
 
 
 def formula_html(latex: str, *, display: bool = False) -> str:
-    """Return a formula of a model solution as MathML, or else as it is written."""
+    """Return a formula of a model solution as MathML, or else as LaTeX."""
     return _formula(latex, {"display_mode": display, "longest": _LONGEST_SOLVED})
 
 
@@ -94,7 +94,7 @@ def _displayed(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object)
 
 
 def _join_lines(state: "StateCore") -> None:
-    """Join the lines of a text: a name may depend on the next word, which is in the next line."""
+    # Join the lines of a text: a name may depend on the next word, which is in the next line.
     for block in state.tokens:
         if block.type != "inline":
             continue
@@ -114,7 +114,7 @@ def _text(_renderer: object, tokens: "Sequence[Token]", i: int, _: object, env: 
 
 
 def _fence(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object) -> str:
-    """Return a block of code; a block with the word ``matrix`` and perhaps a name is a matrix."""
+    """Return a block of code as HTML; a block ``matrix`` is shown as a matrix."""
     kind, _blank, name = tokens[i].info.strip().partition(" ")
     text = tokens[i].content
     shown = matrix(text, name.strip()) if kind == "matrix" else None
@@ -122,7 +122,7 @@ def _fence(_renderer: object, tokens: "Sequence[Token]", i: int, *_: object) -> 
 
 
 def _formula(latex: str, options: Mapping[str, Any]) -> str:
-    """Return a formula as MathML, or else as it is written."""
+    """Return a formula as MathML, or else as LaTeX."""
     from latex2mathml.converter import convert
 
     mode = "block" if options.get("display_mode") else "inline"
@@ -142,7 +142,7 @@ def _formula(latex: str, options: Mapping[str, Any]) -> str:
 
 
 def _plain(root: ET.Element) -> bool:
-    """Return True if all elements are plain MathML; remove attributes that are not allowed."""
+    # This also removes the attributes that are not allowed.
     for element in root.iter():
         name = element.tag.removeprefix(f"{{{_MATHML}}}")
         if name not in _ELEMENTS:

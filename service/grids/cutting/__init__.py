@@ -1,1 +1,1 @@
-"""Cut a text into cells. Every character keeps its place in the pasted text."""
+"""Cut a pasted text into cells."""

@@ -1,7 +1,7 @@
 """Split a row into elements at blanks, by MATLAB's rule for square brackets.
 
-A blank separates two operands. A sign with a blank before it but not after it begins a new
-element: ``[c1 -s1]`` has two elements, ``[c1 - s1]`` and ``[c1 -  s1]`` have one.
+A sign with a blank before it but not after it begins a new element: ``[c1 -s1]`` has two elements,
+``[c1 - s1]`` has one.
 """
 
 import re
@@ -29,7 +29,7 @@ _MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 class BlankSeparated:
     """The elements of a row.
 
-    ``signs`` are the words such as -s1 that were read as a new element because of their sign.
+    ``signs`` are the words, such as -s1, that are separate elements only because of their sign.
     """
 
     elements: tuple[SourceText, ...]
@@ -71,6 +71,5 @@ def continues(left: str, right: str) -> bool:
 
 
 def _words(text: str) -> list[tuple[int, int]]:
-    """The [start, end) of each word. Blanks in brackets do not separate words."""
     blanks = [i for i in outside(text, pairs(text)) if text[i].isspace()]
     return [(a + 1, b) for a, b in pairwise([-1, *blanks, len(text)]) if a + 1 < b]

@@ -1,4 +1,4 @@
-"""The protocol of all formats: a format parses a text into a Grid or raises one GridError."""
+"""The grid that is read from a pasted text, and the protocol of all formats."""
 
 import re
 from collections.abc import Callable, Iterable, Sequence
@@ -19,12 +19,12 @@ Rows = Sequence[Sequence[GridCell]]
 
 
 class GridError(TextError):
-    """The text is not exactly one table or matrix. ``span`` is a place in the pasted text."""
+    """The pasted text is not exactly one table or matrix. ``span`` is the place of the problem."""
 
 
 @dataclass(frozen=True, slots=True)
 class Grid:
-    """Rows of cells, which may differ in length. ``format`` is the name of the text's format."""
+    """Rows of cells; the rows may differ in length. ``format`` is the name of the text's format."""
 
     format: str
     rows: tuple[tuple[GridCell, ...], ...]
@@ -49,16 +49,19 @@ class Grid:
 class GridFormat:
     """One way to write a grid.
 
-    ``matches`` returns True if a text seems to be in this format; it never raises. ``parse`` reads
-    the text and may raise GridError. Both take linear time.
+    ``matches`` returns True if a text seems to be in this format. ``parse`` reads the text, or
+    raises GridError. Both take linear time.
     """
+
+    # ``matches`` never raises.
 
     matches: Callable[[str], bool]
     parse: Callable[[SourceText], Grid]
 
 
 def too_many_matrices(whole: Span) -> GridError:
-    """Return the error for a text with more matrices than an arm may have links."""
+    """Return the error for a text with too many matrices."""
+    # An arm may not have so many links.
     message = say(
         "A pasted text has at most {most} matrices; yours has more.", most=GRID_LIMITS.rows
     )
@@ -80,9 +83,9 @@ def too_many_rows(whole: Span, found: int | None = None) -> GridError:
 
 
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
-    """Return a grid of these rows. Tidy its cells; leave out empty rows and empty outer columns.
+    """Return a grid of these rows, without empty rows and empty outer columns.
 
-    Raises GridError if all cells are empty or the grid exceeds ``GRID_LIMITS``.
+    Raises GridError if all cells are empty or the grid is too large.
     """
     tidied = [[tidy(cell) for cell in row] for row in rows]
     filled = [row for row in tidied if any(cell.text for cell in row)]
@@ -103,7 +106,7 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
 
 
 def tidy(cell: GridCell) -> GridCell:
-    """Return the cell without outer blanks and signs that only style the cell: $…$, `…`, „…“."""
+    """Return the cell without outer blanks and style marks: $…$, `…`, „…“."""
     cell = cell.strip()
     if _QUOTED.fullmatch(cell.text):
         cell = cell.cut(1, len(cell.text) - 1).strip()
@@ -123,10 +126,6 @@ def tidy(cell: GridCell) -> GridCell:
 
 
 def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
-    """Remove empty columns at the end of the rows.
-
-    If all rows have the same length, remove empty columns at the beginning, too.
-    """
     while all(row and not row[-1].text for row in rows if len(row) == max(map(len, rows))):
         widest = max(map(len, rows))
         rows = [row[:-1] if len(row) == widest else row for row in rows]

@@ -1,17 +1,15 @@
-"""Bounds on the cost of one pasted text. Each is checked before the work that it limits."""
+"""The limits on the size of a pasted text."""
 
 from dataclasses import dataclass
 
 
 @dataclass(frozen=True, slots=True)
 class GridLimits:
-    """Bounds on one pasted text. ``rows`` allows twelve rows and a header.
+    """Limits for one pasted text."""
 
-    ``separators`` bounds the number of commas, bars, tabs, line ends and the like in the text,
-    including those between empty cells of a spreadsheet.
-
-    The length of a cell is bounded by the reader of expressions.
-    """
+    # ``rows`` allows twelve rows and a header. ``separators`` bounds the number of commas, bars,
+    # tabs, line ends and the like in the text, including those between empty cells of a
+    # spreadsheet. The length of a cell is bounded by the reader of expressions.
 
     characters: int = 26 * 1024
     rows: int = 13

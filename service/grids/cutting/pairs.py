@@ -22,7 +22,7 @@ _BRACKET_OR_QUOTE: Final = re.compile(r"""[][(){}'"]""")
 def pairs(text: str) -> dict[int, int]:
     """Map each opening bracket's place to the place after its partner on the same line.
 
-    Brackets without a partner are left out; the reader of expressions reports them.
+    Brackets without a partner are left out.
     """
     found: dict[int, int] = {}
     stack: list[int] = []
@@ -39,9 +39,9 @@ def pairs(text: str) -> dict[int, int]:
 
 
 def strict_pairs(source: SourceText) -> dict[int, int]:
-    """Map the start of each bracket pair or quoted string in program text to its exclusive end.
+    """Map the start of each bracket pair or string to the place after its end.
 
-    Raises GridError for a bracket without a partner and for a string that does not end.
+    Raises GridError for a bracket without a partner, or for a string without an end.
     """
     text = source.text
     found: dict[int, int] = {}
@@ -98,7 +98,8 @@ def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
 
 
 def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
-    """Yield the places of characters outside all pairs; ``ends`` maps a pair's start to its end."""
+    """Yield the places of the characters outside all pairs of brackets and quotes."""
+    # ``ends`` maps the start of a pair to its end.
     i = 0
     while i < len(text):
         if i in ends:
@@ -109,9 +110,9 @@ def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
 
 
 def split(source: SourceText, separators: str) -> list[SourceText]:
-    """Split at each of the characters ``separators`` outside brackets and quotes.
+    """Split a text at these separators, but not inside brackets and quotes.
 
-    Raises GridError for a bracket without a partner and for a string that does not end.
+    Raises GridError for a bracket or a quotation mark without a partner.
     """
     text, ends = source.text, strict_pairs(source)
     places, at = [], 0

@@ -1,4 +1,4 @@
-"""A piece of text that knows the place of each of its characters in the text as typed."""
+"""A piece of text that knows where each of its characters was typed."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -13,9 +13,9 @@ _LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 
 @dataclass(frozen=True, slots=True)
 class SourceText:
-    """A piece of text, with the [start, end) of each character in the text as typed.
+    """A piece of text, and the position [start, end) of each character in the typed text.
 
-    ``at`` is the place of an empty piece.
+    ``at`` is the position of an empty piece.
     """
 
     text: str
@@ -37,7 +37,7 @@ class SourceText:
         )
 
     def span(self, start: int = 0, end: int | None = None) -> Span:
-        """Return the place of the characters [start, end) in the text as typed."""
+        """Return the place in the typed text of the characters [start, end)."""
         length = len(self.text)
         start = min(max(start, 0), length)
         stop = start if end is None else min(max(end, start), length)
@@ -50,7 +50,7 @@ class SourceText:
 
     @property
     def whole(self) -> Span:
-        """The place of the whole piece in the text as typed."""
+        """The place of the piece in the typed text."""
         return self.span(0, len(self.text))
 
     def strip(self, letters: str | None = None) -> "SourceText":
@@ -71,16 +71,14 @@ class SourceText:
         return [*pieces, self.cut(start, len(self.text))]
 
     def spelled(self, text: str) -> "SourceText":
-        """Return a piece with another ``text``.
-
-        Each of its characters has the place of this whole piece.
-        """
+        """Return a piece with another ``text`` at the same place."""
+        # Each of its characters has the place of this whole piece.
         start, end = self.whole
         return SourceText(text, (start,) * len(text), (end,) * len(text), start)
 
 
 def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
-    """Join the pieces into one. ``at`` is the place of the result if it is empty."""
+    """Join the pieces into one. ``at`` is the position of an empty result."""
     kept = [piece for piece in pieces if piece.text]
     if len(kept) == 1:
         return kept[0]

@@ -57,7 +57,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _with_units(words: list[SourceText]) -> list[SourceText]:
-    """Return the words of the first line; a unit in brackets joins the word before: ``a (m)``."""
+    """Return the words of a header, in which ``a (m)`` is one word."""
     found: list[SourceText] = []
     for word in words:
         if found and _UNIT.fullmatch(word.text):
@@ -71,7 +71,6 @@ def _is_rule(line: str) -> bool:
 
 
 def _at_gaps(line: SourceText) -> list[SourceText]:
-    """Split a line at two or more blanks. Return [] if this would split a value."""
     pieces = line.split(_GAP)
     halves = any(continues(left.text, right.text) for left, right in itertools.pairwise(pieces))
     return [] if halves else pieces

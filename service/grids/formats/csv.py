@@ -1,4 +1,4 @@
-"""Cells separated by commas. A comma in brackets, as in atan2(y, x), separates nothing."""
+"""Cells separated by commas. A comma in brackets, as in atan2(y, x), is part of its cell."""
 
 import re
 from typing import Final

@@ -1,4 +1,4 @@
-"""Printed data frames of pandas, R, Julia and MATLAB -> columns separated by blanks."""
+"""Read data frames as pandas, R, Julia and MATLAB print them."""
 
 import re
 from typing import Final
@@ -56,11 +56,9 @@ def _joined_lines(lines: list[SourceText], source: SourceText) -> SourceText:
 
 
 def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    """Return the rows with a header above the row numbers.
-
-    Pandas and R print row numbers without a header. The new header is empty, or the name of the
-    index if pandas prints this name in the second line.
-    """
+    """Return the rows with a header above the row numbers, which pandas and R print without one."""
+    # The new header is empty, or the name of the index if pandas prints this name in the second
+    # line.
     rows = _with_whole_labels(rows)
     head, *body = rows
     named = len(body) > 1 and len(body[0]) == 1 and len(head) > 1
@@ -80,11 +78,9 @@ def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
 
 
 def _with_whole_labels(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    """Return the rows with each label, such as Link 1, in one cell.
-
-    All rows below the headers must have a label, otherwise the rows do not change. A line with the
-    name of the index may follow the headers.
-    """
+    # Return the rows with each label, such as Link 1, in one cell.
+    # All rows below the headers must have a label, otherwise the rows do not change. A line with
+    # the name of the index may follow the headers.
     for start in range(min(3, len(rows))):
         body = rows[start:]
         if min(map(len, body)) > 2 and _are_labelled(body):

@@ -11,11 +11,12 @@ _LINE_ENDS = "\r\n\x85\u2028\u2029"
 
 
 def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[list[SourceText]]:
-    """Return the cells of each line. With ``brackets``, a separator in brackets separates nothing.
+    """Return the cells of each line; a cell may be in quotation marks, as in spreadsheets.
 
-    A cell that begins with " ends with the next single ", as in spreadsheets. Raises GridError
-    if this quotation mark is missing or more text follows it in the cell.
+    With ``brackets``, a separator in brackets is part of its cell. Raises GridError for a quotation
+    mark without a partner.
     """
+    # GridError also if more text follows the closing quotation mark in the cell.
     text = source.text
     ends = pairs(text) if brackets else {}
     plain = re.compile(
@@ -36,10 +37,6 @@ def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[l
 def _cell(
     source: SourceText, start: int, stops: str, ends: dict[int, int], plain: re.Pattern[str]
 ) -> tuple[SourceText, int]:
-    """Return the cell at ``start``, and the place of the separator or line end after it.
-
-    ``plain`` matches characters that neither end a cell nor open a pair.
-    """
     text = source.text
     i = start
     while i < len(text) and text[i].isspace() and text[i] not in stops:

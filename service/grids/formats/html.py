@@ -1,8 +1,7 @@
-"""HTML: the source of a table on a web page.
+"""HTML: the source of a table on a web page."""
 
-This file has its own scanner, because html.parser does not give each character's place in the
-pasted text, and does not take linear time for every text.
-"""
+# This file has its own scanner, because html.parser does not give each character's place in the
+# pasted text, and does not take linear time for every text.
 
 import re
 from dataclasses import dataclass, field
@@ -32,8 +31,6 @@ _DEGREE_SIGNS: Final = frozenset({"o", "O", "0", "°", "º", "∘", "˚"})
 
 @dataclass
 class _Table:
-    """The state of the scan: the rows read so far and the open cell."""
-
     rows: list[list[SourceText]] = field(default_factory=list)
     pieces: list[SourceText] = field(default_factory=list)
     cell_at: int | None = None
@@ -81,7 +78,6 @@ def _after_tag(source: SourceText, start: int) -> int:
 
 
 def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int:
-    """Process one tag; return the place where the scan continues."""
     name, start = tag[1].lower(), tag.start()
     closes = source.text[start + 1] == "/"
     place = source.span(start, end)
@@ -162,10 +158,6 @@ def _raise_or_lower(source: SourceText, table: _Table, name: str, start: int, en
 
 
 def _text(source: SourceText, table: _Table, start: int) -> int:
-    """Read the text up to the next tag or entity, or one entity.
-
-    Return the end of what was read.
-    """
     text = source.text
     if entity := _ENTITY.match(text, start):
         end = entity.end()

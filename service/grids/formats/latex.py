@@ -115,7 +115,6 @@ def without_comments(source: SourceText) -> SourceText:
 
 
 def _body(source: SourceText) -> SourceText:
-    """Return the content of the environment, or the whole text if it is only rows."""
     text = source.text
     marks = [mark for mark in BEGIN.finditer(text) if mark[2] in ARGUMENTS]
     if not marks and (plain := PLAIN.search(text)):
@@ -169,20 +168,19 @@ def never_ended(source: SourceText, mark: re.Match[str]) -> GridError:
 
 
 def other_end(source: SourceText, begin: re.Match[str], end: re.Match[str]) -> GridError:
-    r"""Return the error for an ``\end{…}`` that names another environment than ``\begin{…}``."""
+    r"""Return the error for a ``\begin{…}`` and an ``\end{…}`` with different names."""
     message = say("This does not fit {command}.", command=rf"\begin{{{begin[2]}}}")
     return GridError("unbalanced_environment", message, source.span(*end.span()))
 
 
 def _check_in_front(front: SourceText) -> None:
-    """Raise GridError for a factor before the matrix. The left side of an equation is allowed."""
     if after_wrappers(front.text) == len(front.text):
         return
     check_wrapper(front.cut(front.text.rfind("=") + 1, len(front.text)))
 
 
 def check_wrapper(around: SourceText) -> None:
-    """Raise GridError if ``around``, the text next to a matrix, is more than layout commands."""
+    """Raise GridError if the text next to a matrix is more than layout commands."""
     end = after_wrappers(around.text)
     if end < len(around.text):
         raise text_around(around.cut(end, len(around.text)))
@@ -200,7 +198,6 @@ def after_wrappers(text: str) -> int:
 
 
 def _after_arguments(source: SourceText, begin: re.Match[str]) -> int:
-    """Return the place after an environment's arguments; ``[t]`` may precede each argument."""
     at = begin.end()
     arguments = ARGUMENTS[begin[2]]
     if not arguments and begin[2].endswith("*"):
@@ -219,7 +216,7 @@ def _after_position(source: SourceText, at: int, options: re.Pattern[str] = _POS
 
 
 def after_brace(source: SourceText, start: int) -> int:
-    """Return the place after the closing brace for the opening brace at ``start``."""
+    """Return the place after the brace that closes the opening brace at ``start``."""
     depth = 0
     for i in range(start, len(source.text)):
         depth += {"{": 1, "}": -1}.get(source.text[i], 0)

@@ -37,7 +37,7 @@ _SUBSCRIPTS: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789
 
 
 class _Item(NamedTuple):
-    """A named value. ``number`` is in its name, as in ``a_1``, and ``label`` before its name."""
+    """A value with a name, such as ``a_1 = 0.4``."""
 
     name: str
     number: str
@@ -46,7 +46,6 @@ class _Item(NamedTuple):
 
 
 def _items(source: SourceText) -> list[_Item]:
-    """Return the named values of a text; [] if it contains anything else."""
     text = _STYLE.sub(lambda mark: " " * len(mark[0]), source.text)
     source = SourceText(text, source.starts, source.ends, source.at)
     first = islice(_NAME.finditer(text), len(_COLUMNS) * GRID_LIMITS.rows + 1)
@@ -71,7 +70,6 @@ def _items(source: SourceText) -> list[_Item]:
 
 
 def _rows(source: SourceText) -> list[list[SourceText]]:
-    """Return the rows with their headers; [] if a row does not have each parameter once."""
     items, size, nothing = _items(source), len(_COLUMNS), source.cut(0, 0)
     rows, numbers = [[nothing.spelled("i"), *map(nothing.spelled, _COLUMNS)]], []
     for group in (items[i : i + size] for i in range(0, len(items), size)):
@@ -86,10 +84,8 @@ def _rows(source: SourceText) -> list[list[SourceText]]:
 
 
 def _number(indices: list[str], label: str) -> str | None:
-    """Return the number of a row, "" if it has none; None if its label and indices disagree.
-
-    In the modified convention, the indices of a and alpha are one less.
-    """
+    # Return the number of a row, "" if it has none; None if its label and indices disagree.
+    # In the modified convention, the indices of a and alpha are one less.
     if not all(map(str.isdigit, indices)):
         return None if any(map(str.isdigit, indices)) else label
     a, alpha, d, theta = map(int, indices)

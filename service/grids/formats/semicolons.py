@@ -1,7 +1,4 @@
-"""Cells separated by semicolons: CSV from a spreadsheet that uses decimal commas.
-
-A decimal comma stays in its cell; the reader of expressions reports it.
-"""
+"""Cells separated by semicolons: CSV from a spreadsheet that uses decimal commas."""
 
 from typing import Final
 
@@ -32,7 +29,6 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _holds_several(cell: str) -> bool:
-    """True if commas or blanks separate values inside the cell."""
     return any(cell[i] == "," or cell[i].isspace() for i in outside(cell, pairs(cell)))
 
 

@@ -15,7 +15,6 @@ _ROW: Final = re.compile(r"(?:[^\W\d_]{1,20} ?)?\d{1,2}")
 
 
 def _rows(source: SourceText) -> list[list[SourceText]]:
-    """Return the rows, [] if the first lines are not the headers of whole rows."""
     lines = [line for line in map(SourceText.strip, source.lines()) if line.text]
     for width in (_COUNT, _COUNT + 1):
         headers = [_HEADER.fullmatch(line.text) for line in lines[width - _COUNT : width]]

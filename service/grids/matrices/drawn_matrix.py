@@ -50,7 +50,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _cells(row: SourceText) -> list[SourceText]:
-    """Split a row at commas (MATLAB's drawing), or at two or more blanks if it has no comma."""
+    """Split a row at commas, or at two or more blanks if it has no comma."""
     commas = [i for i in outside(row.text, pairs(row.text)) if row.text[i] == ","]
     if not commas:
         return row.split(_GAP)

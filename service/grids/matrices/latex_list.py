@@ -42,7 +42,7 @@ _BLANKS: Final = " \t\r\n&,.:"
 def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     """Return the matrices of a text as pairs (name, matrix); the name may be empty.
 
-    Raises GridError if an environment does not end, or if there is text that may change a matrix.
+    Raises GridError for an environment without an end, or for text that may change a matrix.
     """
     source = without_comments(source)
     found: list[tuple[SourceText, SourceText]] = []
@@ -66,7 +66,6 @@ def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
 
 
 def _innermost(source: SourceText) -> list[tuple[int, int]]:
-    """Return the [start, end) of each matrix environment that contains no other."""
     return sorted([*_environments(source), *_plain(source)])
 
 
@@ -100,7 +99,7 @@ def _plain(source: SourceText) -> Iterator[tuple[int, int]]:
 
 
 def _check_after(rest: SourceText) -> None:
-    """Raise GridError if ``rest``, the text after a matrix, begins with an operator."""
+    """Raise GridError if the text after a matrix begins with an operator."""
     closers = _CLOSERS.match(rest.text)
     at = closers.end() if closers else 0
     if _CHANGES.match(rest.text, at):
@@ -108,10 +107,6 @@ def _check_after(rest: SourceText) -> None:
 
 
 def _name(front: SourceText) -> SourceText:
-    """Return the name before a matrix: the left side of the last equation, or a heading.
-
-    Raises GridError for a factor, and for a word that may change the matrix.
-    """
     right = front.text.rfind("=") + 1
     if not right:
         rest = front.cut(after_wrappers(front.text), len(front.text)).strip(_BLANKS)

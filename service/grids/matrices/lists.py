@@ -20,9 +20,9 @@ _COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMat
 
 
 def lines_of(content: SourceText) -> list[SourceText] | None:
-    """Return the content of each inner bracket; None if ``content`` is not a list of lists.
+    """Return the text in each inner bracket of a list of lists; None for any other text.
 
-    Raises GridError for unbalanced brackets, and for more brackets than a grid may have rows.
+    Raises GridError for unbalanced brackets, and for too many brackets.
     """
     ends = strict_pairs(content)
     text = content.text
@@ -60,11 +60,11 @@ def rows(lines: list[SourceText]) -> list[list[SourceText]]:
 
 
 def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
-    """Return the rows of the matrix that a function such as ``Matrix`` makes from a flat list.
+    """Return the rows of a matrix made from a flat list, as by SymPy's ``Matrix(2, 2, […])``.
 
-    Without a shape, SymPy makes a column and NumPy a row. Raises GridError if the number of values
-    does not fit the shape.
+    Raises GridError if the number of values does not fit the shape.
     """
+    # Without a shape, SymPy makes a column and NumPy a row.
     values = _values(content)
     if matrix.shape is None:
         return [[value] for value in values] if matrix.maker in _COLUMN_MAKERS else [values]
@@ -93,11 +93,9 @@ def _values(line: SourceText) -> list[SourceText]:
 
 
 def unquoted(cell: SourceText) -> SourceText:
-    r"""Return the cell without the quotation marks of a string, and with its escapes decoded.
-
-    An escape that may begin a LaTeX command is not decoded: "\theta" stays \theta, though a program
-    would read a tab in it.
-    """
+    """Return the cell without the quotation marks of a string, and with its escapes decoded."""
+    # An escape that may begin a LaTeX command is not decoded: "\theta" stays \theta, though a
+    # program would read a tab in it.
     quote = cell.text[:1]
     if quote not in {"'", '"'} or len(cell.text) < 2 or not cell.text.endswith(quote):
         return cell
@@ -113,5 +111,4 @@ def unquoted(cell: SourceText) -> SourceText:
 
 
 def _character(units: str) -> str:
-    """Return the character of a UTF-16 escape; U+FFFD for half of a surrogate pair."""
     return bytes.fromhex(units.replace("\\", "").replace("u", "")).decode("utf-16-be", "replace")

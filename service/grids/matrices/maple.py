@@ -1,4 +1,4 @@
-"""Maple's matrices in angle brackets: <<a|b>, <c|d>> by rows, and <<a, c>|<b, d>> by columns."""
+"""Maple's matrices in angle brackets: by rows <<a|b>, <c|d>>, by columns <<a, c>|<b, d>>."""
 
 import re
 from itertools import zip_longest

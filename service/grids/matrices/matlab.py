@@ -9,9 +9,9 @@ from service.translations import say
 
 
 def rows(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
-    """Return the values of each row, and notes if another reading is possible.
+    """Return the values of each row, with notes if the text is ambiguous.
 
-    Raises GridError if splitting at commas and splitting at blanks give two different matrices.
+    Raises GridError if splitting at commas and splitting at blanks give different matrices.
     """
     lines = split(content, ";\r\n")
     lines = [line.strip() for line in lines if line.text.strip(" \t,")]

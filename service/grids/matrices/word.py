@@ -1,7 +1,9 @@
 r"""Matrices as Word writes them in one line: ``T=[■(a&b@c&d)]``, also ``■8(…)``, ``\matrix(…)``.
 
-@ separates rows and & separates values. Source: M. Sargent, UnicodeMath, Unicode Technical Note 28.
+The sign @ separates rows and & separates values.
 """
+
+# Source: M. Sargent, UnicodeMath, Unicode Technical Note 28.
 
 import re
 from typing import Final
@@ -42,10 +44,6 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _rows(source: SourceText, start: int) -> tuple[list[list[SourceText]], int]:
-    """Return the cells of the matrix whose bracket opens before ``start``, and the matrix's end.
-
-    Raises GridError if the bracket is not closed.
-    """
     rows: list[list[SourceText]] = [[]]
     opened: list[str] = []
     for sign in _SIGN.finditer(source.text, start):
@@ -71,7 +69,6 @@ def _rows(source: SourceText, start: int) -> tuple[list[list[SourceText]], int]:
 
 
 def _check_around(front: SourceText, rest: SourceText) -> None:
-    """Raise GridError if more than a name, brackets and an equation number is around the matrix."""
     front, rest = front.strip(), rest.strip()
     closer = CLOSES.get(front.text[-1:], "")
     if closer and rest.text.startswith(closer):

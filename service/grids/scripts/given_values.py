@@ -1,7 +1,7 @@
 """Assignments above the matrix of a MATLAB script, such as ``a1 = 0.4``.
 
-The letters of a matrix are the exercise's symbols, so a number assigned to a letter is ignored,
-with a note. Any other value may be needed to read the matrix, so the text is refused.
+The matrix is graded with letters, so a number assigned to a letter is ignored, with a note. Any
+other assigned value is an error.
 """
 
 import re
@@ -62,7 +62,7 @@ _MOST_NAMES: Final = 8
 
 @dataclass(frozen=True, slots=True)
 class GivenValue:
-    """The ``value`` that a script assigns to the letter ``name``; ``line`` is the statement."""
+    """A value that a script assigns to a letter; ``line`` is the whole statement."""
 
     name: str
     value: str
@@ -82,9 +82,9 @@ class GivenValue:
 def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     """Return the matrix of a script without the other statements, and a note on their numbers.
 
-    Any other text is returned unchanged. Raises GridError if the script assigns a value other than
-    a plain number to a letter of the matrix.
+    Raises GridError if a letter of the matrix has a value that is not a plain number.
     """
+    # Any text but a script is returned unchanged.
     plain = without_remarks(source)
     shown = _without_display(plain)
     given, at = _given_values(shown)
@@ -95,10 +95,8 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
 
 
 def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return a table without lines such as ``d1 = 0.135 m`` around it, and a note on these lines.
-
-    Any other text is returned unchanged.
-    """
+    """Return a table without lines such as ``d1 = 0.135 m`` around it, and a note on them."""
+    # Any other text is returned unchanged.
     lines = [line for line in source.lines() if line.text.strip()]
     numbers = [_DEFINITIONS.fullmatch(line.text) is not None for line in lines]
     is_definition = [
@@ -128,9 +126,9 @@ def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...
 def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
     """Return the note on numbers that a script assigns to letters.
 
-    ``read`` are the letters in the cells. Raises GridError if one of these letters has a value that
-    is not a plain number.
+    ``read`` are the letters in the cells. Raises GridError if one of them has another value.
     """
+    # That is, a value that is not a plain number.
     for each in given:
         is_known = each.is_number or not _without_shorthands(f"{each.name} = {each.value}")
         if each.name in read and not is_known:
@@ -159,7 +157,6 @@ def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Not
 
 
 def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
-    """Return the values that the first statements assign, and the place after the statements."""
     found: list[GivenValue] = []
     text, at = source.text, 0
     while at < len(text):
@@ -177,7 +174,7 @@ def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
 
 
 def _without_display(source: SourceText) -> SourceText:
-    """Return the text without last statements that only show the matrix: ``disp(DH)``."""
+    """Return the text without a last statement such as ``disp(DH)``, which shows the matrix."""
     for _ in range(_MOST_SHOWN):
         stripped = source.strip(_TAIL)
         shown = _SHOWS.search(stripped.text, max(0, len(stripped.text) - 160))
@@ -199,6 +196,6 @@ def _without_shorthands(line: str) -> str:
 
 
 def _defines_shorthands(line: str) -> bool:
-    """True if a line says only what shorthands mean: where c1 = cos(q1) and s1 = sin(q1)."""
+    """True if a line only defines shorthands: where c1 = cos(q1) and s1 = sin(q1)."""
     rest = _without_shorthands(line)
     return rest != line and _AROUND_SHORTHANDS.fullmatch(rest) is not None

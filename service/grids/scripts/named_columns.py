@@ -1,10 +1,8 @@
 """Read a DH table that is written as dictionaries in Python, or as objects in JSON.
 
-A list may hold one dictionary for each row: ``[{'a': a1, 'alpha': 0, …}, dict(a=a2, …)]``. A
-single dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, also in
-``pd.DataFrame(…)``. Instead, four lists may have the names of the columns: ``a = [l1, l2]``,
-``alpha = [0, 0]`` and so on. A dictionary may also hold single parameters, as for SymPy's ``subs``:
-``{alpha0: 0, a0: 0, d1: 0.75, alpha1: -pi/2, …}``.
+A list may hold one dictionary for each row: ``[{'a': a1, 'alpha': 0, …}, dict(a=a2, …)]``. A single
+dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, or single
+parameters, ``{alpha0: 0, a0: 0, d1: 0.75, …}``. Four named lists are read, too: ``a = [l1, l2]``.
 """
 
 import re
@@ -72,7 +70,7 @@ def describes_columns(text: str) -> bool:
 
 
 def read_columns(source: SourceText) -> RobotTable | None:
-    """Return the first table that is written as dictionaries or named lists, or None.
+    """Return the first table that is written as dictionaries or as named lists, or None.
 
     Raises GridError if the text cannot be read.
     """
@@ -99,7 +97,7 @@ def read_columns(source: SourceText) -> RobotTable | None:
 
 
 def _items(statement: SourceText) -> list[_Item]:
-    """Return the items of the dictionary that a statement contains or assigns, or []."""
+    """Return the items of the dictionary in a statement, or []."""
     value = _value(statement)
     call = split_call(value)
     if call and call[0] == "dict":
@@ -183,7 +181,6 @@ def _dashed_rows(found: list[SourceText]) -> list[list[_Item]]:
 
 
 def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
-    """Return the table with a row for each dictionary. Raises GridError if their keys differ."""
     first = [item.key.text for item in rows[0]]
     cells = [[item.key for item in rows[0]]]
     for row in rows:
@@ -214,7 +211,7 @@ def _list(value: SourceText) -> list[SourceText] | None:
 def _named_lists(
     found: list[SourceText],
 ) -> tuple[list[_Item], list[list[SourceText]]] | None:
-    """Return the names and values of four lists, a, alpha, d and theta; None for any other text."""
+    # Return the names and values of four lists, a, alpha, d and theta; None for any other text.
     items, columns = [], []
     for statement in found:
         name = _LIST.match(statement.text)
@@ -264,10 +261,8 @@ def _by_column(
 def _by_index(
     items: list[_Item], keys: list[tuple[str, int]], source: SourceText
 ) -> RobotTable | None:
-    """Return the table of parameters such as ``alpha0``; None unless they are a whole table.
-
-    If d or θ is missing in a row, the cell is the joint variable ``d1``, ``q1`` and so on.
-    """
+    # Return the table of parameters such as ``alpha0``; None unless they are a whole table.
+    # If d or θ is missing in a row, the cell is the joint variable ``d1``, ``q1`` and so on.
     cells = dict(zip(keys, (item.value for item in items), strict=True))
     numbers = {index for column, index in keys if column in ("d", "theta")}
     count = max(numbers, default=0)

@@ -71,9 +71,9 @@ TAIL: Final = " \t\r\n;,.$"
 class WrittenMatrix:
     """A matrix in program text.
 
-    ``groups`` are the contents of the outermost brackets: usually one, or one for each row.
-    ``maker`` is the name of the function around the brackets. ``shape`` has the numbers of rows and
-    columns from the function's arguments.
+    ``groups`` are the texts in its outermost brackets: usually one, or one for each row. ``maker``
+    is the name of the function around the brackets. ``shape`` has the numbers of rows and columns
+    from the function's arguments.
     """
 
     groups: tuple[SourceText, ...]
@@ -88,16 +88,17 @@ def begins_as_matrix(text: str) -> bool:
 
 
 def without_title(source: SourceText) -> SourceText:
-    """Return the text without a first line that is only a name, such as MATLAB's ``ans =``."""
+    """Return the text without a first line that is only a name, such as ``ans =``."""
     title = _TITLE.match(source.text)
     return source.cut(title.end(), len(source.text)) if title else source
 
 
 def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
-    """Return the matrix in a text. At most ``calls`` function calls may enclose it.
+    """Return the matrix in a text, without the program text around it.
 
-    Raises GridError if brackets are unbalanced, or if there is other text beside the matrix.
+    Raises GridError for unbalanced brackets, or for other text next to the matrix.
     """
+    # At most ``calls`` function calls may enclose the matrix.
     source = without_remarks(source)
     head = _head(source.text)
     if head is None:
@@ -154,10 +155,8 @@ def without_remarks(source: SourceText) -> SourceText:
 
 
 def _remark_end(text: str, start: int, last: int) -> int:
-    """Return the place after the remark that begins at ``start``, or 0 if none begins there.
-
-    ``last`` is the last place at which a block comment ends.
-    """
+    # Return the place after the remark that begins at ``start``, or 0 if none begins there.
+    # ``last`` is the last place at which a block comment ends.
     closer = _COMMENTS.get(text[start : start + 2]) if start < last else None
     end = text.find(closer, start + 2) if closer else -1
     if end >= 0:
@@ -172,10 +171,6 @@ def _remark_end(text: str, start: int, last: int) -> int:
 
 
 def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
-    """Return the position where a matrix begins, and the function call around the matrix or None.
-
-    Return None instead of both if the text has no matrix.
-    """
     at = after_names(text)
     at += len(text[at:]) - len(text[at:].lstrip())
     if form := _FORM.match(text, at):
@@ -217,7 +212,6 @@ def _ends_the_text(text: str, start: int) -> bool:
 
 
 def _groups(source: SourceText) -> list[SourceText]:
-    """Return the contents of consecutive brackets. Raises GridError for any other text."""
     ends = strict_pairs(source)
     groups: list[SourceText] = []
     i = 0

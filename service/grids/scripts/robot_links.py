@@ -1,4 +1,4 @@
-"""One link of a robotics toolbox -> the four DH parameters of the link's row.
+"""Read one link of a robotics toolbox as a row of four DH parameters.
 
 The links are ``Link``, ``Revolute`` and ``Prismatic`` (Robotics Toolbox for MATLAB), ``DHLink``,
 ``RevoluteDH`` and similar classes (Robotics Toolbox for Python), and vectors (both of MATLAB's
@@ -21,7 +21,7 @@ PARAMETERS: Final = ("a", "alpha", "d", "theta")
 
 
 class JointType(StrEnum):
-    """The motion of a link's joint; a fixed joint does not move."""
+    """How the joint of a link moves; a fixed joint does not move."""
 
     REVOLUTE = "revolute"
     PRISMATIC = "prismatic"
@@ -30,10 +30,9 @@ class JointType(StrEnum):
 
 @dataclass(slots=True)
 class RobotLink:
-    """A link as the script writes it. ``cells`` maps names of parameters to their texts.
+    """A link as the script writes it. ``cells`` maps names of parameters to their texts."""
 
-    If ``joint`` is None, one of the cells contains the joint variable.
-    """
+    # If ``joint`` is None, one of the cells contains the joint variable.
 
     source: SourceText
     joint: JointType | None
@@ -89,11 +88,11 @@ Vector = Callable[[SourceText], Sequence[SourceText] | None]
 
 
 def read_link(source: SourceText, vector: Vector) -> RobotLink | None:
-    """Return the link that a call makes; None for any other text.
+    """Return the link that a call such as ``Revolute(…)`` makes; None for any other text.
 
-    ``vector`` is a function that finds the values of a row, in brackets or by its name. Raises
-    GridError if the text does not determine the row of the link.
+    Raises GridError if the link's row is not certain.
     """
+    # ``vector`` finds the values of a row, in brackets or by its name.
     call = split_call(source)
     if call is None or call[0] not in _CLASSES:
         return None
@@ -106,7 +105,7 @@ def read_link(source: SourceText, vector: Vector) -> RobotLink | None:
 def vector_link(values: Sequence[SourceText], source: SourceText, *, modified: bool) -> RobotLink:
     """Return the link of the values [θ d a α], [θ d a α σ] or [θ d a α σ offset].
 
-    Raises GridError for fewer or more values.
+    Raises GridError for another number of values.
     """
     return _link(_Given.of_vector(values, source), None, source, modified=modified)
 
@@ -123,11 +122,8 @@ def _link(
 
 @dataclass(slots=True)
 class _Given:
-    """The arguments of a link: values by name, and words without a value, such as 'modified'.
-
-    ``in_python`` is True if arguments are written ``name=value`` or by position.
-    """
-
+    # The arguments of a link: values by name, and words without a value, such as 'modified'.
+    # ``in_python`` is True if arguments are written ``name=value`` or by position.
     named: dict[str, SourceText] = field(default_factory=dict)
     words: set[str] = field(default_factory=set)
     in_python: bool = False
@@ -159,7 +155,6 @@ class _Given:
         return _Given(dict(zip(_OF_VECTOR, values, strict=False)), has_vector=True)
 
     def _take(self, pair: Sequence[SourceText], place: Sequence[str]) -> int:
-        """Store one argument, or a name and its value; return the number of items used."""
         first = pair[0]
         if keyword := _KEYWORD.match(first.text):
             self.in_python = True
@@ -187,7 +182,6 @@ class _Given:
 
 
 def _joint(given: _Given, link: SourceText) -> JointType:
-    """Return the joint type in the arguments of ``Link``. Raises GridError if it is unclear."""
     named = given.named
     types = {JointType(word) for word in given.words & {"revolute", "prismatic"}}
     if "sigma" in named:
@@ -213,7 +207,6 @@ def _joint(given: _Given, link: SourceText) -> JointType:
 
 
 def _truth(named: Mapping[str, SourceText], name: str) -> bool:
-    """Return the truth value of an argument; False if it is not given."""
     value = named.get(name)
     if value is None or value.text in _FALSE:
         return False
@@ -238,9 +231,9 @@ def transform_link(
 ) -> RobotLink:
     """Return the link of ``setFixedTransform(joint, [a alpha d theta], 'dh')``.
 
-    Raises GridError unless there are four values. If the type of the joint is not known, one value
-    must contain the joint variable.
+    Raises GridError unless there are four values.
     """
+    # If the type of the joint is not known, one value must contain the joint variable.
     if len(values) != len(_OF_TRANSFORM):
         raise unread_script(
             say_count(
@@ -267,18 +260,19 @@ def transform_link(
 
 @dataclass(frozen=True, slots=True)
 class LinkRow:
-    """The cells a, α, d, θ of a link, and the name of the joint variable that was added to them."""
+    """The cells a, α, d, θ of a link, and the name that was given to its joint variable."""
 
     cells: tuple[SourceText, ...]
     added: str = ""
 
 
 def row_of(link: RobotLink, number: int) -> LinkRow:
-    """Return the row of a link; ``number`` is the number of the link's joint.
+    """Return the table row of a link; ``number`` is the number of its joint.
 
-    A joint variable that the script only implies is named ``q`` with the number. Raises GridError
-    if the cell of the variable contains a value that the toolbox ignores.
+    Raises GridError if the toolbox ignores a value in the row.
     """
+    # A joint variable that the script only implies is named ``q`` with the number. The value that
+    # the toolbox ignores is in the cell of the variable.
     if not all(cell.text for cell in link.cells.values()):
         raise _unknown(link.source)
     zero = link.source.spelled("0")
@@ -294,7 +288,6 @@ def row_of(link: RobotLink, number: int) -> LinkRow:
 
 
 def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
-    """Return the text of the joint variable with the link's offset and sign."""
     offset = link.cells.get("offset")
     if offset is not None and _is_zero(offset):
         offset = None
@@ -320,7 +313,7 @@ def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
 
 
 def has_variable(text: str) -> bool:
-    """True if a value contains a name that is not the name of a constant."""
+    """True if a text contains a name that is not the name of a constant."""
     return any(name not in _CONSTANTS for name in _NAME.findall(text))
 
 

@@ -1,12 +1,12 @@
-"""A script for a robotics toolbox -> the DH table of its robot, one row for each link.
+"""Read a script for a robotics toolbox as the DH table of its robot.
 
-It reads ``SerialLink`` and its links in MATLAB, ``DHRobot`` and its links in Python, and joints
-with ``setFixedTransform``. Nothing is run. Lines that only show or move the robot are ignored; a
-script whose table is not certain is refused.
-
-Sources: P. Corke, Robotics Toolbox for MATLAB, ``Link`` and ``SerialLink``; Robotics Toolbox for
-Python, ``DHRobot``; MathWorks, Robotics System Toolbox, ``rigidBodyJoint/setFixedTransform``.
+It may use ``SerialLink`` and links in MATLAB, ``DHRobot`` and links in Python, or joints with
+``setFixedTransform``. Nothing is run. A script whose table is not certain is refused.
 """
+
+# Lines that only show or move the robot are ignored. Sources: P. Corke, Robotics Toolbox for
+# MATLAB, ``Link`` and ``SerialLink``; Robotics Toolbox for Python, ``DHRobot``; MathWorks, Robotics
+# System Toolbox, ``rigidBodyJoint/setFixedTransform``.
 
 import re
 from dataclasses import dataclass, field
@@ -83,9 +83,9 @@ def describes_robot(text: str) -> bool:
 
 
 def read_script(source: SourceText) -> RobotTable | None:
-    """Return the table of the robot that a script describes; None if only comments name a link.
+    """Return the DH table of the robot in a script; None if only comments name a link.
 
-    Raises GridError if the script describes several robots, or if the table is not certain.
+    Raises GridError for several robots, or if the table is not certain.
     """
     script = _Script()
     found = statements(source)
@@ -131,8 +131,6 @@ def _note(links: list[RobotLink], added: list[str]) -> Note:
 
 @dataclass(slots=True)
 class _Script:
-    """The state after some statements of a script: links, joints, values and the robot."""
-
     names: ScriptNames = field(default_factory=ScriptNames)
     unnamed: list[RobotLink] = field(default_factory=list)
     placed: list[RobotLink] = field(default_factory=list)
@@ -143,7 +141,8 @@ class _Script:
     last_number: int = 0
 
     def take(self, statement: SourceText) -> None:
-        """Process one statement. Raises GridError if it may change the table in an unknown way."""
+        """Process one statement. Raises GridError for a statement that may change the table."""
+        # That is, in a way that this class cannot tell.
         text = statement.text
         has_call = _WORD.search(text) is not None
         if _CONTROL.match(text):
@@ -194,7 +193,6 @@ class _Script:
                 self.given.append(GivenValue(name, value.text, statement))
 
     def _alters(self, text: str) -> bool:
-        """True if a statement may change known links, but this class cannot tell how."""
         found = _ALTERED.match(text)
         return found is not None and (found["name"] or found["deleted"]) in self.names.links
 
@@ -213,7 +211,6 @@ class _Script:
         link.cells[changed] = statement.cut(found.end(), len(statement.text))
 
     def _call(self, statement: SourceText) -> None:
-        """Process a call whose value is not assigned to a name."""
         if appended := _APPENDED.match(statement.text):
             links = self.names.links_of(statement.cut(appended.end(), len(statement.text) - 1))
             if links is None or not statement.text.endswith(")"):
@@ -236,7 +233,6 @@ class _Script:
         check_count(self.unnamed, statement)
 
     def _makes_robot(self, source: SourceText) -> bool:
-        """Return True, and store the robot's links, if ``source`` builds the robot."""
         call = split_call(source)
         if call is None or call[0] not in _ROBOTS:
             return False
@@ -313,10 +309,8 @@ class _Script:
 
 
 def _number(found: re.Match[str]) -> int | None:
-    """Return the number of the link, from 1, in ``L(2) = ``.
-
-    Return None without brackets, and 0 if the index is not a number (the link is the next one).
-    """
+    # Return the number of the link, from 1, in ``L(2) = ``.
+    # Return None without brackets, and 0 if the index is not a number (the link is the next one).
     index = found["index"]
     if index is None:
         return None
@@ -324,7 +318,6 @@ def _number(found: re.Match[str]) -> int | None:
 
 
 def _joint_type(inside: SourceText) -> JointType | None:
-    """Return the type in ``rigidBodyJoint('jnt1', 'revolute')``; fixed if none is given."""
     given = arguments(inside)
     if len(given) < 2:
         return JointType.FIXED

@@ -7,7 +7,7 @@ from service.grids.cutting.grid import Grid
 
 @dataclass(frozen=True, slots=True)
 class RobotTable:
-    """The table of a robot, and the convention that the script names: standard or modified.
+    """The DH table of a robot, and the convention that the script names: standard or modified.
 
     With ``has_headers``, the first row contains headers. Otherwise the columns are a, α, d, θ.
     """

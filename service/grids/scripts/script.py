@@ -22,10 +22,11 @@ _BLANK: Final = re.compile(r"[^\S\x00-\x20\x85\u2028\u2029]")
 
 
 def statements(source: SourceText) -> list[SourceText]:
-    """Return the statements in order, without comments; brackets may span several lines.
+    """Return the statements of a script in order, without comments.
 
-    Raises GridError for unbalanced brackets, and for more brackets than ``GRID_LIMITS`` allow.
+    Raises GridError for unbalanced brackets, and for too many brackets.
     """
+    # Brackets may span several lines.
     source = SourceText(_BLANK.sub(" ", source.text), source.starts, source.ends, source.at)
     plain = without_remarks(_without_blocks(without_prompts(source)))
     if sum(map(plain.text.count, CLOSES)) > GRID_LIMITS.separators:
@@ -66,9 +67,9 @@ def _outside_blocks(source: SourceText) -> Iterator[SourceText]:
 def split_call(source: SourceText) -> tuple[str, SourceText] | None:
     """Return a function's name and the text of its arguments; None if the text is not one call.
 
-    Module names before the function's name, as in ``rtb.RevoluteDH(…)``, are left out. Raises
-    GridError for unbalanced brackets.
+    Raises GridError for unbalanced brackets.
     """
+    # Module names before the function's name, as in ``rtb.RevoluteDH(…)``, are left out.
     call = _CALL.match(source.text)
     if call is None or strict_pairs(source)[call.end() - 1] != len(source.text):
         return None
@@ -82,7 +83,7 @@ def arguments(inside: SourceText) -> list[SourceText]:
 
 
 def unread_script(message: str, source: SourceText) -> GridError:
-    """Return the error for a script whose table is not certain."""
+    """Return the error for a script whose DH table is not certain."""
     return GridError("unread_script", message, source.whole)
 
 

@@ -32,9 +32,10 @@ Links = dict[int, RobotLink]
 class ScriptNames:
     """The values that a script gives to names.
 
-    ``links`` maps the name of a list to its links by number. Other values are stored by name, or by
-    name and number.
+    ``links`` maps the name of a list to its robot links, by number.
     """
+
+    # Other values are stored by name, or by name and number.
 
     links: dict[str, Links] = field(default_factory=dict)
     notes: list[Note] = field(default_factory=list)
@@ -44,7 +45,7 @@ class ScriptNames:
     _matrices: dict[str, list[list[SourceText]]] = field(default_factory=dict)
 
     def name_value(self, name: str, value: SourceText) -> None:
-        """Store a value that is not a link under its name."""
+        """Store a value that is not a robot link under its name."""
         self._values[name] = value
         self._matrices.pop(name, None)
 
@@ -57,7 +58,7 @@ class ScriptNames:
     def element(self, cell: SourceText) -> SourceText:
         """Return the value that the script gives to a cell such as ``d(2)``, or the cell itself.
 
-        Raises GridError if the script gives the element two values.
+        Raises GridError if it has two values.
         """
         named = NAMED.fullmatch(cell.text)
         if not named or not (named["index"] or "").isdigit() or named["columns"]:
@@ -82,10 +83,8 @@ class ScriptNames:
     def name_links(
         self, statement: SourceText, name: str, number: int | None, links: list[RobotLink]
     ) -> None:
-        """Store links as the list ``name``, or one link as its element ``number``.
-
-        The number 0 means the element after the last one.
-        """
+        """Store links as the list ``name``, or one link as the list's element ``number``."""
+        # The number 0 means the element after the last one.
         known = self.links.setdefault(name, {})
         first = len(known) + 1 if number == 0 else number or 1
         if known if number is None else first in known or len(links) > 1:
@@ -103,7 +102,7 @@ class ScriptNames:
             raise too_many_rows(statement.whole)
 
     def links_of(self, source: SourceText) -> list[RobotLink] | None:
-        """Return the links that an expression denotes, or None if it denotes no links."""
+        """Return the robot links in an expression, or None."""
         link = read_link(source, self.vector)
         if link is not None:
             return [link]
@@ -129,7 +128,7 @@ class ScriptNames:
         return links or None
 
     def vector(self, source: SourceText) -> list[SourceText] | None:
-        """Return the values of a row in brackets or of a row of a named matrix; else None."""
+        """Return the values of a row in brackets or of a row of a named matrix, or None."""
         named = NAMED.fullmatch(source.text)
         if named and named["columns"] and named["index"] != ":":
             rows = self._matrix(source.cut(*named.span("name")))
@@ -139,7 +138,6 @@ class ScriptNames:
         return rows[0] if rows and len(rows) == 1 else None
 
     def _matrix(self, source: SourceText) -> list[list[SourceText]] | None:
-        """Return the rows of a matrix in brackets or of a named matrix; else None."""
         name = source.text
         if name in self._matrices:
             return self._matrices[name]
@@ -154,10 +152,8 @@ class ScriptNames:
         return stripped
 
     def links_of_matrix(self, source: SourceText, *, modified: bool) -> list[RobotLink] | None:
-        """Return the links of ``SerialLink([theta d a alpha; …])``.
-
-        Return None if there is no matrix, or if it lists links that are not all known.
-        """
+        """Return the links of ``SerialLink([theta d a alpha; …])``, or None."""
+        # None if there is no matrix, or if it lists links that are not all known.
         rows = self._matrix(source)
         if not rows or any(map(self._lists_links, rows)):
             return None
@@ -165,7 +161,7 @@ class ScriptNames:
         return [vector_link(row, _line_of(row), modified=modified) for row in rows]
 
     def _lists_links(self, row: list[SourceText]) -> bool:
-        """True if the cells of a row are links (L1 L2 L3 L4), and not θ, d, a and α."""
+        """True if the cells of a row are links (L1 L2 L3 L4), and not values."""
         named = [NAMED.fullmatch(cell.text) for cell in row]
         if any(each["name"] in self.links for each in named if each):
             return True
@@ -176,7 +172,7 @@ class ScriptNames:
 
 
 def by_numbers(named: dict[str, Links], source: SourceText) -> list[RobotLink]:
-    """Return the links L1, L2, … in order. Raises GridError if a name has another form."""
+    """Return the links L1, L2, … in order. Raises GridError for any other name."""
     found: Links = {}
     stems = set()
     for name, links in named.items():
@@ -202,14 +198,13 @@ def in_order(links: Links, source: SourceText) -> list[RobotLink]:
 
 
 def _line_of(row: list[SourceText]) -> SourceText:
-    """Return a row of a matrix as one piece of the text."""
     text = " ".join(cell.text for cell in row)
     start, end = row[0].whole[0], max(row[0].whole[1], row[-1].whole[1])
     return SourceText(text, (start,) * len(text), (end,) * len(text), start)
 
 
 def check_count(links: Sized, source: SourceText) -> None:
-    """Raise GridError for more links than a table may have rows."""
+    """Raise GridError if a robot has too many links."""
     if len(links) > _MOST_ROWS:
         raise too_many_rows(source.whole)
 

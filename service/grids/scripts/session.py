@@ -1,7 +1,9 @@
-r"""Read an interpreter session: keep the outputs, and the inputs that have no output.
+"""Read the outputs of an interpreter session.
 
 Prompts and labels of outputs are ``>> A1``, ``Out[3]//MatrixForm=``, ``(%o4)`` and the like.
 """
+
+# Inputs that have no output are kept, too.
 
 import re
 from typing import Final
@@ -24,11 +26,9 @@ _ASKED: Final = re.compile(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?!
 
 
 def session_outputs(source: SourceText, *, named: bool = False) -> SourceText:
-    """Return the outputs of a session, and the matrices in inputs that have no output.
-
-    With ``named``, the name in an input such as ``A1`` or ``simplify(A1)`` becomes a line above the
-    output.
-    """
+    """Return the outputs of a session, and the matrices in inputs without an output."""
+    # With ``named``, the name in an input such as ``A1`` or ``simplify(A1)`` becomes a line above
+    # the output.
     marks = list(_MARK.finditer(source.text))
     if not marks:
         return source
@@ -62,7 +62,7 @@ def without_prompts(source: SourceText) -> SourceText:
 
 
 def _statement_end(text: str) -> int:
-    """Return the end of the first line, or of the line that closes the first line's brackets."""
+    # Return the end of the first line, or of the line that closes the first line's brackets.
     depth = 0
     for i, letter in enumerate(text):
         if letter in CLOSES:

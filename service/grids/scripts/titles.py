@@ -1,7 +1,7 @@
 """Remove sentences and code fences around a pasted table or matrix.
 
-A line is removed only if it cannot be a row: it has words, but no separator of cells. If the
-line names a unit, the text is refused, because the unit may apply to the table.
+A line with words but without a separator of cells is a sentence. A sentence that names a unit is an
+error, because the unit may apply to the table.
 """
 
 import re
@@ -60,10 +60,8 @@ UNIT: Final = re.compile(
 
 
 def without_fence(source: SourceText) -> SourceText:
-    """Return the text in a code fence, if there is one fence with only sentences around it.
-
-    The marks of a quotation, a > before each line, are removed, too.
-    """
+    """Return the text inside a code fence that has only sentences around it."""
+    # The marks of a quotation, a > before each line, are removed, too.
     if all(map(_QUOTED.match, filter(str.strip, source.text.splitlines()))):
         source = joined(source.split(_QUOTED), source.at)
     if "```" not in source.text and "~~~" not in source.text:
@@ -82,9 +80,9 @@ def without_fence(source: SourceText) -> SourceText:
 
 
 def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return the text without sentences before and after the table, and a note on them.
+    """Return the text without the sentences around the table, and a note on them.
 
-    Raises GridError if one of the sentences names a unit.
+    Raises GridError if a sentence names a unit.
     """
     lines = [line for line in source.lines() if line.text.strip()]
     is_row = _row_test(source.text, lines)
@@ -104,7 +102,6 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
 
 
 def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
-    """Return a function that tells whether a line of ``text`` may be a row."""
     if marks := [i for i, line in enumerate(lines) if _ENVIRONMENT.search(line.text)]:
         within = {line.text for line in lines[marks[0] : marks[-1] + 1]}
         return within.__contains__
@@ -126,10 +123,8 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
 
 
 def _has_heading(lines: list[SourceText]) -> bool:
-    """True if the first line is a heading.
-
-    A heading is one word above rows of several values, or one or two words above a bracket.
-    """
+    """True if the first line is a heading."""
+    # A heading is one word above rows of several values, or one or two words above a bracket.
     first, *others = (line.text.strip() for line in lines)
     # A comment of a program is removed with the other comments.
     if first[0] in "%#" or not _is_few_words(first) or not _WORD.search(first):
@@ -138,7 +133,6 @@ def _has_heading(lines: list[SourceText]) -> bool:
 
 
 def _is_padded(line: str) -> bool:
-    """True if a line is a sentence in the first cell of a sheet, and its other cells are empty."""
     return line.rstrip("\r\n ")[-2:] in _EMPTY_CELLS and _is_prose(line.strip(_PADDING))
 
 
@@ -157,7 +151,8 @@ def _is_few_words(line: str) -> bool:
 
 
 def _check_units(line: SourceText) -> None:
-    """Raise GridError for a sentence with the name of a unit, which may apply to the table."""
+    """Raise GridError for a sentence with the name of a unit."""
+    # The unit may apply to the table.
     if UNIT.search(_FREEDOM.sub("", line.text)):
         raise GridError(
             "text_around",
@@ -170,7 +165,6 @@ def _check_units(line: SourceText) -> None:
 
 
 def _between(source: SourceText, first: SourceText, last: SourceText) -> SourceText:
-    """Return the text from the beginning of one line to the end of another."""
     start = bisect_left(source.starts, first.starts[0])
     end = bisect_left(source.starts, last.starts[len(last.text) - 1]) + 1
     return source.cut(start, end)

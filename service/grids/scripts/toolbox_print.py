@@ -1,8 +1,10 @@
 """Read the table that P. Corke's Robotics Toolboxes print for a robot, in MATLAB and in Python.
 
-The first line names the convention: ``arm:: 3 axis, RRR, stdDH, slowRNE`` or ``DHRobot: arm,
-3 joints (RRR), standard DH parameters``. Angles without a unit are in radians.
+The first line names the convention: ``arm:: 3 axis, RRR, stdDH, slowRNE`` or ``DHRobot: arm, 3
+joints (RRR), standard DH parameters``.
 """
+
+# Angles without a unit are in radians.
 
 import re
 from collections.abc import Mapping
@@ -48,16 +50,14 @@ _UNIT_MATRICES: Final = [[float(i == j) for j in range(4)] * 2 for i in range(4)
 
 
 def describes_print(text: str) -> bool:
-    """True if a text contains a robot as a toolbox prints it."""
+    """True if a text contains a robot as P. Corke's Robotics Toolbox prints it."""
     return _FIRST_LINE.search(text) is not None or _BOX.search(text) is not None
 
 
 def read_print(source: SourceText) -> RobotTable:
-    """Return the table of the printed robot.
-
-    Raises GridError if there are several robots, if the table is incomplete, or if the robot has a
-    base or a tool.
-    """
+    """Return the table of the printed robot. Raises GridError if it is not certain."""
+    # GridError if there are several robots, if the table is incomplete, or if the robot has a base
+    # or a tool.
     found = list(_FIRST_LINE.finditer(source.text))
     if len(found) > 1 or len(_BOX.findall(source.text)) > 1:
         raise too_many_robots(source)
@@ -90,7 +90,6 @@ def read_print(source: SourceText) -> RobotTable:
 
 
 def _table(source: SourceText) -> tuple[list[list[SourceText]], str]:
-    """Return the rows of the first table in a text, and the text after it."""
     rows: list[list[SourceText]] = []
     lines = source.lines()
     for i, line in enumerate(lines):
@@ -105,7 +104,6 @@ def _table(source: SourceText) -> tuple[list[list[SourceText]], str]:
 
 
 def _cells(row: list[SourceText], columns: list[str | None]) -> list[SourceText]:
-    """Return a, α, d and θ of a row, with the joint's offset added to the joint variable."""
     named = {name: cell for name, cell in zip(columns, row, strict=True) if name}
     offset = named.get("offset")
     if offset is not None and not _ZERO.fullmatch(offset.text):
@@ -122,7 +120,7 @@ def _cells(row: list[SourceText], columns: list[str | None]) -> list[SourceText]
 
 
 def _has_frames(rest: str) -> bool:
-    """True if the text after the table gives a base or a tool that is not the unit matrix."""
+    """True if the robot has a base or a tool that is not the unit matrix."""
     if not _FRAME.search(rest):
         return False
     lines = [line for line in rest.splitlines() if line.strip()]
