@@ -1,1 +1,1 @@
-"""Robots from other programs: a URDF file -> joint axes -> a DH table -> an exercise file."""
+"""Import robots from other programs: from a URDF file or a DH table to an exercise file."""

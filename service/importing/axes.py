@@ -16,7 +16,7 @@ _NEARLY = 2e-3
 
 
 class UnclearAxesError(ValueError):
-    """Two axes are nearly parallel; the text says which."""
+    """Two axes are nearly parallel; the message says which."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +42,7 @@ class HomeAxis:
 
 
 def home_axes(arm: Arm) -> tuple[list[HomeAxis], Matrices]:
-    """Return the axes and the pose of the tip with all joint variables 0."""
+    """Return the joint axes and the pose of the tip when all joint variables are 0."""
     pose = np.eye(4)
     axes = []
     for joint in arm.joints:
@@ -65,10 +65,8 @@ def home_axes(arm: Arm) -> tuple[list[HomeAxis], Matrices]:
 
 
 def _sliding_axes_moved(axes: list[HomeAxis], tip: Numbers) -> list[HomeAxis]:
-    """Move each sliding axis to the next axis, which saves lengths in the table.
-
-    Only the direction of a sliding axis matters.
-    """
+    """Move each sliding axis to the next axis, which saves lengths in the table."""
+    # Only the direction of a sliding axis matters.
     moved = list(axes)
     for i in reversed(range(len(axes))):
         if not axes[i].prismatic:

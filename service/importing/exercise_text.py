@@ -1,4 +1,4 @@
-"""A robot at home -> the text of an exercise file."""
+"""Make the text of an exercise file for a robot."""
 
 import json
 import math
@@ -27,7 +27,7 @@ _MEANINGS = {"a": "distance between two axes", "d": "distance along an axis"}
 
 @dataclass(frozen=True)
 class Draft:
-    """What the author says about a new exercise."""
+    """The author's choices for a new exercise."""
 
     title: str
     source: str
@@ -101,13 +101,13 @@ answers.table = {_answer(rows)}
 
 
 def _answer(rows: Sequence[Row[str]]) -> str:
-    """Return a table as the answer of a check, in TOML."""
     lines = ["a, alpha, d, theta", *(", ".join(row) for row in rows)]
     return '"""\n' + "\n".join(lines) + '\n"""'
 
 
 def _equivalent_check(robot: HomeRobot, convention: Convention) -> str:
-    """Return a check whose answer is the table with x1 reversed, which is valid, too."""
+    """Return a check whose answer is the table with x1 reversed."""
+    # This table is valid, too.
     if len(robot.table) < _ROWS_TO_TURN:
         return ""
     table = robot.table.copy()
@@ -124,7 +124,7 @@ answers.table = {_answer(rows)}
 
 
 def rows_in(robot: HomeRobot, convention: Convention) -> list[Row[str]]:
-    """Return the cells of the table in a convention as texts."""
+    """Return the cells of the robot's DH table in a convention, as texts."""
     rows = _rows(robot)
     if convention is Convention.MODIFIED:
         rows = modified_rows(rows, "0")
@@ -148,7 +148,8 @@ def variable_names(structure: str) -> list[str]:
 
 
 def without_clashes(robot: HomeRobot) -> Letters:
-    """Return the letters; a constant length d of a sliding joint gets h, such as h3."""
+    """Return the letters of the robot, with h3 as the constant length d of a sliding joint 3."""
+    # d3 is the joint variable.
     sliding = {i for i, kind in enumerate(robot.structure) if kind == "P"}
     return {
         cell: f"h{cell[0] + 1}" if cell[0] in sliding and cell[1] == D else name
@@ -157,7 +158,6 @@ def without_clashes(robot: HomeRobot) -> Letters:
 
 
 def _rows(robot: HomeRobot) -> list[Row[str]]:
-    """Return the cells of the standard table as texts."""
     variables = variable_names(robot.structure)
     rows = []
     for i, row in enumerate(robot.table):
@@ -182,7 +182,6 @@ def _length(robot: HomeRobot, i: int, j: int) -> str:
 
 
 def _moving(variable: str, constant: str) -> str:
-    """Return the cell of a joint variable with its constant."""
     if constant == "0":
         return variable
     sign, size = ("-", constant[1:]) if constant.startswith("-") else ("+", constant)
@@ -211,7 +210,8 @@ def _table(rows: Sequence[Row[str]]) -> str:
 
 
 def _symbols(robot: HomeRobot) -> str:
-    """Return the section ``[symbols]``: variables of sliding joints and letters, with ranges."""
+    """Return the section ``[symbols]`` of an exercise file."""
+    # It has the variables of sliding joints and the letters, with ranges.
     lines = []
     for i, kind in enumerate(robot.structure, 1):
         if kind == "P":
@@ -250,5 +250,4 @@ def _string(text: str) -> str:
 
 
 def _plain(text: str) -> str:
-    """Return a text on one line, without control characters."""
     return " ".join("".join(c if c.isprintable() else " " for c in text).split())

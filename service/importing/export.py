@@ -1,4 +1,4 @@
-"""A robot at home -> a URDF file, or a script for the Robotics Toolbox for Python."""
+"""Write a robot as a URDF file, or as a script for the Robotics Toolbox for Python."""
 
 import math
 from collections.abc import Sequence
@@ -15,11 +15,11 @@ _LIMIT = {"R": (-math.pi, math.pi), "P": (-1.0, 1.0)}
 
 
 def urdf_text(robot: HomeRobot, name: str) -> str:
-    """Return a URDF file of the robot: its links have joints, but no shapes and no masses.
+    """Return a URDF file of the robot. It has joints, but no shapes and no masses.
 
-    The link ``frame0`` is the base frame, and the last link is the tool frame. The file has the
-    lengths of the table instead of letters.
+    The link ``frame0`` is the base frame, and the last link is the tool frame.
     """
+    # The file has the lengths of the table instead of letters.
     transforms = links(robot.table, Convention.STANDARD)
     before = np.eye(4)
     lines = [f"<robot name={quoteattr(name)}>", '  <link name="frame0"/>']
@@ -63,7 +63,6 @@ def _tool(last: int, origin: Matrices) -> list[str]:
 
 
 def _origin(pose: Matrices) -> str:
-    """Return the origin element of a pose: its place, and roll, pitch and yaw."""
     rotation = pose[:3, :3]
     pitch = math.asin(float(np.clip(-rotation[2, 0], -1, 1)))
     if abs(rotation[2, 0]) > 1 - 1e-12:

@@ -1,8 +1,10 @@
-"""Joint axes -> a standard DH table, by the rules that are taught.
+"""Make a standard DH table from joint axes, by the rules that are taught.
 
-z_{i-1} is along the axis of joint i, in its positive direction. x_i is along the common normal; if
-its sign is free, the sign with fewer offsets is chosen. On parallel axes d_i = 0.
+z_{i-1} is along the axis of joint i, in its positive direction. x_i is along the common normal. On
+parallel axes d_i = 0.
 """
+
+# If the sign of x_i is free, the sign with fewer offsets is chosen.
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,9 +26,11 @@ _IS_ANGLE = np.isin(np.arange(4), (ALPHA, THETA))
 class Placed:
     """A standard table of constants ``(joints, 4)``, and the poses at both of its ends.
 
-    ``base`` is the pose of frame {0} in the base link, and ``tool`` is the pose of the tip in frame
-    {n}. A pose is the identity if its two frames are the same.
+    ``base`` is the pose of frame {0} in the base link, and ``tool`` is the pose of the tip in the
+    last frame.
     """
+
+    # A pose is the identity if its two frames are the same.
 
     table: Table
     base: Matrices
@@ -34,7 +38,7 @@ class Placed:
 
 
 def placed(axes: list[HomeAxis], tip: Matrices) -> Placed:
-    """Return the table of an arm with these axes and this pose of the tip at home."""
+    """Return the DH table of an arm with these joint axes and this pose of the tip."""
     base = _base_frame(axes[0])
     frame, rows = base, []
     for before, axis in pairwise(axes):
@@ -46,18 +50,17 @@ def placed(axes: list[HomeAxis], tip: Matrices) -> Placed:
 
 
 def _snapped(table: Table) -> Table:
-    """Return the table with clean angles: inexact axes in a file give 90.005° instead of 90°."""
+    """Return the table with clean angles: 90° instead of 90.005°."""
+    # Inexact axes in a file give inexact angles.
     multiples = np.round(table / STEP) * STEP
     is_near = (np.abs(table - multiples) <= NEAR) & _IS_ANGLE
     return np.asarray(np.where(is_near, multiples, table))
 
 
 def _base_frame(axis: HomeAxis) -> Matrices:
-    """Return frame {0}.
-
-    Its origin is the point of the axis that is nearest to the base link. Its x axis is as near as
-    possible to the x axis of the base link.
-    """
+    # Return frame {0}.
+    # Its origin is the point of the axis that is nearest to the base link. Its x axis is as near as
+    # possible to the x axis of the base link.
     x = np.eye(3)[int(axis.parallel_to(np.eye(3)[0]))]
     x = x - (x @ axis.direction) * axis.direction
     return _frame(axis.nearest(np.zeros(3)), x / np.linalg.norm(x), axis.direction)
@@ -70,7 +73,6 @@ def _frame(origin: Numbers, x: Numbers, z: Numbers) -> Matrices:
 
 
 def _normal(before: HomeAxis, axis: HomeAxis, frame: Matrices) -> tuple[Numbers, Numbers]:
-    """Return x_i and the origin of frame i, from the common normal of the two axes."""
     if not axis.parallel_to(before.direction):
         foot, origin = common_normal(before, axis)
         between = origin - foot
@@ -85,7 +87,6 @@ def _normal(before: HomeAxis, axis: HomeAxis, frame: Matrices) -> tuple[Numbers,
 
 
 def _row(frame: Matrices, x: Numbers, origin: Numbers, z: Numbers) -> tuple[Numbers, Matrices]:
-    """Return a row and its frame; x is ``x`` or ``-x``, whichever gives the simpler row."""
     choices = []
     for sign in (1.0, -1.0):
         here = _frame(origin, sign * x, z)
@@ -98,7 +99,6 @@ def _row(frame: Matrices, x: Numbers, origin: Numbers, z: Numbers) -> tuple[Numb
 
 
 def _parameters(before: Matrices, here: Matrices) -> Numbers:
-    """Return (a, α, d, θ) between two frames, where x of the second meets z of the first."""
     between = inverse(before) @ here
     theta = np.arctan2(between[1, 0], between[0, 0])
     alpha = np.arctan2(between[2, 1], between[2, 2])
@@ -111,7 +111,6 @@ def _half_turn_positive(angle: float) -> float:
 
 
 def _last_row(frame: Matrices, tip: Matrices) -> tuple[Numbers, Matrices]:
-    """Return the row to the frame {n} that comes nearest to the tip."""
     axis, origin = frame[:3, 2], tip[:3, 3]
     along = (origin - frame[:3, 3]) @ axis
     off = origin - frame[:3, 3] - along * axis
@@ -137,9 +136,9 @@ def greatest_difference(
     exact_pose: Callable[[Numbers], Matrices],
     samples: int = 100,
 ) -> tuple[float, float]:
-    """Return the greatest difference in position and in angle between the table and the robot.
+    """Return the greatest differences in position and in angle between the table and the robot.
 
-    The poses of both are compared at random values of the joint variables.
+    Their poses are compared at random values of the joint variables.
     """
     values = np.random.default_rng(1).uniform(-np.pi, np.pi, (samples, len(structure)))
     lengths, angles = [], []

@@ -1,6 +1,6 @@
-"""A robot at home in words: where each axis is, and which way it points.
+"""Describe a robot in words: where each joint axis is, and which way it points.
 
-The words are complete: the axes and the tool frame can be computed from them alone.
+The axes and the tool frame can be computed from these words alone.
 """
 
 import math
@@ -46,8 +46,6 @@ Letters = Mapping[tuple[int, int], str]
 
 @dataclass(frozen=True, slots=True)
 class _Way:
-    """A direction in words: templates for sentences, and the values for all these templates."""
-
     slides: str
     turns: str
     points: str
@@ -57,13 +55,14 @@ class _Way:
 
 @dataclass(frozen=True)
 class HomeRobot:
-    """A standard table of constants, the joints' types, and letters in place of some lengths.
+    """A standard DH table of constants, the joints' types, and letters in place of some lengths.
 
-    The table may have one row more than the robot has joints, for a fixed tool frame.
-    ``letters`` has the letter of a cell by row and column. A minus sign in the table stays in
-    front of the letter. A number as text may take the place of a letter: the statement then has
-    sums such as "0.2 + 0.35".
+    ``letters`` has the letter of a cell by row and column. An additional last row is a fixed tool
+    frame.
     """
+
+    # A minus sign in the table stays in front of the letter. A number as text may take the place of
+    # a letter: the statement then has sums such as "0.2 + 0.35".
 
     table: Table
     structure: str
@@ -72,11 +71,11 @@ class HomeRobot:
     """True if the lengths are those of a real robot."""
 
     def lengths(self) -> dict[str, float]:
-        """Return the length that each letter stands for."""
+        """The value of each letter, which is a length."""
         return {name: abs(float(self.table[cell])) for cell, name in self.letters.items()}
 
     def frames(self, **lengths: float) -> Matrices:
-        """Return the frames {0} to {n} at home; letters without a value in ``lengths`` are 0."""
+        """Return the poses of the frames {0} to {n} at home. Letters not in ``lengths`` are 0."""
         table = self.table.copy()
         for cell, name in self.letters.items():
             table[cell] = np.sign(table[cell]) * lengths.get(name, 0.0)
@@ -84,7 +83,9 @@ class HomeRobot:
 
 
 class UnevenLettersError(ValueError):
-    """A letter in a coordinate has a factor other than 1 or -1: the text would be unreadable."""
+    """A coordinate contains a letter with a factor other than 1 or -1."""
+
+    # The text would be unreadable.
 
 
 def home_statement(robot: HomeRobot, convention: Convention) -> Sentence:
@@ -114,11 +115,9 @@ def home_statement(robot: HomeRobot, convention: Convention) -> Sentence:
 
 
 def tool_label(robot: HomeRobot, convention: Convention) -> str:
-    """Return the label of the tool frame: "e" if a fixed row leads to it, else the number of rows.
-
-    In the modified convention, frame n is on the last axis. If the tool frame is not on this axis,
-    the table has a row e.
-    """
+    """Return the label of the tool frame: "e", or else the number of the last row."""
+    # It is "e" if a fixed row leads to the tool frame. In the modified convention, frame n is on
+    # the last axis. If the tool frame is not on this axis, the table has a row e.
     last_a, last_alpha = robot.table[-1, [A, ALPHA]]
     fixed = convention is Convention.MODIFIED and max(abs(last_a), abs(last_alpha)) > _SAME
     return "e" if fixed or len(robot.table) > len(robot.structure) else str(len(robot.table))
@@ -167,7 +166,6 @@ def _tool_in_words(robot: HomeRobot, tool_frame: str) -> Sentence:
 
 
 def _way(direction: Numbers) -> _Way:
-    """Return a direction in words, in the axes of frame {0}."""
     for axis, name in enumerate(("x0", "y0", "z0")):
         if abs(direction[axis]) > 1 - _SAME:
             return _along(name) if direction[axis] > 0 else _opposite(name)
@@ -196,7 +194,7 @@ def _opposite(direction: str) -> _Way:
 
 
 def _tilted(direction: Numbers) -> _Way | None:
-    """Return a direction between two axes, 15°, 30° or 45° from one of them; else None.
+    """Return a direction between two axes in words, or None if its angle is unusual.
 
     >>> _tilted(np.array([-0.5, 0, 0.75**0.5])).values
     {'angle': 30, 'start': 'z0', 'towards': '-x0'}
@@ -223,7 +221,6 @@ def _tilted(direction: Numbers) -> _Way | None:
 
 
 def _origins(robot: HomeRobot) -> list[str]:
-    """Return the origins of the frames {0} to {n} at home as texts."""
     constant = robot.frames()[:, :3, 3]
     shares = {name: robot.frames(**{name: 1.0})[:, :3, 3] - constant for name in robot.lengths()}
     return [

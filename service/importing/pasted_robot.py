@@ -1,4 +1,4 @@
-"""A pasted DH table -> a robot at home."""
+"""Read a pasted DH table as a robot."""
 
 import numpy as np
 
@@ -18,15 +18,15 @@ _LETTER_LENGTHS = {"a": 0.5, "d": 0.3}
 
 
 class UnusableTableError(ValueError):
-    """The table cannot become an exercise; the text says why."""
+    """The table cannot become an exercise; the message says why."""
 
 
 def robot_of_table(text: str, convention: Convention) -> HomeRobot:
     """Return the robot of a table in any format that students may paste.
 
-    A length is a number, or a letter with an optional sign; no two lengths have the same letter.
-    Raises UnusableTableError.
+    A length is a number, or a letter with an optional sign. Raises UnusableTableError.
     """
+    # No two lengths have the same letter.
     rows = len(_read(text, free_scope("R")).rows)
     joints = min(rows, _MOST_JOINTS)
     first = _read(text, free_scope("R" * joints))
@@ -67,7 +67,6 @@ def _read(text: str, scope: DrawingScope) -> StudentTable:
 
 
 def _kind(table: StudentTable, i: int) -> str | None:
-    """Return R if θ of row i has the joint's variable, P if d may have it, else None."""
     variable = f"theta{i + 1}"
     _, _, d, theta = table.rows[i].entries
     if theta.expression is not None and variable in theta.expression.symbols:
@@ -77,7 +76,6 @@ def _kind(table: StudentTable, i: int) -> str | None:
 
 
 def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple[float, str | None]:
-    """Return the value of a cell at home, and the letter in the cell, if any."""
     place = say("row {row}, column {column}", row=i + 1, column=COLUMNS[j])
     entry = table.rows[i].entries[j]
     if entry.expression is None:
@@ -96,7 +94,6 @@ def _constant(table: StudentTable, i: int, j: int, scope: DrawingScope) -> tuple
 
 
 def _values(formula: Expression, names: list[str]) -> tuple[float, float]:
-    """Return two values of a formula: with all symbols 0, and with 1 only for ``names``."""
     values = {name: np.array([0.0, float(name in names)]) for name in formula.symbols}
     [found] = evaluate_all([formula], values, {})
     at_zero, at_one = np.broadcast_to(np.asarray(found, dtype=np.float64), 2)

@@ -1,4 +1,4 @@
-"""A URDF file or a pasted DH table -> the text of an exercise file, with remarks."""
+"""Make the text of an exercise file from a URDF file or a pasted DH table."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -23,16 +23,16 @@ _UNEVEN: Final = say("with these angles, letters give no readable statement; do 
 
 
 class RefusedRobotError(ValueError):
-    """The robot cannot become an exercise; the text says why."""
+    """The robot cannot become an exercise; the message says why."""
 
 
 class SeveralTipsError(RefusedRobotError):
-    """The tree of links has several ends, and the author has not named the tool's link."""
+    """The robot has several possible tips, and the author has not chosen one."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportOptions:
-    """What the author chooses: ``base`` and ``tip`` are links of a URDF file."""
+    """The author's choices. ``base`` and ``tip`` are links in a URDF file."""
 
     title: str
     source: str
@@ -51,7 +51,10 @@ class ImportedRobot:
 
 
 def imported_urdf(data: bytes, options: ImportOptions) -> ImportedRobot:
-    """Return the exercise of a URDF file. Raises RefusedRobotError, SeveralTipsError."""
+    """Return an exercise about the robot of a URDF file.
+
+    Raises RefusedRobotError or SeveralTipsError.
+    """
     try:
         tip = options.tip
         if not tip:
@@ -84,7 +87,7 @@ def imported_urdf(data: bytes, options: ImportOptions) -> ImportedRobot:
 
 
 def imported_table(text: str, options: ImportOptions) -> ImportedRobot:
-    """Return the exercise of a pasted DH table. Raises RefusedRobotError."""
+    """Return an exercise about the robot of a pasted DH table. Raises RefusedRobotError."""
     try:
         robot = robot_of_table(text, options.convention)
     except UnusableTableError as error:
@@ -105,7 +108,6 @@ def _written(robot: HomeRobot, options: ImportOptions, remarks: Sequence[str]) -
 
 
 def _ends(frames: Placed, base: str, tip: str, last: int) -> list[str]:
-    """Return a remark for the first and for the last frame if it differs from its link's frame."""
     remarks: list[str] = []
     for pose, frame, link in ((frames.base, "{0}", base), (frames.tool, f"{{{last}}}", tip)):
         if np.abs(pose - np.eye(4)).max() > _SAME:

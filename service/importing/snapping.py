@@ -1,8 +1,7 @@
-"""Undo the rounding in robot files: 1.5708 means π/2.
+"""Undo the rounding in robot files: 1.5708 becomes π/2."""
 
-Numbers are snapped before any common normal is computed: two axes that should be parallel and are
-0.000004 rad apart have a common normal kilometres away.
-"""
+# Numbers are snapped before any common normal is computed: two axes that should be parallel and are
+# 0.000004 rad apart have a common normal kilometres away.
 
 import math
 from typing import Final
@@ -18,15 +17,14 @@ _LENGTH_DECIMALS: Final = 5
 
 
 def snapped_angle(text: str) -> float:
-    """Return an angle in radians as the multiple of 15° that it was rounded from, if any.
-
-    A number is a rounded multiple if it is within 1e-4 of the multiple. A number with two or more
-    decimals is also a rounded multiple if it equals the multiple, rounded to the same number of
-    decimals.
+    """Return an angle in radians, as the exact multiple of 15° if it is a rounded one.
 
     >>> snapped_angle("1.57") == math.pi / 2, snapped_angle("1.6")
     (True, 1.6)
     """
+    # A number is a rounded multiple if it is within 1e-4 of the multiple. A number with two or more
+    # decimals is also a rounded multiple if it equals the multiple, rounded to the same number of
+    # decimals.
     value = float(text)
     multiple = round(value / STEP) * STEP
     decimals = len(text.partition(".")[2]) if "e" not in text.lower() else 0
@@ -40,6 +38,6 @@ def snapped_length(text: str) -> float:
 
 
 def snapped_direction(direction: Numbers) -> Numbers:
-    """Return a unit vector with 0 for entries that rounding left near 0."""
+    """Return a unit vector in which entries near 0 are exactly 0."""
     kept = np.where(np.abs(direction) <= NEAR, 0.0, direction)
     return np.asarray(kept / np.linalg.norm(kept))

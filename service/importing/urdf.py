@@ -1,4 +1,4 @@
-"""Read a serial arm from a URDF file: its joints, their places and their axes."""
+"""Read a serial robot arm from a URDF file: its joints, their places and their axes."""
 
 import math
 import re
@@ -26,7 +26,7 @@ _LONGEST_TEXT: Final = 200
 
 
 class UnusableUrdfError(ValueError):
-    """The file has no arm that can become an exercise; the text says why."""
+    """The file has no arm that can become an exercise; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,7 +52,7 @@ class Arm:
 
     @property
     def structure(self) -> str:
-        """One letter for each joint: R turns, P slides."""
+        """A letter for each joint: R for a revolute joint, P for a prismatic joint."""
         return "".join("P" if joint.prismatic else "R" for joint in self.joints)
 
     def pose(self, values: Numbers) -> Matrices:
@@ -76,8 +76,6 @@ def _motion(joint: UrdfJoint, value: float) -> Matrices:
 
 @dataclass(slots=True)
 class _Joint:
-    """A joint as its XML element states it."""
-
     name: str
     kind: str
     parent: str = ""
@@ -90,8 +88,6 @@ class _Joint:
 
 @dataclass(slots=True)
 class _Collector:
-    """Collects links and joints while the XML parser reads; refuses too large files early."""
-
     links: list[str] = field(default_factory=list)
     joints: list[_Joint] = field(default_factory=list)
     _path: list[str] = field(default_factory=list)
@@ -170,7 +166,8 @@ def _collected(data: bytes) -> _Collector:
 
 
 def tips(data: bytes) -> list[str]:
-    """Return the links of the file at which a chain can end."""
+    """Return the links that may be the tip of an arm."""
+    # They are the links at which a chain can end.
     return _ends(_collected(data))
 
 
@@ -180,7 +177,7 @@ def _ends(collected: _Collector) -> list[str]:
 
 
 def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]:
-    """Return the arm from ``base`` to ``tip`` twice: with snapped numbers, and as written.
+    """Return the arm from ``base`` to ``tip`` twice: with rounded numbers repaired, and unchanged.
 
     Without ``base``, the arm begins at the root of the tree. Raises UnusableUrdfError.
     """
@@ -200,7 +197,6 @@ def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]
 
 
 def _path(collected: _Collector, tip: str, base: str | None) -> list[_Joint]:
-    """Return the joints from ``base`` to ``tip``, in this order."""
     before: dict[str, _Joint] = {}
     for joint in collected.joints:
         if joint.child in before:
@@ -288,7 +284,6 @@ def _axis(joint: _Joint, *, snap: bool) -> Numbers:
 
 
 def _numbers(joint: _Joint, text: str) -> Iterator[str]:
-    """Yield the three numbers of an attribute as texts."""
     words = text.split() if len(text) <= _LONGEST_TEXT else []
     if len(words) != 3 or not all(_NUMBER.fullmatch(word) for word in words):
         raise UnusableUrdfError(

@@ -1,4 +1,4 @@
-"""Random draws that are the same on every Python: integers from SHA-256 of a text."""
+"""Pseudo-random numbers that are the same on every computer: integers from SHA-256 of a text."""
 
 from collections.abc import Sequence
 from hashlib import sha256
@@ -11,14 +11,14 @@ _BYTES: Final = 8
 
 
 class SlipDraws:
-    """A sequence of draws. Equal texts give equal sequences."""
+    """A sequence of pseudo-random numbers. Equal texts give equal sequences."""
 
     def __init__(self, text: str) -> None:
         self._text = text
         self._blocks = count()
 
     def below(self, limit: int) -> int:
-        """Return an integer from 0 to ``limit - 1``."""
+        """Return a pseudo-random integer from 0 to ``limit - 1``."""
         digest = sha256(f"{self._text}\n{next(self._blocks)}".encode()).digest()
         return int.from_bytes(digest[:_BYTES], "big") * limit >> 8 * _BYTES
 

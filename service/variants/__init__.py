@@ -1,1 +1,4 @@
-"""Variants of exercises with ``[vary]``, one for each seed, and generated robots."""
+"""Variants of exercises with other numbers, and exercises about generated robots.
+
+A short text, the seed, determines a variant.
+"""

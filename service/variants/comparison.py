@@ -1,4 +1,4 @@
-"""How variants differ: by the robot that they ask for, and by their difficulty."""
+"""Compare variants of an exercise by their robot and by their difficulty."""
 
 from dataclasses import astuple, dataclass
 from typing import Final, TypeAlias
@@ -19,11 +19,13 @@ Form: TypeAlias = tuple[str, tuple[float, ...]]
 
 @dataclass(frozen=True, slots=True)
 class VariantDifficulty:
-    """Counts of what makes a robot hard. A table of variants shows each count in a column.
+    """Counts of what makes a robot hard.
 
-    ``turns`` counts the twists that are not 0, and ``odd_twists`` the twists that are not multiples
-    of 90°. ``free`` counts the pairs of parallel neighbouring axes, where a frame may be chosen.
+    ``turns`` counts the twists (α) that are not 0, and ``odd_twists`` those that are not multiples
+    of 90°. ``free`` counts the pairs of parallel neighbouring axes.
     """
+
+    # A table of variants shows each count in a column. On parallel axes, a frame may be chosen.
 
     joints: int = 0
     sliding: int = 0
@@ -34,16 +36,15 @@ class VariantDifficulty:
 
     @property
     def score(self) -> int:
-        """The sum of the counts; ``odd_twists`` has three times the weight."""
+        """The difficulty as one number."""
+        # It is the sum of the counts; ``odd_twists`` has three times the weight.
         counts: tuple[int, ...] = astuple(self)
         return sum(counts) + 2 * self.odd_twists
 
 
 def form_of(exercise: Exercise) -> Form:
-    """Return the canonical form of an exercise; it does not depend on frames chosen or on texts.
-
-    Two variants with the same form have the same answers.
-    """
+    """Return a description of an exercise that is equal for variants with the same answers."""
+    # It does not depend on frames chosen or on texts.
     values = _home(exercise)
     numbers: list[float] = []
     if exercise.reference is not None:
@@ -58,7 +59,8 @@ def form_of(exercise: Exercise) -> Form:
 
 
 def difficulty_of(exercise: Exercise) -> VariantDifficulty:
-    """Return what makes an exercise hard; all counts are 0 without a table."""
+    """Return what makes an exercise hard."""
+    # All counts are 0 without a table.
     if not isinstance(exercise.reference, Robot):
         return VariantDifficulty(joints=len(exercise.joints))
     robot = exercise.reference
@@ -78,7 +80,6 @@ def difficulty_of(exercise: Exercise) -> VariantDifficulty:
 
 
 def _home(exercise: Exercise) -> dict[str, Numbers]:
-    """Return 0 for each joint variable, and different values for all other symbols."""
     return {
         variable.name: np.array([0.0 if variable.joint is not None else 0.31 + 0.0713 * i])
         for i, variable in enumerate(exercise.variables)

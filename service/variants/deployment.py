@@ -1,4 +1,4 @@
-"""Deployed variants: a tutor has looked at them, and they are different, but equally hard."""
+"""Choose the variants that learners get: checked by a tutor, different, and equally hard."""
 
 import re
 import tomllib
@@ -27,9 +27,10 @@ _PER_LINE: Final = 8
 
 @dataclass(frozen=True, slots=True)
 class CheckedVariant:
-    """A variant, a description of its robot (form), its difficulty, and the remarks of the checks.
+    """A variant of an exercise, its difficulty, and the remarks of the checks.
 
-    ``lazy`` is the number of points for an answer of only zeros and joint variables.
+    ``form`` describes its robot, to find equal variants. ``lazy`` is the number of points for an
+    answer of only zeros and joint variables.
     """
 
     seed: str
@@ -41,11 +42,16 @@ class CheckedVariant:
 
 
 class TooFewVariantsError(ValueError):
-    """There are not enough different variants of one difficulty; the message is for the tutor."""
+    """There are not enough different variants of equal difficulty."""
+
+    # The message is for the tutor.
 
 
 def checked_variant(exercise: Exercise, seed: str) -> CheckedVariant:
-    """Return a variant with the result of its checks. Raises NoVariantError."""
+    """Return the variant of a seed with the result of its checks.
+
+    Raises NoVariantError.
+    """
     variant = built(exercise, seed)
     shares = lazy_shares(variant)
     lazy = sum(shares[part.id] * part.points for part in variant.parts)
@@ -57,7 +63,8 @@ def checked_variant(exercise: Exercise, seed: str) -> CheckedVariant:
 
 
 def random_seeds() -> Iterator[str]:
-    """Yield random seeds without letters that look alike, for ever."""
+    """Yield random seeds without end."""
+    # They have no letters that look alike.
     while True:
         yield "".join(choice(_LETTERS) for _ in range(_LENGTH))
 
@@ -68,11 +75,11 @@ def deploy(
     without: Iterable[str] = (),
     seeds: Iterator[str] | None = None,
 ) -> list[str]:
-    """Return ``count`` seeds of different variants with the same difficulty, none in ``without``.
+    """Return the seeds of ``count`` different variants with the same difficulty.
 
-    Deployed seeds of the file are kept if they are usable. Raises TooFewVariantsError,
-    NoVariantError.
+    No seed is in ``without``. Raises TooFewVariantsError or NoVariantError.
     """
+    # Deployed seeds of the file are kept if they are usable.
     struck = set(without)
     kept = exercise.vary.deployed if exercise.vary is not None else ()
     wanted = [seed for seed in kept if seed not in struck]
@@ -111,10 +118,8 @@ def deploy(
 
 
 def with_deployed(text: str, seeds: Sequence[str]) -> str | None:
-    """Return the text of an exercise file with these deployed seeds; None if it cannot be edited.
-
-    Comments and everything else stay as they are.
-    """
+    """Return the text of an exercise file with these seeds; None if it cannot be edited."""
+    # Comments and everything else stay as they are.
     place = _TABLE.search(text)
     if place is None:
         return None

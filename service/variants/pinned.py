@@ -26,9 +26,10 @@ def choices_of(exercises: Mapping[str, Exercise]) -> Mapping[str, Any]:
 def pinned(exercise: Exercise, choices: str | None) -> Exercise:
     """Return the exercise with the table ``[vary]`` that an assignment has stored.
 
-    ``choices`` is a JSON object with the stored table of each exercise. The table of the file stays
-    if none is stored, or if the stored table no longer fits the texts of the file.
+    ``choices`` is a JSON object with the stored table of each exercise.
     """
+    # The table of the file stays if none is stored, or if the stored table no longer fits the texts
+    # of the file.
     if exercise.vary is None or choices is None:
         return exercise
     vary = _pinned(exercise.vary, exercise.plain_id, choices)

@@ -1,9 +1,11 @@
-"""The seed of a learner. It is derived from a secret. Clients can neither compute nor choose it.
+"""The seed of a learner, a short text that determines the learner's variant.
 
-If the exercise file lists seeds that a tutor has checked (deployed seeds), the learner gets the one
-with the largest keyed hash. So one more seed in the list changes the variants of only a few
-learners.
+It is derived from a secret, so that learners can neither compute nor choose it.
 """
+
+# If the exercise file lists seeds that a tutor has checked (deployed seeds), the learner gets the
+# one with the largest keyed hash. So one more seed in the list changes the variants of only a few
+# learners.
 
 import hashlib
 import hmac
@@ -18,7 +20,8 @@ _LENGTH: Final = 16
 def seed_of(
     secret: str, learner: str, exercise: str, number: int, deployed: Sequence[str] = ()
 ) -> str:
-    """Return the seed of a learner who got another variant ``number`` times."""
+    """Return the seed of a learner's variant."""
+    # ``number`` says how many times the learner got another variant.
     if deployed:
         return max(deployed, key=lambda seed: _keyed(secret, learner, exercise, number, seed))
     whole = int.from_bytes(_keyed(secret, learner, exercise, number, ""), "big")

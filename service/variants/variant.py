@@ -1,4 +1,4 @@
-"""One variant of an exercise: a pure function of the exercise and a seed."""
+"""Make a variant of an exercise, which is determined by a short text, the seed."""
 
 from collections import OrderedDict
 from dataclasses import replace
@@ -19,14 +19,14 @@ MOST_BUILT: Final = 512
 
 
 class NoVariantError(LookupError):
-    """An exercise has no variants, or no variant for this seed; the message is for people."""
+    """An exercise has no variant for this seed."""
+
+    # Or no variants at all. The message is for people.
 
 
 def built(exercise: Exercise, seed: str) -> Exercise:
-    """Return the variant of a seed, with the id ``<exercise>~<seed>``; see ``variant_of``.
-
-    Raises NoVariantError.
-    """
+    """Return a newly built variant, with the id ``<exercise>~<seed>``. Raises NoVariantError."""
+    # See ``variant_of``.
     if exercise.vary is None:
         raise NoVariantError(
             say("The exercise {exercise} has no variants.", exercise=exercise.plain_id)
@@ -44,7 +44,7 @@ def built(exercise: Exercise, seed: str) -> Exercise:
 
 
 class BuiltVariants:
-    """A cache of the ``most`` variants that were used last."""
+    """A cache of the variants that were used last; ``most`` is its size."""
 
     def __init__(self, most: int = MOST_BUILT) -> None:
         self._most = most
@@ -55,7 +55,7 @@ class BuiltVariants:
         return len(self._built)
 
     def get(self, exercise: Exercise, seed: str) -> Exercise:
-        """Return a variant, from memory or newly built. Raises NoVariantError."""
+        """Return a variant from the cache, or build it. Raises NoVariantError."""
         if exercise.vary is None:
             return built(exercise, seed)
         # A changed file has another ``Vary``, so that its variants are built again.
@@ -76,18 +76,16 @@ _variants: Final = BuiltVariants()
 
 
 def variant_of(exercise: Exercise, seed: str) -> Exercise:
-    """Return the variant of a seed, built or from memory. Raises NoVariantError."""
+    """Return the variant of a seed, if possible from a cache. Raises NoVariantError."""
     return _variants.get(exercise, seed)
 
 
 def values_of(version: str) -> str:
-    """Return the part of a variant's version that changes only with the values of the variant."""
+    """Return the part of a variant's version that changes only with the variant's values."""
     return version.partition("-")[2]
 
 
 def hidden_variant(exercise: Exercise, seed: str) -> Exercise:
-    """Return the variant of a seed. Its id is that of the plain exercise, which hides the seed.
-
-    Raises NoVariantError.
-    """
+    """Return the variant of a seed, with an id that hides the seed. Raises NoVariantError."""
+    # The id is that of the plain exercise.
     return replace(variant_of(exercise, seed), id=exercise.plain_id)

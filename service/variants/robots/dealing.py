@@ -1,4 +1,4 @@
-"""The next robot for a student."""
+"""Choose the next robot for a student who practises."""
 
 import secrets
 from collections.abc import Iterator
@@ -27,11 +27,9 @@ def first_robot(level: int, convention: Convention) -> PracticeId:
 def candidates(
     level: int, convention: Convention, after: PracticeId | None
 ) -> Iterator[PracticeId]:
-    """Yield consecutive robots, beginning after ``after``, or with a random robot.
-
-    The caller takes the first suitable robot, or else the last robot. Many consecutive robots are
-    all different.
-    """
+    """Yield robots, one after the other, from which the caller takes the first suitable one."""
+    # They begin after ``after``, or with a random robot. If none is suitable, the caller takes the
+    # last. Many consecutive robots are all different.
     start = first_robot(level, convention) if after is None else after.following()
     start = replace(start, level=level, convention=convention)
     for steps in range(_MOST_LOOKS):
@@ -39,17 +37,15 @@ def candidates(
 
 
 def has_situation(name: PracticeId, favour: Situation) -> bool:
-    """True if the robot has the situation ``favour``, which a student wants to practise."""
+    """True if the robot has a situation that the student wants to practise."""
     return favour in situations(generated(name.level, name.number).plan)
 
 
 def asks_enough(robot: Exercise) -> bool:
-    """True if an answer of only zeros and joint variables earns little for a generated robot.
-
-    For a few robots in a hundred, this answer earns more, and students do not get these robots as
-    the next robot. Which robots these are depends on the marking. A link to a robot must not depend
-    on the marking, so these robots exist nevertheless.
-    """
+    """True if an answer of only zeros and joint variables earns little for a generated robot."""
+    # For a few robots in a hundred, this answer earns more, and students do not get these robots as
+    # the next robot. Which robots these are depends on the marking. A link to a robot must not
+    # depend on the marking, so these robots exist nevertheless.
     [part] = robot.parts
     [table] = [robot.robot.tables[convention] for convention in robot.conventions]
     lazy = Submission({part.id: {"rows": table.lazy_rows}}, feedback=FeedbackLevel.SCORE)

@@ -1,4 +1,4 @@
-"""The difficulty of a generated robot as counts, and the situations that the robot has."""
+"""The difficulty of a generated robot, and what a student can practise with it."""
 
 from dataclasses import dataclass
 from enum import StrEnum
@@ -8,7 +8,7 @@ from service.variants.robots.plan import Plan
 
 
 class Situation(StrEnum):
-    """A situation that a student may want to practise."""
+    """A feature of a robot that a student may want to practise."""
 
     OFFSET = "offset"
     """A row with a length along its axis and one between the axes, or two axes that are skew."""
@@ -25,8 +25,8 @@ class Difficulty:
     """Counts of what makes a robot difficult.
 
     ``turns`` counts the changes of direction from one axis to the next. ``choices`` counts the rows
-    in which students may choose more than a sign (parallel axes, sliding joints). ``odd`` counts
-    the twists of 30°, 45° or 60°.
+    with a free choice of frame (parallel axes, sliding joints). ``odd`` counts the twists of 30°,
+    45° or 60°.
     """
 
     joints: int
@@ -38,7 +38,8 @@ class Difficulty:
 
     @property
     def total(self) -> int:
-        """The sum of the counts, in which odd twists and joints count twice."""
+        """The difficulty as one number."""
+        # It is the sum of the counts, in which odd twists and joints count twice.
         once = self.turns + self.offsets + self.sliding + self.choices
         return 2 * (self.joints + self.odd) + once
 
@@ -57,7 +58,7 @@ def difficulty(plan: Plan) -> Difficulty:
 
 
 def situations(plan: Plan) -> set[Situation]:
-    """Return the situations that a robot has."""
+    """Return the features of a robot that a student may want to practise."""
     found = set()
     for row in plan.rows:
         if row.a and (row.d or row.relation is Relation.SKEW):

@@ -1,4 +1,4 @@
-"""Draws that are the same on every Python: integers from SHA-256 of a text."""
+"""Pseudo-random numbers that are the same on every computer: integers from SHA-256 of a text."""
 
 from collections.abc import Iterator, Sequence
 from hashlib import sha256
@@ -11,13 +11,14 @@ _BITS: Final = 32
 
 
 class Draws:
-    """A sequence of draws. Equal texts give equal sequences."""
+    """A sequence of pseudo-random numbers. Equal texts give equal sequences."""
 
     def __init__(self, text: str) -> None:
         self._words = _words(text)
 
     def below(self, limit: int) -> int:
-        """Return an integer from 0 to ``limit - 1``; all have nearly the same probability."""
+        """Return a pseudo-random integer from 0 to ``limit - 1``."""
+        # All have nearly the same probability.
         return next(self._words) * limit >> _BITS
 
     def chance(self, percent: int) -> bool:
@@ -29,7 +30,8 @@ class Draws:
         return choices[self.below(len(choices))]
 
     def weighted(self, choices: Sequence[tuple[T, int]]) -> T:
-        """Return a choice drawn by weight; at least one weight must be positive."""
+        """Return one of the choices, each with a weight; a greater weight is more probable."""
+        # At least one weight must be positive.
         left = self.below(sum(weight for _, weight in choices))
         for choice, weight in choices:
             left -= weight

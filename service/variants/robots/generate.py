@@ -1,4 +1,6 @@
-"""Find the robot of a level and a number: draw random robots until one is acceptable."""
+"""Generate a robot from a level and a number."""
+
+# Random robots are drawn until one is acceptable.
 
 from dataclasses import dataclass
 from typing import Final
@@ -19,7 +21,7 @@ _SIMPLE: Final = 2
 
 @dataclass(frozen=True, slots=True)
 class Generated:
-    """An accepted robot, its links at home, and the view in its figure."""
+    """A generated robot, the path of its links, and the view in its figure."""
 
     plan: Plan
     path: HomePath

@@ -1,4 +1,4 @@
-"""The four levels of generated robots: which relations between axes they have, and how often."""
+"""The four levels of generated robots: which joint axes they have, and how often."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from typing import Final
 
 
 class Relation(StrEnum):
-    """The relation of a joint axis to the next joint axis at home."""
+    """The relation of a joint axis to the next joint axis, such as parallel."""
 
     PARALLEL = "parallel"
     """Parallel, at a distance."""
@@ -25,15 +25,13 @@ class Relation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Grammar:
-    """The weights and percentages by which a robot is drawn.
+    """The weights and percentages with which the robots of a level are drawn."""
 
-    ``joints`` and ``relations`` have the weight of each choice. ``sliding`` is the percentage of
-    sliding joints, and ``most_sliding`` is the greatest number of sliding joints. The other
-    percentages are ``turned`` for rows with a constant angle, ``offset`` for rows with a length
-    along the axis, ``numbers`` for robots with numbers as lengths, and ``bent_tool`` for tool
-    frames that are turned about x.
-    ``oblique`` is the least number of pairs of odd twists.
-    """
+    # ``joints`` and ``relations`` have the weight of each choice. ``sliding`` is the percentage of
+    # sliding joints, and ``most_sliding`` is the greatest number of sliding joints. The other
+    # percentages are ``turned`` for rows with a constant angle, ``offset`` for rows with a length
+    # along the axis, ``numbers`` for robots with numbers as lengths, and ``bent_tool`` for tool
+    # frames that are turned about x. ``oblique`` is the least number of pairs of odd twists.
 
     joints: Sequence[tuple[int, int]]
     relations: Mapping[Relation, int]

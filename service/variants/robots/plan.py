@@ -1,4 +1,4 @@
-"""The grammar: draw the joints of a robot, the relations of their axes, and the lengths."""
+"""Draw a random robot: its joints, the relations of their axes, and the lengths."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -27,11 +27,12 @@ _ODD: Final = (
 
 @dataclass(frozen=True, slots=True)
 class PlannedRow:
-    """A row of the standard table: lengths in centimetres, angles in degrees.
+    """A row of the standard DH table: lengths in centimetres, angles in degrees.
 
-    ``relation`` is the relation of the joint's axis to the next axis; None in the last row. A
-    sliding joint moves by its variable in addition to ``d``.
+    ``relation`` is the relation of the joint's axis to the next axis; None in the last row.
     """
+
+    # A sliding joint moves by its variable in addition to ``d``.
 
     sliding: bool
     relation: Relation | None
@@ -53,12 +54,12 @@ class Plan:
 
     @property
     def structure(self) -> str:
-        """The letters of the joints, such as "RRP"."""
+        """A letter for each joint, such as "RRP"."""
         return "".join("P" if row.sliding else "R" for row in self.rows)
 
 
 def plan(level: Grammar, draws: Draws) -> Plan | None:
-    """Return a robot that follows the grammar, or None if the draws contradict the grammar."""
+    """Return a random robot of a level, or None if the drawn features do not fit together."""
     count = draws.weighted(level.joints)
     kinds = [draws.chance(level.sliding) for _ in range(count)]
     if sum(kinds) > level.most_sliding:
@@ -91,7 +92,8 @@ def plan(level: Grammar, draws: Draws) -> Plan | None:
 
 
 def plan_along(shape: Skeleton, level: Grammar, draws: Draws) -> Plan | None:
-    """Return a robot whose axes have given directions, or None if the draws contradict them."""
+    """Return a random robot whose axes have given directions, or None."""
+    # None if the draws contradict the directions.
     lengths = _Lengths(draws)
     x: AxisDirection = (1, 0, 0)
     z: AxisDirection = (0, 0, 1)
@@ -130,14 +132,12 @@ def _cost(way: tuple[int, int]) -> tuple[int, bool]:
 
 
 def _about(z: AxisDirection, x: AxisDirection, degrees: int) -> AxisDirection:
-    """Return the direction ``x``, turned about ``z`` by a multiple of 90°."""
     for _ in range(degrees // 90 % 4):
         x = cross(z, x)
     return x
 
 
 def _has_offset(level: Grammar, draws: Draws, *, sliding: bool) -> bool:
-    """Draw whether the row gets a length along its axis. A sliding joint seldom needs one."""
     return draws.chance(level.offset // (4 if sliding else 1))
 
 
@@ -149,10 +149,8 @@ def _row_back(owed: int, draws: Draws, lengths: "_Lengths", *, sliding: bool) ->
 
 
 def _relations(level: Grammar, kinds: Sequence[bool], draws: Draws) -> list[Relation] | None:
-    """Return the relation of each axis to the next axis, or None if the draws do not fit.
-
-    Oblique relations come in pairs: the second relation leads back.
-    """
+    # Return the relation of each axis to the next axis, or None if the draws do not fit.
+    # Oblique relations come in pairs: the second relation leads back.
     relations: list[Relation] = []
     pairs = 0
     for i in range(len(kinds) - 1):
@@ -185,7 +183,6 @@ def _turn(level: Grammar, draws: Draws) -> int:
 
 
 def _tool_place(draws: Draws, *, sliding: bool) -> tuple[bool, bool]:
-    """Return whether the tool is beside the last axis, and whether it is farther along it."""
     if sliding:
         return draws.weighted([((False, False), 60), ((True, False), 25), ((False, True), 15)])
     return draws.weighted([((True, False), 55), ((False, True), 35), ((True, True), 10)])
@@ -194,7 +191,6 @@ def _tool_place(draws: Draws, *, sliding: bool) -> tuple[bool, bool]:
 def _last_row(
     lengths: "_Lengths", sliding: bool, place: tuple[bool, bool], alpha: int, theta: int
 ) -> PlannedRow:
-    """Return the row to the tool."""
     aside, along = place
     a = lengths.next() if aside else 0
     d = lengths.next() if along else 0
@@ -202,13 +198,10 @@ def _last_row(
 
 
 def _within(angle: int) -> int:
-    """Return an angle in degrees from -179 to 180."""
     return 180 - (180 - angle) % 360
 
 
 class _Lengths:
-    """Different lengths in a random order."""
-
     def __init__(self, draws: Draws) -> None:
         self._draws = draws
         self._left = list(_LENGTHS)

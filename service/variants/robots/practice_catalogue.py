@@ -1,4 +1,6 @@
-"""A catalogue in which generated robots are found by their ids. They are not listed."""
+"""A catalogue in which generated robots can be found by their ids."""
+
+# They are not listed.
 
 from collections.abc import Iterator, Mapping
 from functools import lru_cache
@@ -18,7 +20,9 @@ def _memoized(name: PracticeId) -> Exercise:
 
 
 class CatalogueWithPractice(Mapping[str, Exercise]):
-    """A catalogue and all generated robots. They are made when they are asked for."""
+    """A catalogue of exercises, extended by all generated robots."""
+
+    # They are made when they are asked for.
 
     def __init__(self, catalogue: Mapping[str, Exercise]) -> None:
         self._catalogue = catalogue

@@ -18,7 +18,9 @@ ALL_NUMBERS: Final = 36**_LONGEST
 
 @dataclass(frozen=True, slots=True)
 class PracticeId:
-    """A level, a convention, and the number of a robot. Both conventions have the same robots."""
+    """The id of a generated robot: a level, a convention and a number."""
+
+    # Both conventions have the same robots.
 
     level: int
     convention: Convention
@@ -26,7 +28,7 @@ class PracticeId:
 
     @property
     def seed(self) -> str:
-        """The number in the digits 0 to 9 and a to z."""
+        """The number of the robot in base 36 (digits 0 to 9 and a to z)."""
         digits, left = "", self.number
         while left or not digits:
             left, digit = divmod(left, len(_DIGITS))
@@ -35,14 +37,15 @@ class PracticeId:
 
     @property
     def exercise(self) -> str:
-        """The id without the seed."""
+        """The id without the number of the robot."""
         return f"practice-{self.level}-{self.convention.value}"
 
     def __str__(self) -> str:
         return f"{self.exercise}~{self.seed}"
 
     def following(self, steps: int = 1) -> "PracticeId":
-        """Return the id ``steps`` robots later; after the last robot comes the first."""
+        """Return the id of the robot whose number is greater by ``steps``."""
+        # After the last robot comes the first.
         return replace(self, number=(self.number + steps) % ALL_NUMBERS)
 
 

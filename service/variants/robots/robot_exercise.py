@@ -1,4 +1,4 @@
-"""A generated robot -> an exercise that asks for its DH table."""
+"""Make an exercise about a generated robot, which asks for its DH table."""
 
 from collections.abc import Mapping
 from typing import Final
@@ -43,7 +43,7 @@ def robot_exercise(name: PracticeId) -> Exercise:
 
 
 def _fields(name: PracticeId) -> dict[str, object]:
-    """Return the exercise as the fields of an exercise file."""
+    """Return the fields of the robot's exercise file."""
     robot = generated(name.level, name.number)
     home = home_robot(robot.plan)
     rows = rows_in(home, name.convention)
@@ -107,7 +107,7 @@ def _prompt(convention: Convention, *, has_tool_row: bool) -> Sentence:
 
 
 def home_robot(plan: Plan) -> HomeRobot:
-    """Return the robot at home, with letters or with numbers for its lengths."""
+    """Return a planned robot, with letters or with numbers as its lengths."""
     table = table_of(plan)
     if plan.letters:
         robot = HomeRobot(table, plan.structure, letters_for(table))
@@ -122,7 +122,6 @@ def home_robot(plan: Plan) -> HomeRobot:
 
 
 def _symbols(robot: Generated, home: HomeRobot) -> Mapping[str, object]:
-    """Return the symbols: displacements of sliding joints, and letters of lengths."""
     low, high = (number_text(cm / 100) for cm in SLIDE)
     symbols = {
         f"d{i}": _length((low, high), say("displacement of joint {joint}", joint=i))

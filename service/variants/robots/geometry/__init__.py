@@ -1,1 +1,1 @@
-"""The geometry of generated robots: directions, links at home, and reasons to refuse a robot."""
+"""The geometry of generated robots, and the reasons to refuse a robot."""

@@ -1,7 +1,7 @@
-"""The links of a planned robot at home, as the figure draws them: sliding joints are extended.
+"""The path of a generated robot's links, as its figure draws them."""
 
-The module uses plain floats and a table of sines, so that every machine refuses the same robots.
-"""
+# Sliding joints are extended. The module uses plain floats and a table of sines, so that every
+# machine refuses the same robots.
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -19,21 +19,21 @@ _SINES: Final = {0: 0.0, 30: 0.5, 45: 0.707106781, 60: 0.866025404, 90: 1.0}
 
 @dataclass(frozen=True, slots=True)
 class HomePath:
-    """The corners of the path from the base to the tool, in centimetres.
+    """The corners of the path from the base to the tool, in centimetres."""
 
-    Consecutive corners differ.
-    """
+    # Consecutive corners differ.
 
     corners: tuple[HomePoint, ...]
 
     @property
     def pieces(self) -> list[tuple[HomePoint, HomePoint]]:
-        """The straight pieces of the path."""
+        """The line segments of the path."""
         return list(pairwise(self.corners))
 
 
 def home_path(rows: Sequence[PlannedRow]) -> HomePath:
-    """Return the path of a robot through the origins of its frames, along z and along x."""
+    """Return the path of a robot through the origins of its frames."""
+    # It follows z, then x of each row.
     here: HomePoint = (0.0, 0.0, 0.0)
     x: HomePoint = (1.0, 0.0, 0.0)
     y: HomePoint = (0.0, 1.0, 0.0)
@@ -50,7 +50,8 @@ def home_path(rows: Sequence[PlannedRow]) -> HomePath:
 
 
 def cosine_sine(degrees: int) -> tuple[float, float]:
-    """Return the cosine and sine of an angle that robots have, with 9 decimals."""
+    """Return the cosine and the sine of an angle in degrees, with 9 decimals."""
+    # Only angles that robots have are in the table.
     return _sine(degrees + 90), _sine(degrees)
 
 
@@ -61,7 +62,6 @@ def _sine(degrees: int) -> float:
 
 
 def _turned(first: HomePoint, second: HomePoint, degrees: int) -> tuple[HomePoint, HomePoint]:
-    """Return two perpendicular unit vectors, turned in their plane."""
     c, s = cosine_sine(degrees)
     return (
         _sum(_scaled(first, c), _scaled(second, s)),
@@ -83,15 +83,13 @@ def difference(first: HomePoint, second: HomePoint) -> HomePoint:
 
 
 def dot(first: HomePoint, second: HomePoint) -> float:
-    """Return the scalar product."""
+    """Return the scalar product of two vectors."""
     return first[0] * second[0] + first[1] * second[1] + first[2] * second[2]
 
 
 def gap(one: tuple[HomePoint, HomePoint], other: tuple[HomePoint, HomePoint]) -> float:
-    """Return the distance between two straight pieces.
-
-    Source: Ericson, *Real-Time Collision Detection*, §5.1.9.
-    """
+    """Return the distance between two line segments."""
+    # Source: Ericson, *Real-Time Collision Detection*, §5.1.9.
     u, v = difference(one[1], one[0]), difference(other[1], other[0])
     w = difference(one[0], other[0])
     a, e, b, c, f = dot(u, u), dot(v, v), dot(u, v), dot(u, w), dot(v, w)
@@ -112,10 +110,8 @@ def _clamped(share: float) -> float:
 def seen(
     points: Sequence[HomePoint], azimuth: int, elevation: int
 ) -> Iterator[tuple[float, float]]:
-    """Yield the coordinates of points in a view, to the right and upwards.
-
-    These are the coordinates of ``service/figures/geometry/view.py``.
-    """
+    """Yield the coordinates of points in a view, to the right and upwards."""
+    # These are the coordinates of ``service/figures/geometry/view.py``.
     ca, sa, ce, se = _VIEWS[azimuth, elevation]
     for px, py, pz in points:
         yield ca * py - sa * px, ce * pz - se * (ca * px + sa * py)

@@ -1,7 +1,6 @@
-"""The reasons to refuse a random robot.
+"""The reasons to refuse a random robot."""
 
-If a robot is refused, another random robot gets its number.
-"""
+# If a robot is refused, another random robot gets its number.
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -44,7 +43,7 @@ _GENERIC: Final = (0.731, -1.157, 0.419, 1.933, -0.587, 2.311, -1.723)
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """The view in which a figure shows a robot."""
+    """The direction from which a figure shows a robot."""
 
     azimuth: int
     elevation: int
@@ -73,7 +72,7 @@ def _tells_little(rows: Sequence[PlannedRow]) -> bool:
 
 
 def _turns_back(path: HomePath) -> bool:
-    """True if a piece of the path leads back along the piece before it."""
+    """True if a segment of the path leads back along the segment before it."""
     steps = [difference(end, start) for start, end in path.pieces]
     return any(
         dot(one, other) < -0.87 * (dot(one, one) * dot(other, other)) ** 0.5
@@ -82,7 +81,7 @@ def _turns_back(path: HomePath) -> bool:
 
 
 def _touches(path: HomePath) -> bool:
-    """True if two pieces of the path that are not neighbours come near each other."""
+    """True if two segments of the path that are not neighbours come near each other."""
     pieces = path.pieces
     for i, j in combinations(range(len(pieces)), 2):
         if j > i + 1 and gap(pieces[i], pieces[j]) < _CLEARANCE:
@@ -91,7 +90,7 @@ def _touches(path: HomePath) -> bool:
 
 
 def table_of(plan: Plan) -> Table:
-    """Return the standard table with all joint variables 0, in metres and radians."""
+    """Return the standard DH table of a robot with all joint variables 0, in metres and radians."""
     table = np.zeros((len(plan.rows), 4))
     for i, row in enumerate(plan.rows):
         table[i, A], table[i, D] = row.a / 100, row.d / 100
@@ -100,7 +99,8 @@ def table_of(plan: Plan) -> Table:
 
 
 def rank_of(plan: Plan) -> int:
-    """Return the number of independent motions at a generic configuration."""
+    """Return the number of independent motions of the robot's tool."""
+    # At a generic configuration.
     count = len(plan.rows)
     table = np.repeat(table_of(plan)[..., None], 3, axis=2)
     for i, row in enumerate(plan.rows):
@@ -111,7 +111,7 @@ def rank_of(plan: Plan) -> int:
 
 
 def clear_view(path: HomePath) -> Seen | None:
-    """Return the first view in which corners, lengths and labels are apart, or None."""
+    """Return the first view in which the figure's corners and labels do not overlap, or None."""
     pieces = path.pieces
     middles = [((p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2) for p, q in pieces]
     different = _different(path.corners)
@@ -143,7 +143,7 @@ def _apart(points: Sequence[tuple[float, float]], least: float) -> bool:
 def _long_enough(
     pieces: Sequence[tuple[HomePoint, HomePoint]], azimuth: int, elevation: int
 ) -> bool:
-    """True if no piece points at the viewer."""
+    """True if no link points at the viewer."""
     for start, end in pieces:
         (a, b), (c, d) = seen((start, end), azimuth, elevation)
         along = difference(end, start)

@@ -1,8 +1,7 @@
-"""The directions of a small robot's axes at home; each number has its own directions.
+"""The axis directions of simple robots, determined by the robot's number."""
 
-There are few simple robots: of 500 random robots, 100 are like an earlier robot. So the number of a
-simple robot determines its directions, and only the rest is random.
-"""
+# There are few simple robots: of 500 random robots, 100 are like an earlier robot. So the number of
+# a simple robot determines its directions, and only the rest is random.
 
 from dataclasses import dataclass
 from functools import cache
@@ -25,10 +24,10 @@ DIFFERENT: Final = 711
 
 @dataclass(frozen=True, slots=True)
 class Skeleton:
-    """The joints, and the directions of the axes 2 to n and of the tool's x axis at home.
+    """The joints of a robot, and the directions of its axes and of the tool's x axis."""
 
-    ``beside`` is True if the tool is not on the last axis.
-    """
+    # The directions of the axes 2 to n, at home. ``beside`` is True if the tool is not on the last
+    # axis.
 
     sliding: tuple[bool, ...]
     headings: tuple[AxisDirection, ...]
@@ -37,10 +36,9 @@ class Skeleton:
 
 
 def skeleton(level: Grammar, number: int) -> Skeleton | None:
-    """Return the skeleton with this number. Numbers after the last skeleton repeat the skeletons.
-
-    Return None if two consecutive sliding joints would be parallel.
-    """
+    """Return the skeleton (joints and axis directions) with this number, or None."""
+    # Numbers after the last skeleton repeat the skeletons. None if two consecutive sliding joints
+    # would be parallel.
     sizes = _sizes(level)
     total = sum(size for _, size in sizes)
     step = next(each for each in range(_STEP, total + _STEP) if gcd(each, total) == 1)
@@ -88,17 +86,15 @@ def perpendicular(direction: AxisDirection) -> list[AxisDirection]:
 
 
 def cross(first: AxisDirection, second: AxisDirection) -> AxisDirection:
-    """Return the vector product."""
+    """Return the vector product of two directions."""
     a, b, c = first
     d, e, f = second
     return b * f - c * e, c * d - a * f, a * e - b * d
 
 
 def turn(start: AxisDirection, end: AxisDirection, about: AxisDirection) -> int:
-    """Return the angle in degrees from one direction to another about a third direction.
-
-    Both directions are at a right angle to ``about``.
-    """
+    """Return the angle in degrees from one direction to another about a third direction."""
+    # Both directions are at a right angle to ``about``.
     if start == end:
         return 0
     across = cross(about, start)
