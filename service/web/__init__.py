@@ -1,4 +1,4 @@
-"""The pages of the service, and the element that other sites embed."""
+"""The web pages of the service, and the exercise that other sites embed."""
 
 from service.web.routes import web_routes
 from service.web.tutor.tutor_routes import Tutoring

@@ -1,10 +1,12 @@
-"""The static files of the pages, each served under a name that contains a hash of its content.
+"""The static files of the pages, each with a hash of its content in its served name.
 
-A changed file has another name, so browsers may cache each file without a limit. The names are made
-when the service starts; there is no build step. In the source, a module imports another one by its
-path, such as ``"../shared/dom.js"``. All files are served from one folder, so no two of them may
-have the same name. Each language but English has one more file, the dictionary of the scripts.
+A changed file gets another name, so browsers may cache each file without a limit. All files are
+served from one folder, so no two of them may have the same name.
 """
+
+# The names are made when the service starts; there is no build step. In the source, a module
+# imports another one by its path, such as ``"../shared/dom.js"``. Each language but English has one
+# more file, the dictionary of the scripts.
 
 import hashlib
 import os
@@ -32,9 +34,10 @@ _WORDS: Final = "words.js"
 class Asset:
     """A static file, with the ``name`` and the ``content`` that browsers get.
 
-    ``needs`` has the names, without hashes, of all files that this file refers to. It does not have
-    the modules that a script imports only when it needs them.
+    ``needs`` has the plain names of all files that this file refers to: the names without a hash.
     """
+
+    # It does not have the modules that a script imports only when it needs them.
 
     name: str
     content: bytes
@@ -54,11 +57,12 @@ class Assets:
         return {asset.name: asset for asset in self.by_plain_name.values()}
 
     def name(self, plain_name: str) -> str:
-        """Return the name under which a file is served."""
+        """Return the name, with a hash, under which a file is served."""
         return self.by_plain_name[plain_name].name
 
     def modules(self, plain_name: str) -> list[str]:
-        """Return the names of a module and of all modules that it imports; pages preload them."""
+        """Return the names of a module and of all modules that it imports."""
+        # Pages preload them.
         found: dict[str, None] = {}
         waiting = [plain_name]
         while waiting:
@@ -69,16 +73,15 @@ class Assets:
         return [self.name(name) for name in found]
 
     def words(self, language: Language) -> str | None:
-        """Return the file name of a language's dictionary for scripts; None if there is no file."""
+        """Return the file name of a language's dictionary for scripts, or None if there is none."""
         found = self.by_plain_name.get(_dictionary_name(language))
         return None if found is None else found.name
 
 
 def load_assets(folder: Path = FOLDER) -> Assets:
-    """Return all files below a folder.
+    """Return all static files in a folder and its subfolders.
 
-    Raises LookupError if a file refers to a missing file, or ValueError if two files have the same
-    name.
+    Raises LookupError for a reference to a missing file, or ValueError for equal file names.
     """
     found = [file for file in folder.rglob("*") if file.suffix in _MEDIA_TYPES]
     files = {file.name: file for file in found}
@@ -123,7 +126,7 @@ def _name(match: re.Match[str]) -> str:
 
 
 def _target(files: Mapping[str, Path], name: str, match: re.Match[str]) -> str:
-    """Return the plain name of the file to which a reference in the file ``name`` leads."""
+    # Return the plain name of the file to which a reference in the file ``name`` leads.
     path = Path(os.path.normpath(files[name].parent / match[1]))
     if files.get(path.name) != path:
         raise LookupError(f"the static file {name} names {path}, which does not exist")

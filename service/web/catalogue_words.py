@@ -1,4 +1,4 @@
-"""The words by which the search of the catalogue finds an exercise."""
+"""The words by which a search finds an exercise in the catalogue."""
 
 from collections.abc import Iterable, Iterator
 from typing import Final
@@ -30,16 +30,17 @@ _JOINTS: Final = {"R": "revolute rotary turning", "P": "prismatic linear sliding
 
 
 def kinds_of(exercise: Exercise) -> Iterable[str]:
-    """Return what kinds of answers an exercise asks for, such as a DH table; each kind once."""
+    """Return the kinds of answers that an exercise asks for, such as a DH table."""
+    # Each kind once.
     return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
 
 
 def words_of(
     exercise: Exercise, language: Language = ENGLISH, original: Exercise | None = None
 ) -> str:
-    """Return all words of an exercise that a student may search for.
+    """Return all words of an exercise by which a search may find it.
 
-    If the language is not English, the words of the English ``original`` are included.
+    The words of the English ``original`` are included.
     """
     texts = [told(each, language.translation) for each in _texts(exercise)]
     if language.translation:

@@ -20,7 +20,8 @@ def page_answer(
     headers: Mapping[str, str] = PAGE_HEADERS,
     status: HTTPStatus = HTTPStatus.OK,
 ) -> HTMLResponse:
-    """Return a page as a response in ``language_of(request)``; store a newly chosen language."""
+    """Return a page as a response in the reader's language."""
+    # A newly chosen language is stored.
     answer = HTMLResponse(content, status, headers=dict(headers))
     answer.headers["Content-Language"] = language_of(request).tag
     answer.headers["Vary"] = _VARY

@@ -1,14 +1,12 @@
-"""The HTTP headers of the pages, with the policy that says what a browser may load and run."""
+"""The HTTP headers of the pages, which limit what a browser may load and run."""
 
 from typing import Final
 
 
 def policy(**more: str) -> str:
-    """Return the Content-Security-Policy of a page; ``more`` replaces some of its directives.
-
-    It allows nothing from other hosts, and no script or style inside the page. Scripts may turn
-    text into markup only with the Trusted Types policy of markup.js.
-    """
+    """Return the Content-Security-Policy of a page; ``more`` replaces some of its directives."""
+    # It allows nothing from other hosts, and no script or style inside the page. Scripts may turn
+    # text into markup only with the Trusted Types policy of markup.js.
     directives = {
         "default_src": "'none'",
         "script_src": "'self'",

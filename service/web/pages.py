@@ -73,7 +73,7 @@ def exercise_page(
     *,
     tutor: bool = False,
 ) -> bytes:
-    """Return the page of an exercise, with a link to the ``following`` exercise."""
+    """Return the page of an exercise, with a link to the next exercise ``following``."""
     return page(
         "web/templates/exercise.html",
         assets,
@@ -102,7 +102,8 @@ def play_page(assets: Assets, language: Language, *, tutor: bool = False) -> byt
 
 
 def practice_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page for practice with generated robots; a script loads one after the other."""
+    """Return the page for practice with generated robots."""
+    # A script loads one after the other.
     return page(
         "web/templates/practice.html",
         assets,
@@ -115,7 +116,8 @@ def practice_page(assets: Assets, language: Language, *, tutor: bool = False) ->
 
 
 def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page "DH in ten minutes"; it can be read without scripts."""
+    """Return the page "DH in ten minutes"."""
+    # It can be read without scripts.
     return page(
         "web/templates/learn_dh.html",
         assets,
@@ -133,7 +135,8 @@ def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False)
 
 
 def learner_page(assets: Assets, language: Language) -> bytes:
-    """Return the page of a learner with a personal link; its script loads the assignments."""
+    """Return the page of a learner with a personal link."""
+    # Its script loads the assignments.
     return page(
         "web/templates/learn.html",
         assets,
@@ -147,7 +150,7 @@ def learner_page(assets: Assets, language: Language) -> bytes:
 
 
 def reference_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page /docs, on which people read and try the operations."""
+    """Return the page /docs, the reference of the HTTP interface."""
     return page(
         "web/templates/docs.html",
         assets,
@@ -175,11 +178,11 @@ def page(
 ) -> bytes:
     """Return the page made from a template that extends ``site.html``.
 
-    ``root`` is the relative address of the catalogue. The menu has one more entry for a ``tutor``.
-    With ``is_framed``, the page has no menu, because other pages do not open in a frame. A page
-    without a ``language`` is in English, and offers no other language. ``values`` are the variables
-    of the template.
+    ``root`` is the relative address of the catalogue, and ``values`` are the template's variables.
+    With ``is_framed``, the page has no menu.
     """
+    # Other pages do not open in a frame. The menu has one more entry for a ``tutor``. A page
+    # without a ``language`` is in English, and offers no other language.
     static = f"{root}static/"
     offers = language is not None and not is_framed and len(LANGUAGES) > 1
     modules = dict.fromkeys(name for script in scripts for name in assets.modules(script))

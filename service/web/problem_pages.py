@@ -1,4 +1,4 @@
-"""The pages that show a problem in place of the requested page, with advice."""
+"""The pages that explain an error, with advice, in place of the requested page."""
 
 from collections.abc import Mapping
 from http import HTTPStatus
@@ -30,10 +30,8 @@ _FOR_TUTORS: Final[Mapping[str, str]] = {
 
 
 def problem_page(assets: Assets) -> ProblemPage:
-    """Return a function that makes a response with an HTML page from a problem.
-
-    The function returns None if the request did not ask for a page.
-    """
+    """Return a function that makes an HTML error page from a problem."""
+    # The function returns None if the request did not ask for a page.
 
     def made(request: Request, problem: ProblemError) -> Response | None:
         path = request.url.path.removeprefix(request.scope.get("root_path", ""))

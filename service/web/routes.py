@@ -1,4 +1,4 @@
-"""The routes of the pages and of their files."""
+"""The routes of the pages and of their static files."""
 
 from http import HTTPStatus
 from typing import Final
@@ -44,10 +44,11 @@ _ENTRY: Final = "embed.js"
 
 
 def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPages:
-    """Return the pages, ``/embed.js`` for other sites, the static files and the problem pages.
+    """Return all pages of the service with their static files.
 
     Without ``tutoring``, nobody sees the pages of tutors.
     """
+    # Also ``/embed.js`` for other sites, and the problem pages.
     router = APIRouter(include_in_schema=False)
     assets = load_assets()
     # Robots are found, but not listed.
@@ -64,7 +65,8 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:
-        """Return the catalogue, or redirect to the exercise that the query names."""
+        """Return the catalogue page, or redirect to the page of an exercise."""
+        # The query may name the exercise.
         if exercise is not None:
             known = exercise_or_404(practised, exercise)
             answer = RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
@@ -85,17 +87,16 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/play")
     async def play(request: Request) -> Response:
-        """Return the page of free play; its tables stay in the browser."""
+        """Return the page of free play, which accepts the table of any robot."""
+        # Its tables stay in the browser.
         tutor = tutoring.access.shows_solutions(request)
         shown = play_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)
 
     @router.get("/learn")
     async def learn(request: Request) -> Response:
-        """Return the page that personal links open.
-
-        The page is the same for all learners: its script reads the key in the link.
-        """
+        """Return the page that personal links open."""
+        # The page is the same for all learners: its script reads the key in the link.
         return page_answer(request, learner_page(assets, language_of(request)))
 
     @router.get("/docs")
@@ -107,10 +108,8 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get(f"/{_ENTRY}")
     async def embed() -> Response:
-        """Return the script that other sites include; it loads the other scripts.
-
-        Only this script has a name that never changes.
-        """
+        """Return the script that other sites include to embed an exercise."""
+        # It loads the other scripts. Only this script has a name that never changes.
         content = assets.by_plain_name[_ENTRY].content.replace(b'"./', b'"./static/')
         return _file(assets.by_plain_name[_ENTRY], content, "no-cache")
 
@@ -129,14 +128,16 @@ def _practice_routes(assets: Assets, access: Access) -> APIRouter:
 
     @router.get("/practice")
     async def practice(request: Request) -> Response:
-        """Return the page of generated robots; the fragment of the address names the robot."""
+        """Return the page for practice with generated robots."""
+        # The fragment of the address names the robot.
         tutor = access.shows_solutions(request)
         shown = practice_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)
 
     @router.get("/learn-dh")
     async def learn_dh(request: Request) -> Response:
-        """Return the page "DH in ten minutes"; its progress stays in the browser."""
+        """Return the page "DH in ten minutes"."""
+        # Its progress stays in the browser.
         tutor = access.shows_solutions(request)
         shown = ten_minutes_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)

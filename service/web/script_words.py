@@ -1,4 +1,4 @@
-"""The dictionaries with translations of the scripts' sentences, for each language but English."""
+"""The translations of the sentences in scripts, as a file for each language but English."""
 
 import json
 import re
@@ -36,7 +36,7 @@ def sentences_in(scripts: Iterable[str]) -> ScriptSentences:
 
 
 def dictionary(language: Language, sentences: ScriptSentences) -> str:
-    """Return the JavaScript module with all sentences that have a translation in the language."""
+    """Return the JavaScript file with a language's translations of the sentences in scripts."""
     words: dict[str, str] = {}
     counts: dict[str, tuple[str, str]] = {}
     translation = language.translation_of_scripts
@@ -53,10 +53,8 @@ def dictionary(language: Language, sentences: ScriptSentences) -> str:
 
 
 def with_dictionaries(script: str, names: dict[str, str]) -> str:
-    """Return words.js with the addresses of the dictionaries inserted.
-
-    ``script`` is the text of words.js, and ``names`` has the addresses by language.
-    """
+    """Return the script words.js with the addresses of the dictionaries inserted."""
+    # ``script`` is the text of words.js, and ``names`` has the addresses by language.
     return script.replace(_PLACE, f"const FILES = {json.dumps(names)};")
 
 

@@ -1,4 +1,4 @@
-"""The page on which tutors sign in with their key, and the routes that start and end a session."""
+"""The page on which tutors sign in with their key, and the routes to sign in and out."""
 
 import re
 from datetime import UTC, datetime, timedelta
@@ -55,7 +55,7 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
 
     @router.get("/sign-in")
     async def ask(request: Request, following: str = HOME) -> Response:
-        """Return the form that asks for a key."""
+        """Return the form on which a tutor enters a key."""
         return form(request, own_path(following))
 
     @router.post("/sign-in")
@@ -79,7 +79,7 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
 
     @router.post("/sign-out")
     async def end(request: Request) -> Response:
-        """End the session of this browser."""
+        """End the tutor's session in this browser."""
         answer = _see(f"{HOME}/sign-in")
         if is_same_origin(request):
             set_session_cookie(answer, request, "")
@@ -89,7 +89,7 @@ def sign_in_routes(assets: Assets, access: Access) -> APIRouter:
 
 
 def sign_in_address(path: str, query: str) -> str:
-    """Return the address, relative to the root, of the sign-in form that leads back to a page."""
+    """Return the relative address of the sign-in form that leads back to a page."""
     wanted = f"{path}?{query}" if query else path
     return f"tutor/sign-in?following={quote(own_path(wanted), safe='')}"
 
@@ -101,7 +101,7 @@ def own_path(path: str) -> str:
 
 
 async def _session(keys: Keys, key: str, until: datetime) -> str:
-    """Return a session token for a key's holder. Raises CredentialError, ProblemError."""
+    """Return a session token for the holder of a key. Raises CredentialError, ProblemError."""
     if not key:
         raise CredentialError(say("Enter a key."))
     try:
@@ -131,11 +131,9 @@ def _see(path: str) -> Response:
 
 
 def set_session_cookie(answer: Response, request: Request, session: str) -> None:
-    """Set the session cookie; without a session, remove the session cookies.
-
-    The ``Origin`` header of the browser shows whether the browser uses HTTPS. A service behind a
-    proxy may not know that otherwise.
-    """
+    """Set the session cookie; without a session, remove the session cookies."""
+    # The ``Origin`` header of the browser shows whether the browser uses HTTPS. A service behind a
+    # proxy may not know that otherwise.
     origin = request.headers.get("origin", "")
     is_secure = origin.startswith("https:") or request.url.scheme == "https"
     age = int(SESSION.total_seconds()) if session else 0

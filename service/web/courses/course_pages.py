@@ -1,4 +1,6 @@
-"""The pages of courses as HTML. Scripts send their forms to the routes of the service."""
+"""The pages of courses as HTML."""
+
+# Scripts send their forms to the routes of the service.
 
 from collections.abc import Mapping, Sequence
 from datetime import datetime
@@ -34,10 +36,12 @@ _GROUPS: Final = 10
 class CourseState(NamedTuple):
     """A course with its learners and assignments.
 
-    ``handed_in`` has, for each assignment id, the number of learners with a readable attempt.
-    ``roster`` is a database row if the learning platform gives a list of the course's members,
-    otherwise None. ``reports`` are the reports on files that did not reach the platform.
+    ``handed_in`` has the number of learners with a readable attempt, by assignment id. ``roster``
+    is None if the learning platform gives no list of the course's members.
     """
+
+    # Otherwise it is a database row. ``reports`` are the reports on files that did not reach the
+    # platform.
 
     course: Course
     learners: Sequence[CourseLearner]
@@ -48,7 +52,7 @@ class CourseState(NamedTuple):
 
 
 class PointsGroup(NamedTuple):
-    """How many learners have a share of the points from ``start`` to below ``end`` per cent."""
+    """The number of learners whose percentage of the points is from ``start`` to below ``end``."""
 
     start: int
     end: int
@@ -58,7 +62,7 @@ class PointsGroup(NamedTuple):
 def courses_page(
     courses: Sequence[Course], assets: Assets, language: Language, *, creates: bool
 ) -> bytes:
-    """Return the page with the list of courses; with ``creates``, also a form for a new course."""
+    """Return the page with the list of courses; ``creates`` adds a form for a new course."""
     scripts = ["course_forms.js"]
     return _page("courses", assets, language, "../", scripts, courses=courses, creates=creates)
 
@@ -73,7 +77,7 @@ def course_page(
     has_keys: bool,
     deletes: bool,
 ) -> bytes:
-    """Return the page of a course; with ``deletes``, the caller may delete the course."""
+    """Return the page of a course; with ``deletes``, it has a button to delete the course."""
     return _page(
         "course",
         assets,
@@ -123,7 +127,7 @@ def assignment_page(
 
 
 def gradebook_page(course: Course, assets: Assets, language: Language) -> bytes:
-    """Return the page of the gradebook, which a script fills."""
+    """Return the page of a course's gradebook, which a script fills."""
     return _page("gradebook", assets, language, "../../../", ["gradebook.js"], course=course)
 
 
@@ -137,11 +141,12 @@ def learner_page(
     assets: Assets,
     language: Language,
 ) -> bytes:
-    """Return a tutor's page about one learner: the learner's own view, variants, scores and link.
+    """Return a tutor's page about one learner of a course.
 
-    ``reports`` are the reports on handed-in files that did not reach the platform. ``variants`` has
-    the learner's variants by assignment.
+    It has the learner's results, variants, scores and personal link.
     """
+    # ``reports`` are the reports on handed-in files that did not reach the platform. ``variants``
+    # has the learner's variants by assignment.
     return _page(
         "learner",
         assets,
@@ -165,17 +170,17 @@ def roster_page(
     assets: Assets,
     language: Language,
 ) -> bytes:
-    """Return the page that a tutor sees after the roster of a course was read.
+    """Return the page that says how the roster (the platform's list of members) has changed.
 
-    The roster is the platform's list of the course's members. The page says what has changed, or
-    why the roster could not be read.
+    The page may also say why the roster could not be read.
     """
     values = {"course": course, "change": change, "message": message}
     return _page("roster", assets, language, "../../../", [], **values)
 
 
 def distribution(book: Gradebook) -> list[PointsGroup]:
-    """Count the learners in each group of similar points; leave out learners without attempts."""
+    """Count the learners in each group of similar points."""
+    # Learners without attempts are left out.
     most = sum(each.points for each in book.columns)
     counts = [0] * _GROUPS
     for row in book.rows:
@@ -188,11 +193,9 @@ def distribution(book: Gradebook) -> list[PointsGroup]:
 
 
 def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
-    """Return a tuple for each exercise.
-
-    It has the exercise's id, the possible points, the number of learners with an attempt, and the
-    mean of their points.
-    """
+    # Return a tuple for each exercise.
+    # It has the exercise's id, the possible points, the number of learners with an attempt, and the
+    # mean of their points.
     found = []
     for i, column in enumerate(book.columns):
         earned = [row.points[i] for row in book.rows if row.points[i] is not None]
@@ -202,7 +205,8 @@ def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
 
 
 def _shown(when: datetime | None) -> str:
-    """Return a date as text, or a dash. The date is already in the course's time zone."""
+    """Return a date as text, or a dash."""
+    # The date is already in the course's time zone.
     return f"{when:%Y-%m-%d %H:%M}" if when is not None else "–"
 
 

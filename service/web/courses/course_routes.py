@@ -1,4 +1,4 @@
-"""The routes of the pages of courses, for tutors."""
+"""The routes of the pages on which tutors manage their courses."""
 
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -36,7 +36,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 def course_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the routes of the pages on which tutors run courses."""
+    """Return the routes of the pages on which tutors manage their courses."""
     router = APIRouter(include_in_schema=False)
     router.include_router(_set_up_routes(catalogue, assets, tutoring))
     router.include_router(_learner_routes(catalogue, assets, tutoring))
@@ -45,13 +45,13 @@ def course_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> A
 
 
 def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the routes of courses and assignments."""
     router = APIRouter(prefix="/tutor/courses")
     access, store = tutoring.access, tutoring.store
 
     @router.get("")
     async def courses(request: Request) -> Response:
-        """Return the page with all courses; a tutor of one course sees only this course."""
+        """Return the page with all courses that the tutor may see."""
+        # A tutor of one course sees only this course.
         from service.courses import roll
 
         only = access.caller(request).course
@@ -106,7 +106,6 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
 
 def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the routes of the gradebook's page, a learner's page, and the personal links."""
     router = APIRouter(prefix="/tutor/courses")
     access, store = tutoring.access, tutoring.store
 
@@ -122,7 +121,8 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
     async def learner(
         request: Request, course_id: CourseId, learner: Annotated[Learner, Query()]
     ) -> Response:
-        """Return the page of a learner. The id is in the query, because it may have a slash."""
+        """Return the page of a learner."""
+        # The id is in the query, because it may have a slash.
         from service.courses.dealing import learner_variants
         from service.courses.learner_view import own_view
         from service.lti.handed_files.overview import missing_reports
@@ -148,7 +148,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
 
     @router.post("/{course_id}/links.csv")
     async def links(request: Request, course_id: CourseId) -> Response:
-        """Return a CSV file with the personal links of all learners, or a new link of one."""
+        """Return a CSV file with the personal links of all learners, or with a new link of one."""
         from service.courses.links import issue_links, written_links
 
         fields = parse_qs((await request.body()).decode(errors="replace"))
@@ -173,7 +173,7 @@ def _answer(request: Request, content: bytes) -> Response:
 
 
 def _state(connection: "Connection", course_id: str, language: Language) -> CourseState:
-    """Return a course with all that its page shows. Raises CourseError."""
+    """Return all data that the page of a course shows. Raises CourseError."""
     from service.courses import roll
     from service.courses.assignments import assignments_of
     from service.courses.results.gradebook import handed_in

@@ -1,4 +1,4 @@
-"""The route by which a tutor reads the roster of a course from its platform (LTI)."""
+"""The route that reads a course's roster, the platform's list of its members (LTI)."""
 
 import asyncio
 from datetime import UTC, datetime
@@ -21,13 +21,13 @@ from service.web.tutor.tutor_routes import Tutoring
 
 
 def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the route that reads a roster."""
+    """Return the route that reads a roster (a platform's list of members)."""
     router = APIRouter(prefix="/tutor/courses")
     access, store = tutoring.access, tutoring.store
 
     @router.post("/{course_id}/roster")
     async def roster(request: Request, course_id: CourseId) -> Response:
-        """Read the roster; return the page that says what has changed."""
+        """Read the platform's list of members, and return the page with the changes."""
         from service.courses import roll
         from service.lti.roster.enrolment import (
             RosterError,

@@ -1,1 +1,1 @@
-"""Help for students, in their language: what they may type and paste, and how they earn points."""
+"""Help for students: what they may type and paste, and how they earn points."""

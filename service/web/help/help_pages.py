@@ -1,4 +1,6 @@
-"""The pages of help and their routes. They need no scripts."""
+"""The help pages and their routes."""
+
+# They need no scripts.
 
 from typing import Final
 
@@ -21,12 +23,12 @@ TOPICS: Final = {
 
 
 def help_routes(assets: Assets, access: Access) -> APIRouter:
-    """Return the routes of the pages of help, one for each topic."""
+    """Return the routes of the help pages, one for each topic."""
     router = APIRouter()
 
     @router.get("/help")
     async def first(request: Request) -> Response:
-        """Redirect to the first page of help."""
+        """Redirect to the first help page."""
         answer = RedirectResponse("help/expressions")
         keep_language(request, answer)
         return answer
@@ -45,7 +47,7 @@ def help_routes(assets: Assets, access: Access) -> APIRouter:
 
 
 def help_page(topic: str, assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page of help on one of the ``TOPICS``."""
+    """Return the help page on one of the ``TOPICS``."""
     return page(
         f"web/help/templates/{topic}.html",
         assets,

@@ -1,1 +1,1 @@
-"""The pages that platforms open by LTI: launches in a frame or in a window of their own."""
+"""The pages that learning platforms open by LTI, in a frame or in a separate window."""

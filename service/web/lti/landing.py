@@ -1,4 +1,4 @@
-"""Record launches from learning platforms, and make the pages for learners, tutors and visitors."""
+"""Record launches (users who open a link on a learning platform), and make their pages."""
 
 from datetime import UTC, datetime, timedelta
 from typing import Final
@@ -32,10 +32,9 @@ TOKEN_LIFETIME: Final = timedelta(hours=12)
 
 
 class Landings:
-    """Records launches, and makes the pages that they open.
+    """Records launches (users who open a link on a learning platform), and makes their pages."""
 
-    One transaction records a launch and marks its login as used.
-    """
+    # One transaction records a launch and marks its login as used.
 
     def __init__(
         self,
@@ -55,7 +54,7 @@ class Landings:
         self._reports = ReportPages(assets, store, secret, catalogue, feedback, self.platform_files)
 
     async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
-        """Record a launch; return the page that it opens. Raises LtiError."""
+        """Record a launch, and return the page that it opens. Raises LtiError."""
         now = datetime.now(UTC)
         if message.kind == DEEP_LINKING:
             return await self._picker(message, login, now, language)
@@ -89,7 +88,7 @@ class Landings:
         return choosing_page(choice, title, ticket, self.catalogue, self.assets, language)
 
     def _reviewed(self, message: LaunchMessage) -> str:
-        """Return the learner whose attempts a tutor wants to see, or ""."""
+        """Return the id of the learner whose attempts a tutor wants to see, or ""."""
         if not message.reviewed:
             return ""
         return pseudonym(message.registration.id, message.reviewed, self.secret)
@@ -109,10 +108,8 @@ class Landings:
         return picker_page(offer, Picked(), text, self.catalogue, self.assets, language)
 
     def _token(self, landing: Landing, now: datetime) -> str:
-        """Return the token for the page of a learner or of a tutor who previews it.
-
-        With the token of a preview, the page can grade, but not record. Guests get no token ("").
-        """
+        # Return the token for the page of a learner or of a tutor who previews it.
+        # With the token of a preview, the page can grade, but not record. Guests get no token ("").
         if landing.role is LtiRole.GUEST or not landing.key_id or landing.assignment is None:
             return ""
         is_learner = landing.role is LtiRole.LEARNER

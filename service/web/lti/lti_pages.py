@@ -1,4 +1,4 @@
-"""The pages of launches, and their headers."""
+"""The pages that learning platforms open here, and their HTTP headers."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -24,13 +24,14 @@ _FOLDER = "web/lti/templates"
 def frame_headers(
     language: Language, origins: Iterable[str], *targets: str, style: str = ""
 ) -> dict[str, str]:
-    """Return the headers of a page that only pages of ``origins`` may show in a frame.
+    """Return the HTTP headers of a page that only pages of ``origins`` may show in a frame.
 
-    ``language`` is the language of the page. Forms of the page may be sent only to ``targets``, or
-    only to us if there are no ``targets``. The platform's window must stay the opener of the page,
-    because that window may have the platform's storage. ``style`` is the hash of a style
-    sheet inside the page; then the page may use no other style.
+    Forms in the page may be sent only to ``targets``. ``style`` is the hash of a style sheet inside
+    the page.
     """
+    # ``language`` is the language of the page. Without ``targets``, forms may be sent only to us.
+    # The platform's window must stay the opener of the page, because that window may have the
+    # platform's storage. With ``style``, the page may use no other style.
     ancestors = " ".join(dict.fromkeys(["'self'", *origins]))
     more = {"form_action": " ".join(dict.fromkeys(targets))} if targets else {}
     if style:
@@ -43,7 +44,7 @@ def frame_headers(
 
 @dataclass(frozen=True, slots=True)
 class Choice:
-    """The values that a tutor has entered to set up a resource link."""
+    """The values that a tutor has entered to choose the exercises of a link."""
 
     title: str
     search: str = ""
@@ -53,7 +54,7 @@ class Choice:
 
 
 def login_page(login: "NewLogin", name: str, assets: Assets, language: Language) -> bytes:
-    """Return the page that stores the login's secret for this browser in the platform's storage."""
+    """Return the page that stores a login's secret in the platform's storage in this browser."""
     return lti_page(
         "login.html",
         assets,
@@ -76,12 +77,12 @@ def binding_page(
     token: str = "",
     storage: tuple[str, str, str] | None = None,
 ) -> bytes:
-    """Return the page for a browser that has not sent the cookie of the login.
+    """Return the page for a browser that has not sent the cookie of its login.
 
-    ``storage`` has the frame and the origin of the platform's storage, and the name of the stored
-    secret. Without ``storage``, the page only has a button that opens the address ``window`` in a
-    window of its own.
+    Without ``storage``, the page has only a button that opens ``window`` in a new window.
     """
+    # ``storage`` has the frame and the origin of the platform's storage, and the name of the stored
+    # secret.
     frame, origin, name = storage or ("", "", "")
     scripts = [] if storage is None else ["platform_storage.js"]
     return lti_page(
@@ -102,7 +103,7 @@ def binding_page(
 def refused_page(
     assets: Assets, language: Language, advice: str, reference: str, reason: str
 ) -> bytes:
-    """Return the page that says why nothing was opened, and what to do."""
+    """Return the page that says why nothing was opened, and what the user can do."""
     return lti_page(
         "refused.html",
         assets,
@@ -117,10 +118,11 @@ def refused_page(
 def landing_page(
     landing: "Landing", token: str, catalogue: Catalogue, assets: Assets, language: Language
 ) -> bytes:
-    """Return the page that a launch opens for a learner, a tutor's preview, or a guest.
+    """Return the page with exercises that a link on the learning platform opens.
 
     The page calls the service with ``token``.
     """
+    # It is for a learner, a tutor's preview, or a guest.
     assignment = landing.assignment
     if landing.learner and assignment is not None:
         return page(
@@ -157,7 +159,7 @@ def tutor_page(
     *,
     is_review: bool = False,
 ) -> bytes:
-    """Return a tutor's page with the resource link's assignment and a form that opens the course.
+    """Return a tutor's page about a link on the platform, with a form that opens the course.
 
     With ``is_review``, the form opens the attempts of one learner.
     """
@@ -184,7 +186,7 @@ def choosing_page(
     assets: Assets,
     language: Language,
 ) -> bytes:
-    """Return the form on which a tutor chooses the exercises of a resource link."""
+    """Return the form on which a tutor chooses the exercises of a link on the platform."""
     chosen = choice.chosen or {}
     return lti_page(
         "choose.html",
@@ -202,7 +204,7 @@ def choosing_page(
 def found(
     catalogue: Catalogue, language: Language, search: str, chosen: Mapping[str, str]
 ) -> Sequence[tuple[Exercise, str]]:
-    """Return exercises with their points: first the chosen ones, then those that a search finds."""
+    """Return the chosen exercises, then those that a search finds, each with its points."""
     words = search.lower().split()
 
     def has_words(each: Exercise) -> bool:
@@ -218,7 +220,8 @@ def found(
 
 
 def _place(course: str, assignment: CourseAssignment) -> str:
-    """Return the URL fragment of an assignment's only exercise, or "" if it has several."""
+    """Return the URL fragment of an assignment's only exercise, or ""."""
+    # It is "" if the assignment has several exercises.
     if len(assignment.exercises) != 1:
         return ""
     return f"#/{course}/{assignment.id}/{assignment.exercises[0].exercise}"

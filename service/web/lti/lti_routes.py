@@ -1,4 +1,4 @@
-"""The routes of LTI: login, launch, our public keys, and the forms of a tutor's first page.
+"""The routes of LTI, by which a learning platform opens the service for its users.
 
 The service has these routes only if it has a database and a secret.
 """
@@ -81,7 +81,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
 
     @router.get(_LOGIN)
     async def login_by_get(request: Request) -> Response:
-        """Begin a login: the platform sends the user here first."""
+        """Begin a login; the platform sends the user here first."""
         language = language_of(request)
         return await launching.answered(
             lambda: login(dict(request.query_params), language), language
@@ -96,7 +96,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
 
     @router.post(_LAUNCH)
     async def launch(request: Request) -> Response:
-        """Check the message of the platform, and return the page that the message opens."""
+        """Check the platform's message, and return the page that the message opens."""
         fields = await form_fields(request, _MOST_FIELDS)
 
         async def launched() -> Response:
@@ -132,7 +132,7 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
 
 
 class _Launching:
-    """Begins logins, and checks the messages with which platforms launch the service."""
+    """Begins logins, and checks the messages with which platforms open the service."""
 
     def __init__(self, assets: Assets, tutoring: Tutoring, platform_keys: "PlatformKeys") -> None:
         self._assets, self._store = assets, tutoring.store
@@ -151,7 +151,7 @@ class _Launching:
         return await write(self._store, lambda it: begin_login(it, known, fields, now))
 
     async def login_of(self, fields: Mapping[str, str]) -> "tuple[Registration, Login]":
-        """Return the login to which a message belongs, and its registration. Raises LtiError."""
+        """Return the registration and the login that a message belongs to. Raises LtiError."""
         from service.lti.logins import login_of
         from service.lti.problems import LtiError
         from service.lti.registrations import RegistrationError, registration
@@ -167,7 +167,8 @@ class _Launching:
         return known, begun
 
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
-        """Return the message in a token. Raises LtiError after noting why the token is refused."""
+        """Return the message in a signed token. Raises LtiError if the token is refused."""
+        # The reason is noted before.
         from service.lti.messages import key_id_of, message_in
         from service.lti.problems import LtiError
         from service.lti.registrations import note_refusal
@@ -184,10 +185,11 @@ class _Launching:
     def ask_to_bind(
         self, request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
     ) -> Response:
-        """Return a page for a browser that has not sent the cookie of the login.
+        """Return a page for a browser that has not sent the cookie of its login.
 
-        Raises LtiError if the page already has its own window and the platform offers no storage.
+        Raises LtiError if no page can help.
         """
+        # That is, if the page already has its own window and the platform offers no storage.
         from service.lti.problems import LtiError
 
         is_window = request.headers.get("sec-fetch-dest") == "document"
@@ -212,7 +214,7 @@ class _Launching:
     async def answered(
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
-        """Call ``work`` and return its response. Return a page about an LtiError."""
+        """Return the response of ``work``, or a page about an LtiError."""
         from service.lti.problems import LtiError
 
         try:
@@ -221,7 +223,7 @@ class _Launching:
             return await self._refused(error, language)
 
     async def _refused(self, error: "LtiError", language: Language) -> Response:
-        """Return an error page for the student, with the same reference number as the log line."""
+        """Return an error page for the student, with the reference number of the log line."""
         from service.lti.registrations import all_registrations
 
         context = current_request()
@@ -237,12 +239,13 @@ class _Launching:
 def is_bound(
     request: Request, fields: Mapping[str, str], known: "Registration", begun: "Login"
 ) -> bool:
-    """True if this browser has begun the login, False if the browser has not sent its secret yet.
+    """True if this browser has begun the login; False if it has not sent its secret yet.
 
-    The browser sends its secret in a cookie, or in a form with the value from the platform's
-    storage. The form is accepted only from our own page, because an attacker could begin a login
-    and let another browser post the form. Raises LtiError.
+    Raises LtiError if the secret is not from this browser.
     """
+    # The browser sends its secret in a cookie, or in a form with the value from the platform's
+    # storage. The form is accepted only from our own page, because an attacker could begin a login
+    # and let another browser post the form.
     from service.lti.problems import LtiError
 
     cookie = request.cookies.get(cookie_name(known, fields["state"]))
@@ -258,7 +261,8 @@ def is_bound(
 
 
 def cookie_name(known: "Registration", state: str) -> str:
-    """Return the name of the cookie of a login. Several logins may be under way at once."""
+    """Return the name of the cookie of a login."""
+    # Several logins may be under way at once.
     from service.lti.logins import digest
 
     prefix = "__Host-" if known.address.startswith("https:") else ""

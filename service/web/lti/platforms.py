@@ -1,4 +1,6 @@
-"""The page of the registered platforms: their last launches, our keys, and a self-test."""
+"""The page of the registered learning platforms, with a self-test for each platform."""
+
+# It also shows their last launches and our keys.
 
 import asyncio
 from datetime import UTC, datetime
@@ -37,8 +39,7 @@ _RegistrationId = Annotated[CourseName, Path(description="The id of a registrati
 
 
 class _Shown(NamedTuple):
-    """A registered platform, with the data that the page shows about it."""
-
+    # A registered platform, with the data that the page shows about it.
     registration: Registration
     deployments: list[str]
     refusal: str
@@ -46,7 +47,7 @@ class _Shown(NamedTuple):
 
 
 def platform_routes(landings: Landings) -> APIRouter:
-    """Return the routes of the page with the registered platforms."""
+    """Return the routes of the page with the registered learning platforms."""
     router = APIRouter(prefix="/tutor/platforms")
 
     async def answer(
@@ -72,12 +73,12 @@ def platform_routes(landings: Landings) -> APIRouter:
 
     @router.get("")
     async def platforms(request: Request) -> Response:
-        """Return the page with the registrations and our keys."""
+        """Return the page with the registered learning platforms and our keys."""
         return await answer(request)
 
     @router.post("/{registration_id}/check")
     async def check(request: Request, registration_id: _RegistrationId) -> Response:
-        """Test a registration; return the page with the results of the test."""
+        """Test the registration of a platform, and return the page with the results."""
         secret, now = landings.secret, datetime.now(UTC)
 
         def known(connection: "Connection") -> tuple[Registration, SigningKey]:

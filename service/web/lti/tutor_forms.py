@@ -1,8 +1,10 @@
 """The forms on a tutor's first page: choose the exercises of a link, and open the course.
 
-A page in a frame has no cookie. Its forms carry a ticket, and are accepted from our own pages only.
-The course opens in a window of its own, in which our cookie is not a third-party cookie.
+A page in a frame has no cookie, so each form contains a signed ticket.
 """
+
+# The forms are accepted from our own pages only. The course opens in a window of its own, in which
+# our cookie is not a third-party cookie.
 
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import replace
@@ -42,19 +44,20 @@ Answered = Callable[[Callable[[], Awaitable[Response]], Language], Awaitable[Res
 
 
 def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the routes of the forms. ``answered`` makes an error page from an LtiError."""
+    """Return the routes of the forms on a tutor's first page."""
+    # ``answered`` makes an error page from an LtiError.
     router = APIRouter(prefix="/lti")
     store, keys = landings.store, landings.keys
 
     async def asked(request: Request, text: str) -> LtiTicket:
-        """Return the ticket in one of our forms. Raises LtiError."""
+        """Return the signed ticket in one of our forms. Raises LtiError."""
         if not is_same_origin(request):
             raise LtiError("binding-from-elsewhere")
         return ticket_in(text, LtiTicket, landings.secret)
 
     @router.post("/assignment")
     async def choose(request: Request) -> Response:
-        """Search for exercises, or make the assignment of a resource link."""
+        """Search for exercises, or make an assignment of the chosen exercises."""
         fields = form_lists(await request.body())
         text = fields.get("ticket", [""])[0]
         language = language_of(request, fields.get("locale", [""])[0])
@@ -110,21 +113,19 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
 
 
 def _course_address(course: str, learner: str, language: Language) -> str:
-    """Return the address of a course, or of one of its learners, in the language of the tutor."""
+    """Return the address of the page of a course, or of one of its learners."""
     query = {"learner": learner} if learner else {}
     page = "/learner" if learner else ""
     return f"../tutor/courses/{course}{page}?{urlencode({**query, LANGUAGE_FIELD: language.code})}"
 
 
 class _NotYetError(Exception):
-    """The values of a form cannot be used. The form is shown again, with this message."""
+    """The values of a form cannot be used; the form is shown again, with this message."""
 
 
 def _rows(connection: Connection, ticket: LtiTicket) -> tuple[Row[Any], Row[Any]]:
-    """Return the database rows of the course and the resource link that a ticket names.
-
-    Raises LtiError.
-    """
+    # Return the database rows of the course and the resource link that a ticket names.
+    # Raises LtiError.
     of_context = (contexts.c.number == ticket.context) & (
         contexts.c.registration == ticket.registration
     )
@@ -156,7 +157,6 @@ def _choice(fields: Mapping[str, list[str]]) -> Choice:
 
 
 def _new_assignment(choice: Choice, link: int) -> NewAssignment:
-    """Return the assignment that a form asks for. Raises _NotYetError."""
     if not choice.chosen:
         raise _NotYetError(say("Choose at least one exercise."))
     if not choice.title:

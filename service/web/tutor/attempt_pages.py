@@ -1,4 +1,4 @@
-"""The pages of recorded attempts as HTML: forms, and empty elements that scripts fill."""
+"""The pages of recorded attempts as HTML, which scripts fill."""
 
 from typing import Any, NamedTuple
 
@@ -10,7 +10,7 @@ from service.web.pages import page
 
 
 class CoursePlace(NamedTuple):
-    """The course and the assignment to which a page is limited; "" for no limit."""
+    """The course and the assignment whose attempts a page shows; "" means all."""
 
     course: str = ""
     assignment: str = ""
@@ -27,9 +27,9 @@ def attempts_page(
 ) -> bytes:
     """Return the page with the list of attempts, its filters, the export, and the deletion.
 
-    Without ``of_all``, the list always shows one exercise. Without ``forgets``, the page has no
-    deletion, because deletion concerns all exercises and courses.
+    Without ``of_all``, it shows one exercise at a time. Without ``forgets``, it cannot delete.
     """
+    # Deletion concerns all exercises and courses.
     all_of_them = [("", say("All exercises"))] if of_all else []
     titles = ((each.id, in_language(each, language).title) for each in catalogue.values())
     choices = [*all_of_them, *titles]
@@ -46,14 +46,15 @@ def attempts_page(
 
 
 def attempt_page(attempt_id: str, assets: Assets, language: Language) -> bytes:
-    """Return the page of an attempt: the answers, their report, and the points that tutors give."""
+    """Return the page of an attempt: the answers, their report, and the tutor's points."""
     return _page("attempt", assets, language, "../../", "attempt.js", attempt_id=attempt_id)
 
 
 def statistics_page(
     exercise: Exercise, assets: Assets, language: Language, place: CoursePlace
 ) -> bytes:
-    """Return an exercise's page with statistics, the export of attempts, and the regrade."""
+    """Return the page with an exercise's statistics."""
+    # It also has the export of attempts and the regrade.
     return _page(
         "statistics",
         assets,
@@ -66,7 +67,7 @@ def statistics_page(
 
 
 def nothing_recorded_page(assets: Assets, language: Language, root: str) -> bytes:
-    """Return the page that says how to start the service so that it records attempts."""
+    """Return the page that explains how to start the service with recording of attempts."""
     return _page("nothing_recorded", assets, language, root)
 
 

@@ -1,4 +1,6 @@
-"""The routes of the pages of recorded attempts; scripts load the attempts themselves."""
+"""The routes of the pages of recorded attempts."""
+
+# Scripts load the attempts themselves.
 
 import re
 from typing import Final
@@ -36,11 +38,9 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/attempts")
     async def attempts(request: Request, exercise: str | None = None) -> Response:
-        """Return the page with the list of attempts.
-
-        If the caller's key is restricted to some exercises, the page lists one of these exercises
-        at a time.
-        """
+        """Return the page with the list of attempts."""
+        # If the caller's key is restricted to some exercises, the page lists one of these exercises
+        # at a time.
         caller = access.caller(request)
         require_reach(caller, exercise or None)
         shown = reachable_exercises(catalogue, caller)
@@ -61,7 +61,7 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("/statistics/{exercise_id}")
     async def statistics(request: Request, exercise_id: str) -> Response:
-        """Return the page with an exercise's statistics and regrade."""
+        """Return the page with an exercise's statistics."""
         exercise = exercise_or_404(catalogue, exercise_id)
         drawn = statistics_page(exercise, assets, language_of(request), _place(request))
         return answer(request, drawn, "../../")
@@ -70,7 +70,7 @@ def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
 
 def _place(request: Request) -> CoursePlace:
-    """Return the course and the assignment in the address of a page, if they are well formed."""
+    # Return the course and the assignment in the address of a page, if they are well formed.
     given = request.query_params
     course, assignment = given.get("course", ""), given.get("assignment", "")
     if not _NAME.fullmatch(course):

@@ -1,6 +1,6 @@
 """`python -m service.web.tutor.check_process`: check exercise files for the service.
 
-The service starts this process. The process ends with the service, or after some idle minutes.
+The service starts this process, and it ends with the service or after some idle minutes.
 """
 
 import os
@@ -19,7 +19,8 @@ _NICE = 5
 
 
 def main() -> None:
-    """Reply to each request with the findings, or with an empty message if the checks crash."""
+    """Reply to each request with the findings of the checks."""
+    # Or with an empty message if the checks crash.
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     # Text that is printed by mistake must not get into the answers.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())
@@ -44,10 +45,8 @@ def main() -> None:
 
 
 def _read(bodies: "queue.SimpleQueue[bytes]") -> None:
-    """Read requests from standard input, and queue them for the checks.
-
-    When the service has ended, end the process at once, even during a check.
-    """
+    # Read requests from standard input, and queue them for the checks.
+    # When the service has ended, end the process at once, even during a check.
     with suppress(EOFError):
         while True:
             bodies.put(received(sys.stdin.buffer)[1])

@@ -1,4 +1,4 @@
-"""The checks of the editor, in a separate process that is killed if they take too long."""
+"""Check exercise files for the editor, in a process that is killed if it takes too long."""
 
 import os
 import subprocess
@@ -25,7 +25,9 @@ _MODULE: Final = "service.web.tutor.check_process"
 
 
 class Checking:
-    """Checks texts one by one in a process that starts with the first check."""
+    """Checks exercise files one by one in a process of its own."""
+
+    # The process starts with the first check.
 
     def __init__(self, seconds: float = SECONDS) -> None:
         self._seconds = seconds
@@ -34,11 +36,11 @@ class Checking:
         self._closed = False
 
     def checked(self, body: CheckRequest, language: Language = ENGLISH) -> bytes:
-        """Return the findings on a text as JSON, in a language.
+        """Return the findings on an exercise file as JSON. Raises ProblemError.
 
-        Only one thread may call this method at a time. Raises ProblemError if the checks take too
-        long, or if the service ends.
+        Only one thread may call this method at a time.
         """
+        # ProblemError if the checks take too long, or if the service ends.
         if self._process is None or self._process.poll() is not None:
             self._start()
         process = self._process
@@ -80,7 +82,6 @@ class Checking:
         weakref.finalize(self, _end, self._process)
 
     def _asked(self, process: "subprocess.Popen[bytes]", body: bytes) -> bytes:
-        """Return the process's reply, empty if the checks failed. Raises OSError, _TooLongError."""
         # The service may have ended just before this process was started.
         if self._closed:
             raise ConnectionResetError
@@ -93,7 +94,7 @@ class Checking:
 
 
 class _TooLongError(Exception):
-    """The process has not answered in time."""
+    """The process has not replied in time."""
 
 
 def _answer(process: "subprocess.Popen[bytes]", expected: bytes, seconds: float) -> bytes:

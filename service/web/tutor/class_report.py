@@ -1,4 +1,4 @@
-"""Grade uploaded files of a class, and make the same reports as ``dh-grader grade``."""
+"""Grade the uploaded files of a class, and make the same reports as ``dh-grader grade``."""
 
 import io
 import tempfile
@@ -39,10 +39,9 @@ _LONGEST_NAME: Final = 255
 
 
 class UploadedFile(BaseModel):
-    """A file of a student.
+    """A file of a student, as a text or as bytes."""
 
-    A file has either a text or, if it is not text, its bytes. Too large a file has neither.
-    """
+    # Bytes if it is not text. Too large a file has neither.
 
     model_config = ConfigDict(extra="forbid")
 
@@ -52,14 +51,17 @@ class UploadedFile(BaseModel):
 
     @property
     def content(self) -> bytes:
-        """Return the file's bytes; if the file is too large, zeros that exceed the limit."""
+        """Return the bytes of the file."""
+        # If the file is too large, zeros that exceed the limit.
         if self.text is not None:
             return self.text.encode(errors="replace")
         return b"\0" * (MAX_BODY_SIZE + 1) if self.base64 is None else self.base64
 
 
 class ClassUpload(BaseModel):
-    """All files of a class, and the exercise or the part that they answer."""
+    """All files of a class, and the exercise that they answer."""
+
+    # Or the part of an exercise.
 
     model_config = ConfigDict(extra="forbid")
 
@@ -95,10 +97,8 @@ def unpacked(body: bytes) -> ClassUpload:
 
 
 def _marks(content: bytes) -> int:
-    """Return a measure of how many values JSON has, in order to refuse too many before parsing.
-
-    It is the number of characters outside JSON strings, plus the number of quotation marks.
-    """
+    # Return a measure of how many values JSON has, in order to refuse too many before parsing.
+    # It is the number of characters outside JSON strings, plus the number of quotation marks.
     content = content.replace(rb"\\", b"").replace(rb"\"", b"")
     quotes = content.count(b'"')
     # With too many quotation marks, do not build the list of pieces between them.
@@ -106,11 +106,12 @@ def _marks(content: bytes) -> int:
 
 
 def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language = ENGLISH) -> bytes:
-    """Grade a class, and return the folder of its reports and the gradebook as a ZIP archive.
+    """Grade a class, and return the reports and the gradebook as a ZIP file.
 
-    While the files are graded, they are in a temporary folder, so that they are found and read as
-    on the command line. Raises ProblemError.
+    Raises ProblemError.
     """
+    # While the files are graded, they are in a temporary folder, so that they are found and read as
+    # on the command line.
     exercise = require_exercise(catalogue, upload.exercise)
     try:
         assignment = of_one(exercise, upload.part)
@@ -195,7 +196,6 @@ def _archive(
 def _all_graded(
     found: list[HandedIn], terms: GradingTerms, folder: Path
 ) -> Iterator[GradedSubmission]:
-    """Yield the graded submissions, with file names relative to the folder of the class."""
     above = f"{folder}/"
     end = time.monotonic() + MOST_SECONDS
     for handed in found:

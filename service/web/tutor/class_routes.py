@@ -1,4 +1,4 @@
-"""The routes of the report on a class."""
+"""The routes of the page that grades the files of a class."""
 
 from typing import Final
 
@@ -20,20 +20,18 @@ _HEADERS: Final = {**PRIVATE_HEADERS, "Content-Security-Policy": policy(frame_sr
 
 
 def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> APIRouter:
-    """Return the routes of the upload form, the frame of the reports, and the grading."""
+    """Return the routes of the page that grades the files of a class."""
     router = APIRouter(prefix="/tutor")
 
     @router.get("/class")
     async def class_form(request: Request) -> Response:
-        """Return the form to choose the files of a class."""
+        """Return the form for uploading the files of a class."""
         return page_answer(request, class_page(catalogue, assets, language_of(request)), _HEADERS)
 
     @router.get("/class/report")
     async def class_frame() -> Response:
-        """Return the empty page in which the browser shows reports.
-
-        The Content-Security-Policy of the page allows the style sheets of the reports.
-        """
+        """Return the empty page in which the browser shows reports."""
+        # The Content-Security-Policy of the page allows the style sheets of the reports.
         from service.formats.class_page.index import STYLE as INDEX_STYLE
         from service.formats.documents.html import STYLE as REPORT_STYLE
 
@@ -47,7 +45,8 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
 
     @router.post("/class")
     async def report(request: Request) -> Response:
-        """Grade a class, and return the reports as a ZIP archive. Nothing is stored."""
+        """Grade a class, and return the reports as a ZIP file."""
+        # Nothing is stored.
         packed = await request.body()
         language = language_of(request)
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue, language))

@@ -1,4 +1,4 @@
-"""The routes of the exercise editor."""
+"""The routes of the editor for exercise files."""
 
 from functools import partial
 from http import HTTPStatus
@@ -31,7 +31,10 @@ _NEW: Final = "my-exercise"
 
 
 class DraftRequest(CheckRequest):
-    """The text of an exercise to preview; ``draft`` is the id of the draft that it replaces."""
+    """The text of an exercise to preview.
+
+    ``draft`` is the id of the stored draft that it replaces.
+    """
 
     draft: Annotated[str, Field(max_length=64)] = ""
 
@@ -44,7 +47,7 @@ def editor_routes(
     checking: Checking,
     drafts: Drafts,
 ) -> APIRouter:
-    """Return the routes of the editor: its page, the checks, the preview, imports, and saving."""
+    """Return the routes of the editor for exercise files."""
     router = APIRouter(prefix="/tutor")
 
     @router.get("/editor")
@@ -72,7 +75,8 @@ def editor_routes(
 
     @router.post("/check")
     async def check(request: Request) -> Response:
-        """Return the findings on a text, which is not stored."""
+        """Return the findings on the text of an exercise file."""
+        # The text is not stored.
         body = await read_body(CheckRequest, request)
         language = language_of(request)
         content = await work.do(partial(checking.checked, body, language))
@@ -80,7 +84,8 @@ def editor_routes(
 
     @router.post("/import")
     async def import_robot(request: Request) -> Response:
-        """Return the text of an exercise file for a robot; the text is not stored."""
+        """Return the text of an exercise file for an imported robot."""
+        # The text is not stored.
         body = await read_body(ImportRequest, request)
         language = language_of(request)
         content = await work.do(partial(imported, body, language))
@@ -88,14 +93,14 @@ def editor_routes(
 
     @router.post("/drafts")
     async def draft(request: Request) -> Response:
-        """Store the text as a draft for the preview, and return the draft's id."""
+        """Store a draft of an exercise for the preview, and return the draft's id."""
         body = await read_body(DraftRequest, request)
         draft_id = await work.do(partial(_put, drafts, body))
         return JSONResponse({"draft": draft_id}, headers=NO_STORE)
 
     @router.post("/files")
     async def save(request: Request) -> Response:
-        """Save a file in the editor's folder."""
+        """Save an exercise file in the editor's folder."""
         if folder.can_write and not is_at_the_machine(request):
             raise ProblemError(
                 HTTPStatus.FORBIDDEN,
@@ -109,7 +114,7 @@ def editor_routes(
 
 
 def _put(drafts: Drafts, body: DraftRequest) -> str:
-    """Store a draft and return its id. Raises ProblemError if the text cannot be used."""
+    """Store a draft of an exercise, and return the draft's id. Raises ProblemError."""
     try:
         exercise_of(body.id, body.text)
         return drafts.put(body.text, body.draft)

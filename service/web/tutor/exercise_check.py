@@ -1,4 +1,4 @@
-"""The findings of ``exercises check`` on a text in the editor, and a preview of the exercise."""
+"""Check the text of an exercise file in the editor, and preview the exercise."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -36,7 +36,7 @@ class CheckRequest(BaseModel):
 
 @dataclass(frozen=True, slots=True)
 class FileFinding:
-    """One finding of the checks: ``level`` is unusable, failed or warning."""
+    """A problem in an exercise file: ``level`` is unusable, failed or warning."""
 
     level: str
     field: str
@@ -57,7 +57,7 @@ class ExercisePreview:
 
 @dataclass(frozen=True, slots=True)
 class CheckAnswer:
-    """The findings, and a preview if the file can be used."""
+    """The findings on an exercise file, and a preview if the file can be used."""
 
     findings: tuple[FileFinding, ...]
     summary: str
@@ -68,12 +68,13 @@ _ANSWER: Final = TypeAdapter(CheckAnswer)
 
 
 def checked(body: CheckRequest, language: Language = ENGLISH) -> bytes:
-    """Return the CheckAnswer for a request as JSON."""
+    """Return the findings on an exercise file as JSON."""
     return _ANSWER.dump_json(check(body.id, body.text, language))
 
 
 def check(exercise_id: str, text: str, language: Language = ENGLISH) -> CheckAnswer:
-    """Return the findings of ``exercises check`` on a file with this text."""
+    """Return the findings on an exercise file with this text."""
+    # The same as those of ``exercises check``.
     # Imported here, because it loads an algebra system.
     from service.authoring import examine, summary
 

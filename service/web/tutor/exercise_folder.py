@@ -31,17 +31,19 @@ _LONGEST_START: Final = 50
 
 
 class SaveRequest(CheckRequest):
-    """The text to save; ``before`` is the hash of the file that the text replaces, or ""."""
+    """The text of an exercise file to save.
+
+    ``before`` is the hash of the file that it replaces, or "".
+    """
 
     before: Annotated[str, Field(max_length=64)] = ""
 
 
 @dataclass(frozen=True, slots=True)
 class OpenedFile:
-    """The text of an exercise file.
+    """The text of an exercise file, and the hash of the file."""
 
-    ``mark`` is the hash of the file, or "" if the file is not in the editor's folder.
-    """
+    # ``mark`` is the hash, or "" if the file is not in the editor's folder.
 
     text: str
     mark: str
@@ -61,7 +63,8 @@ class ExerciseFolder:
         return self._written is not None
 
     def opened(self, exercise_id: str) -> OpenedFile | None:
-        """Return the file of an exercise, preferably from the editor's own folder, or None."""
+        """Return the file of an exercise, or None."""
+        # A file in the editor's own folder is preferred.
         if not is_exercise_id(exercise_id):
             return None
         own = self._own(exercise_id)
@@ -73,7 +76,7 @@ class ExerciseFolder:
         return OpenedFile(read_regular(found, _LARGEST).decode(errors="replace"), "")
 
     def free_id(self, exercise_id: str) -> str:
-        """Return an id for a copy of an exercise; no other file has this id."""
+        """Return an unused id for a copy of an exercise."""
         copies = (f"{exercise_id[:_LONGEST_START]}-copy{i}" for i in chain([""], count(2)))
         taken = self._files()
         return next(each for each in copies if each not in taken and self._own(each) is None)
@@ -86,10 +89,8 @@ class ExerciseFolder:
             return {}
 
     def save(self, body: SaveRequest) -> str:
-        """Save a file and return the hash of its content. Raises ProblemError if saving fails.
-
-        At any time, the file has either the whole old content or the whole new content.
-        """
+        """Save a file, and return the hash of its content. Raises ProblemError."""
+        # At any time, the file has either the whole old content or the whole new content.
         if self._written is None:
             raise _refused(say("This service cannot save files: DH_GRADER_EDITOR_DIR is not set."))
         if not is_exercise_id(body.id):
@@ -133,7 +134,6 @@ class ExerciseFolder:
             written.unlink(missing_ok=True)
 
     def _own(self, exercise_id: str) -> bytes | None:
-        """Return the content of a file in the editor's own folder, or None. Raises OSError."""
         if self._written is None:
             return None
         try:

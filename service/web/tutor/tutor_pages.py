@@ -1,4 +1,4 @@
-"""Tutors' pages as HTML."""
+"""The pages for tutors as HTML."""
 
 from typing import Any, Final
 
@@ -27,10 +27,8 @@ def tutor_page(
     has_platforms: bool = False,
     signed_in: bool = False,
 ) -> bytes:
-    """Return the page with links to all pages for tutors.
-
-    Without ``of_all``, it has no links to the editor and the report on a class.
-    """
+    """Return the home page of tutors, with links to all pages for tutors."""
+    # Without ``of_all``, it has no links to the editor and the report on a class.
     return _page(
         "home",
         assets,
@@ -47,10 +45,8 @@ def tutor_page(
 def solution_page(
     exercise: Exercise, assets: Assets, language: Language, *, of_all: bool = True
 ) -> bytes:
-    """Return the page with the correct answer to each part, and the steps of the solution.
-
-    Without ``of_all``, it has no link to the editor.
-    """
+    """Return the page with the correct answers to an exercise, and the steps to find them."""
+    # Without ``of_all``, it has no link to the editor.
     exercise = in_language(exercise, language)
     solution = solve(exercise)
     pose, answered = solution.pose, [part.text for part in solution.parts]
@@ -75,7 +71,7 @@ def solution_page(
 def misconceptions_page(
     exercise: Exercise, catalogue: Catalogue, assets: Assets, language: Language
 ) -> bytes:
-    """Return the page that lists the mistakes that the grader can name, and their messages."""
+    """Return the page with all mistakes that the grader can name in an exercise."""
     # Imported here, because it loads an algebra system.
     from service.authoring.misconceptions import misconceptions_of
 
@@ -119,7 +115,7 @@ def editor_page(
 
 
 def class_page(catalogue: Catalogue, assets: Assets, language: Language) -> bytes:
-    """Return the page with the form to choose an exercise and files, and a frame for reports."""
+    """Return the page on which a tutor uploads the files of a class."""
     exercises = [in_language(each, language) for each in catalogue.values()]
     return _page("class", assets, "../", "class.js", language=language, exercises=exercises)
 
@@ -137,7 +133,7 @@ def _page(name: str, assets: Assets, root: str, *scripts: str, **values: Any) ->
 
 
 def _table_of(latex: str) -> tuple[list[str], list[tuple[str, list[str]]]]:
-    """Return a LaTeX table's column names, and its rows as pairs of a label and the cells."""
+    """Return the column names of a LaTeX table, and its rows as pairs of label and cells."""
     lines = [line.removesuffix(r" \\") for line in latex.split("\n") if line.endswith(r" \\")]
     names, *rows = ([cell.strip("$") for cell in line.split(" & ")] for line in lines)
     return names, [(label, cells) for label, *cells in rows]

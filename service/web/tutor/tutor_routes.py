@@ -1,4 +1,4 @@
-"""The routes of a tutor's pages: solutions, the editor, the report on a class."""
+"""The routes of the pages for tutors, and of their files."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -36,13 +36,14 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 @dataclass(frozen=True, slots=True)
 class Tutoring:
-    """The settings of the tutor's pages.
+    """The settings of the pages for tutors.
 
-    ``access`` decides who sees solutions, ``folders`` have the exercise files, and the editor saves
-    in ``editor_dir``. ``records`` is true if the service records attempts, in ``store``.
-    ``checking`` checks the text in the editor. ``drafts`` has the exercises in the preview.
-    ``feedback`` is the highest feedback level for students.
+    ``access`` decides who sees solutions. ``records`` is True if attempts are recorded, in
+    ``store``. ``feedback`` is the highest feedback level for students.
     """
+
+    # ``folders`` have the exercise files, and the editor saves in ``editor_dir``. ``checking``
+    # checks the text in the editor. ``drafts`` has the exercises in the preview.
 
     access: Access
     folders: Sequence[Path] = field(default=())
@@ -55,7 +56,8 @@ class Tutoring:
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the routes of the tutor's pages, and the routes that these pages call."""
+    """Return the routes of the pages for tutors."""
+    # And the routes that these pages call.
     access = tutoring.access
 
     router = APIRouter(include_in_schema=False)
@@ -71,10 +73,8 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     @router.get("/tutor")
     async def home(request: Request) -> Response:
-        """Return the tutors' home page.
-
-        If the caller's key is restricted to some exercises, the page shows only these.
-        """
+        """Return the home page of tutors."""
+        # If the caller's key is restricted to some exercises, the page shows only these.
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
         content = tutor_page(
@@ -97,7 +97,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}")
     async def solution(request: Request, exercise_id: str) -> Response:
-        """Return the page with an exercise's model solution."""
+        """Return the page with the correct answers to an exercise."""
         exercise = exercise_or_404(catalogue, exercise_id)
         of_all = access.caller(request).reaches_all
         language = language_of(request)
@@ -120,7 +120,8 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:
-        """Return a drawing of the robot and of the frames of its correct table."""
+        """Return a drawing of the robot with its frames."""
+        # The frames are those of its correct table.
         exercise = exercise_or_404(catalogue, exercise_id)
         if not isinstance(exercise.reference, Robot):
             raise ProblemError(HTTPStatus.NOT_FOUND, say("The exercise has no frames to draw."))

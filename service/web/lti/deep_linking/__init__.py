@@ -1,1 +1,1 @@
-"""The page on which a tutor chooses exercises for links of the platform (deep linking)."""
+"""Deep linking: a page on which a tutor chooses exercises, to make links on the platform."""

@@ -1,4 +1,4 @@
-"""Deep linking: make links for the platform from what a tutor has chosen in a form."""
+"""Make links on the learning platform from what a tutor has chosen in a form (deep linking)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -25,16 +25,17 @@ _LONGEST_LINE: Final = 200
 
 
 class NotYetError(Exception):
-    """The tutor's choice gives no links yet; the message says why."""
+    """The values in the tutor's form do not make links yet; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Offer:
-    """The choices of a tutor who makes links: exercises, or an assignment of the course.
+    """What a tutor can choose from to make links: exercises, or the course's assignments.
 
-    ``assignments`` are the assignments of the course; they are empty if there is no course yet.
     ``zone`` is the time zone of the dates that the tutor enters.
     """
+
+    # ``assignments`` is empty if there is no course yet.
 
     ticket: LinkingTicket
     registration: Registration
@@ -46,7 +47,7 @@ class Offer:
 class Picked:
     """The values that a tutor has entered in the form.
 
-    ``points`` has the points of each chosen exercise; ``message`` tells the tutor about an error.
+    ``points`` has the points of each chosen exercise. ``message`` is the error message to show.
     """
 
     title: str = ""
@@ -60,12 +61,12 @@ class Picked:
     message: str = ""
 
     def with_message(self, message: str) -> "Picked":
-        """Return a copy of the form's fields with this error message."""
+        """Return a copy of the form's values with this error message."""
         return replace(self, message=message)
 
 
 def offer_of(connection: Connection, ticket: LinkingTicket, known: Registration) -> Offer:
-    """Return what the tutor can choose for the ticket of a deep linking message."""
+    """Return what the tutor with this ticket can choose from."""
     if not ticket.course:
         return Offer(ticket, known, zone_named(known.zone))
     try:
@@ -77,7 +78,7 @@ def offer_of(connection: Connection, ticket: LinkingTicket, known: Registration)
 
 
 def picked_in(fields: Mapping[str, list[str]]) -> Picked:
-    """Return the values in the fields of the form."""
+    """Return the values that a tutor has entered in the form."""
 
     def line(name: str) -> str:
         return " ".join(fields.get(name, [""])[0].split())[:_LONGEST_LINE]
@@ -96,7 +97,7 @@ def picked_in(fields: Mapping[str, list[str]]) -> Picked:
 
 
 def links_of(picked: Picked, offer: Offer, catalogue: Mapping[str, Exercise]) -> Sequence[NewLink]:
-    """Return the links that a tutor has asked for. Raises NotYetError."""
+    """Return the links for the values in a tutor's form. Raises NotYetError."""
     known = {} if offer.ticket.notices_url else {each.id: each for each in offer.assignments}
     there = [known[name] for name in dict.fromkeys(picked.assignments) if name in known]
     links = [
@@ -138,7 +139,6 @@ def _of_exercises(
 
 
 def _checked(picked: Picked, points: Sequence[tuple[str, str]]) -> NewAssignment:
-    """Return the assignment of a form, with a placeholder as its id. Raises NotYetError."""
     fields: dict[str, Any] = {"id": "new", "title": picked.title or "Exercises"}
     fields["exercises"] = [{"exercise": name, "points": worth} for name, worth in points]
     fields |= {name: value for name in ("opens", "due") if (value := getattr(picked, name))}

@@ -1,4 +1,4 @@
-"""The route of the picker's form: search for exercises, send links to the platform, or cancel."""
+"""The route of the form on which a tutor searches for exercises, and makes links to them."""
 
 import asyncio
 import logging
@@ -39,7 +39,8 @@ _REFERRER: Final = {"Referrer-Policy": "strict-origin"}
 
 
 def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the route of the form. ``answered`` makes an error page from an LtiError."""
+    """Return the route of the form on which a tutor chooses exercises."""
+    # ``answered`` makes an error page from an LtiError.
     router = APIRouter(prefix="/lti")
     store, secret = landings.store, landings.secret
 
@@ -62,10 +63,8 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
 
     @router.post("/links")
     async def pick(request: Request) -> Response:
-        """Search for exercises, send the chosen links to the platform, or cancel.
-
-        A tutor who cancels also returns to the platform, but without links.
-        """
+        """Search for exercises, send the chosen links to the platform, or cancel."""
+        # A tutor who cancels also returns to the platform, but without links.
         fields = form_lists(await request.body())
         text = fields.get("ticket", [""])[0]
         language = language_of(request, fields.get("locale", [""])[0])
@@ -96,7 +95,7 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
 
 
 def _ask_for_notices(landings: Landings, known: Registration, url: str) -> None:
-    """Ask the platform to send us notices of handed-in files. Raises NotYetError."""
+    """Ask the platform to notify us of files that students hand in. Raises NotYetError."""
     try:
         landings.platform_files.ask_for_notices(known, url)
     except ScoreError as error:
@@ -110,7 +109,6 @@ def _ask_for_notices(landings: Landings, known: Registration, url: str) -> None:
 
 
 def _offer(connection: Connection, ticket: LinkingTicket) -> Offer:
-    """Return what a tutor with this ticket can choose. Raises LtiError."""
     try:
         known = registration(connection, ticket.registration)
     except RegistrationError as error:

@@ -1,4 +1,4 @@
-"""The pages of deep linking: the picker, and the form that sends the links to the platform."""
+"""The page on which a tutor chooses exercises, and the form that sends links to the platform."""
 
 from service.api.http.lookup import Catalogue
 from service.translations import Language
@@ -16,7 +16,8 @@ def picker_page(
     assets: Assets,
     language: Language,
 ) -> bytes:
-    """Return the form on which a tutor chooses exercises; it works without scripts."""
+    """Return the page on which a tutor chooses exercises."""
+    # It works without scripts.
     chosen = picked.points or {}
     return lti_page(
         "picker.html",
@@ -34,6 +35,6 @@ def picker_page(
 
 
 def return_page(address: str, response: str, assets: Assets, language: Language) -> bytes:
-    """Return the page that posts the signed ``response`` to the platform."""
+    """Return the page that sends the signed ``response`` to the platform."""
     values = {"address": address, "response": response}
     return lti_page("return.html", assets, ["send_form.js"], language=language, **values)

@@ -1,1 +1,1 @@
-"""Files that students hand in at the platform: the notices about them, and the reports on them."""
+"""Grade files that students hand in on the learning platform."""

@@ -1,4 +1,6 @@
-"""The route to which platforms send signed notices, without a login and without a browser."""
+"""The route to which platforms send signed notices that a student has handed in a file."""
+
+# Without a login and without a browser.
 
 import logging
 from collections.abc import Mapping
@@ -29,27 +31,25 @@ _MOST: Final = 50
 
 
 class SignedNotice(BaseModel):
-    """A notice, as platforms send it."""
+    """A signed notice from a learning platform."""
 
     jwt: str
 
 
 class Notices(BaseModel):
-    """The body of the request; platforms send several notices at once."""
+    """The body of a request with several notices from a learning platform."""
 
     notices: Annotated[list[SignedNotice], Field(min_length=1, max_length=_MOST)]
 
 
 def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> APIRouter:
-    """Return the route that accepts notices."""
+    """Return the route that accepts notices from learning platforms."""
     router = APIRouter(prefix="/lti")
 
     async def accept(token: str, refusals: dict[str, str]) -> None:
-        """Queue the files of a notice. Raises LtiError.
-
-        If the notice is of a registered platform, store the name of an error in ``refusals``, at
-        the id of the registration.
-        """
+        # Queue the files of a notice. Raises LtiError.
+        # If the notice is of a registered platform, store the name of an error in ``refusals``, at
+        # the id of the registration.
         key_id, now = key_id_of(token), datetime.now(UTC)
         parties = parties_of(token)
         known = await read(store, lambda it: find_registration(it, *parties))
@@ -64,7 +64,7 @@ def notice_routes(store: AttemptStore, secret: Secret, keys: PlatformKeys) -> AP
 
     @router.post("/notices")
     async def notices(request: Request) -> Response:
-        """Accept notices of a platform. If one notice is refused, the others are still accepted."""
+        """Accept the notices in a request, even if one of them is refused."""
         body = await read_body(Notices, request)
         refused: list[dict[str, str]] = []
         refusals: dict[str, str] = {}

@@ -1,6 +1,6 @@
-"""The page with the report on files that a student has handed in at the platform.
+"""The page with the report on files that a student has handed in at the learning platform.
 
-The files are not stored here: the page reads them at the platform, and grades them once more.
+The files are not stored here: each time, they are read from the platform and graded again.
 """
 
 import asyncio
@@ -48,7 +48,7 @@ class ReportPages:
         self._catalogue, self._feedback, self._platform = catalogue, feedback, platform
 
     async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
-        """Return the page that the message opens: a report, or the settings. Raises LtiError."""
+        """Return the page that the platform's message asks for. Raises LtiError."""
         now = datetime.now(UTC)
 
         def found(connection: Connection) -> HandedFiles | None:
@@ -99,7 +99,6 @@ class ReportPages:
 
 
 def _id_in(claims: Mapping[str, Any], name: str) -> str:
-    """Return the id in the LTI claim ``name``. Raises LtiError."""
     claim = claims.get(f"{LTI}{name}")
     found = claim.get("id") if isinstance(claim, dict) else None
     if not isinstance(found, str) or not 0 < len(found) <= 255:

@@ -1,1 +1,3 @@
-"""The pages on which a platform's admin registers the platform by invitation."""
+"""The pages on which the admin of a learning platform registers the platform."""
+
+# By invitation.

@@ -1,4 +1,6 @@
-"""The routes of dynamic registration: the platform opens the link that an admin has pasted."""
+"""The routes by which a learning platform registers itself here (dynamic registration)."""
+
+# The platform opens the link that an admin has pasted.
 
 import asyncio
 from collections.abc import Mapping
@@ -28,7 +30,7 @@ _FIELDS: Final = ("invitation", "openid_configuration", "registration_token")
 
 
 def joining_forms(landings: Landings) -> APIRouter:
-    """Return the routes of dynamic registration."""
+    """Return the routes by which a learning platform registers itself here."""
     router = APIRouter(prefix="/lti")
     store = landings.store
 
@@ -47,7 +49,8 @@ def joining_forms(landings: Landings) -> APIRouter:
 
     @router.get("/register")
     async def ask(request: Request) -> Response:
-        """Return the page that asks the platform's admin to continue; nothing is fetched yet."""
+        """Return the page that asks the platform's admin to continue."""
+        # Nothing is fetched yet.
         fields = {name: request.query_params.get(name, "") for name in _FIELDS}
         now = datetime.now(UTC)
         try:
@@ -64,7 +67,7 @@ def joining_forms(landings: Landings) -> APIRouter:
 
     @router.post("/register")
     async def register(request: Request) -> Response:
-        """Register the platform, and return the page that says whether this has worked."""
+        """Register the platform, and return a page with the result."""
         given = await form_fields(request)
         fields = {name: given.get(name, "") for name in _FIELDS}
         if not is_same_origin(request):
@@ -88,11 +91,8 @@ def joining_forms(landings: Landings) -> APIRouter:
 async def _registered(
     landings: Landings, invitation: Invitation, fields: Mapping[str, str]
 ) -> Registration:
-    """Return the new registration of an invited platform. Raises RegistrationError.
-
-    After an error, the invitation is valid as before.
-    """
-
+    # Return the new registration of an invited platform. Raises RegistrationError.
+    # After an error, the invitation is valid as before.
     def joined(connection: Connection) -> Registration:
         now = datetime.now(UTC)
         ensure_key(connection, landings.secret, now)

@@ -1,1 +1,1 @@
-"""Import robots into the exercise editor."""
+"""Import robots into the editor for exercise files."""

@@ -24,7 +24,7 @@ _ROBOT: Final = TypeAdapter(ImportedRobot)
 
 
 class ImportRequest(BaseModel):
-    """A robot as text, and the author's choices."""
+    """A robot as text (URDF or a DH table), and the author's choices."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -39,7 +39,7 @@ class ImportRequest(BaseModel):
 
 
 def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
-    """Return an exercise for a robot as JSON. Raises ProblemError if the robot is refused."""
+    """Return the exercise file for a robot, as JSON. Raises ProblemError."""
     if not is_exercise_id(body.id):
         raise _refused(say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE))
     options = ImportOptions(
