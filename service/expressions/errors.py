@@ -6,7 +6,7 @@
 
     UnreadableError      the place where the reader stopped; internal, because
                          ``repairs.explain`` turns it into an ExpressionError
-    Note                 not an error: the text was read, but it has another possible reading
+    Note                 not an error: the text was read, but it may mean something else
 
 Spans are [from, to) in the text that the student typed.
 """

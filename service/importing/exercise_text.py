@@ -106,7 +106,7 @@ def _answer(rows: Sequence[Row[str]]) -> str:
 
 
 def _equivalent_check(robot: HomeRobot, convention: Convention) -> str:
-    """Return a check whose answer is the table with x1 reversed."""
+    """Return a check with another valid table, in which x1 is reversed."""
     # This table is valid, too.
     if len(robot.table) < _ROWS_TO_TURN:
         return ""
@@ -148,7 +148,7 @@ def variable_names(structure: str) -> list[str]:
 
 
 def without_clashes(robot: HomeRobot) -> Letters:
-    """Return the letters of the robot, with h3 as the constant length d of a sliding joint 3."""
+    """Return the letters of the robot's lengths; for a sliding joint, h3 instead of d3."""
     # d3 is the joint variable.
     sliding = {i for i, kind in enumerate(robot.structure) if kind == "P"}
     return {

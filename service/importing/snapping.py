@@ -17,7 +17,7 @@ _LENGTH_DECIMALS: Final = 5
 
 
 def snapped_angle(text: str) -> float:
-    """Return an angle in radians, as the exact multiple of 15° if it is a rounded one.
+    """Return an angle in radians; a rounded multiple of 15° becomes exact.
 
     >>> snapped_angle("1.57") == math.pi / 2, snapped_angle("1.6")
     (True, 1.6)

@@ -1,7 +1,7 @@
 """Keep the variants of an assignment when an exercise file is corrected.
 
 The table ``[vary]`` of a file says which numbers its variants may have. An assignment stores a copy
-of this table, its "choices", and uses it instead of the table in the file.
+of this table and uses it instead of the file's table.
 """
 
 import json

@@ -81,7 +81,7 @@ def variant_of(exercise: Exercise, seed: str) -> Exercise:
 
 
 def values_of(version: str) -> str:
-    """Return the part of a variant's version that changes only with the variant's values."""
+    """Return the part of a variant's version that depends only on the variant's values."""
     return version.partition("-")[2]
 
 

@@ -1,4 +1,4 @@
-"""The static files of the pages, each with a hash of its content in its served name.
+"""The static files of the pages, which are served under names with a hash of the content.
 
 A changed file gets another name, so browsers may cache each file without a limit. All files are
 served from one folder, so no two of them may have the same name.

@@ -1,4 +1,6 @@
-"""The translations of the sentences in scripts, as a file for each language but English."""
+"""Translate the sentences in the pages' scripts: one dictionary for each language."""
+
+# English needs none.
 
 import json
 import re
@@ -23,7 +25,7 @@ class ScriptSentences(NamedTuple):
 
 
 def sentences_in(scripts: Iterable[str]) -> ScriptSentences:
-    """Return the sentences of all scripts."""
+    """Return the English sentences in all scripts."""
     # A vendored library is larger than all own scripts and has none.
     own = [script for script in scripts if "worded" in script]
     plain = (_unquoted(match[1]) for script in own for match in _WORDED.finditer(script))

@@ -46,8 +46,7 @@ class Decimals:
     def shifted(self, shifts: NDArray[np.float64], values: SymbolValues) -> SampleArray:
         """Return the formula's values ``(K, samples)``, one row for each row of ``shifts``.
 
-        ``shifts`` ``(K, m)`` are added to the decimals, as multiples of 1 in a decimal's last
-        place.
+        ``shifts`` ``(K, m)`` says how much to add to each decimal, in units of its last place.
         """
         # The shape is ``(K, 1)`` if the formula has no symbols. Undefined values are NaN or
         # infinite, without warnings.
@@ -102,7 +101,8 @@ def _with_names(node: Node, found: list[Number]) -> Node:
 
 
 def _unit(literal: str) -> float:
-    """Return 1 in the last place of a decimal of three or more figures (0.01 for 1.57), else 0."""
+    """Return 1 in the last place of a decimal: 0.01 for 1.57. Return 0 for a short decimal."""
+    # A short decimal has less than three figures.
     # Leading zeros are not figures.
     mantissa, _, exponent = literal.lower().partition("e")
     whole, _, fraction = mantissa.partition(".")

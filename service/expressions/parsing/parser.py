@@ -1,4 +1,4 @@
-r"""Tokens -> a syntax tree, by recursive descent.
+r"""Parse tokens into a syntax tree, by recursive descent.
 
 In the grammar, a word in capitals is a token, and { } may be repeated or left out:
 
@@ -17,7 +17,7 @@ In the grammar, a word in capitals is a token, and { } may be repeated or left o
 ``JOIN`` is a product without a sign: ``2q1``, ``l1 c1``, ``a(b)``. ``TIGHT`` is such a product in
 the argument of a function without brackets: ``sin 2q1`` is ``sin(2q1)``. A function without
 brackets takes one operand, so ``sin q1 * l1`` is ``sin(q1)*l1``. ``OPEN`` and ``CLOSE`` enclose a
-fraction that is one operand, ``½`` or ``\frac{a}{b}``. A power of a power has two readings, so
+fraction that is one operand, ``½`` or ``\frac{a}{b}``. A power of a power is ambiguous, so
 ``2^3^2`` is not in the grammar.
 
 Only brackets are parsed by recursion, and the lexer allows at most ``LIMITS.depth`` open brackets.

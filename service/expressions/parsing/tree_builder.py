@@ -157,7 +157,7 @@ class Builder:
         return Unit(operand, unit, *span)
 
     def group(self, start: int, inner: Node, end: int) -> Node:
-        """Build (inner), whose span includes the brackets."""
+        """Build (inner): the same node, but its span includes the brackets."""
         inner.start, inner.end = start, end
         self.grouped.add(id(inner))
         return inner
@@ -240,7 +240,7 @@ class Builder:
         return id(node) not in self.grouped and id(node) not in self.barred
 
     def _note_degrees(self, left: Node, right: Node) -> None:
-        """Note a sum such as 90 + 45°, in which only one number is in degrees."""
+        """Add a note on a sum such as 90 + 45°, in which only one number is in degrees."""
         for one, other in ((left, right), (right, left)):
             number = other.operand if type(other) is Negation else other
             if type(one) is not Unit or one.unit != "deg" or type(number) is not Number:
@@ -254,7 +254,7 @@ class Builder:
                 self._note("mixed_units", message, number.start, number.end)
 
     def _note_order(self, y: Node, x: Node, start: int, end: int) -> None:
-        """Note atan2(c1, s1) or atan2(x, y), whose arguments seem to be swapped."""
+        """Add a note on atan2(x, y), whose arguments seem to be swapped."""
         first, second = _names(y), _names(x)
         for ours, theirs in (("sin", "cos"), ("y", "x")):
             if theirs in first and ours in second and not {ours} & first and not {theirs} & second:
@@ -283,7 +283,7 @@ class Builder:
         self._note("bare_argument", message, start, end)
 
     def _note_bare(self, left: Node) -> None:
-        """Note a function without brackets at the end of ``left``: sin q1/2 is (sin q1)/2."""
+        """Add a note on sin q1/2, which is read as (sin q1)/2."""
         last = left
         while type(last) is Binary and self._is_open(last) and last.right.end == last.end:
             last = last.right

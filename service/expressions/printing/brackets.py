@@ -1,7 +1,7 @@
 """The rule for brackets that all three printers share.
 
-An operand needs brackets if it binds less tightly than its place requires, or if its sign would
-follow an operator. In a drawn formula (LaTeX, MathML), a fraction bar replaces brackets.
+An operand needs brackets if it binds less tightly than the operator next to it, or if its sign
+would follow that operator. In a drawn formula (LaTeX, MathML), a fraction bar replaces brackets.
 """
 
 # A drawn formula needs more brackets than text for the base of a power, because ``90°`` and

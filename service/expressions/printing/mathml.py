@@ -98,7 +98,8 @@ def _variable(symbol: Symbol) -> str:
 
 
 def scripted(base: str, below: str, above: str) -> str:
-    """Return the element of a name with an index and a superscript, each in LaTeX or plain text."""
+    """Return the MathML element of a name with an index and a superscript."""
+    # Each of them is LaTeX or plain text.
     parts = [_identifier(base), *(_identifier(_unbraced(part)) for part in (below, above) if part)]
     if len(parts) == 1:
         return parts[0]

@@ -1,4 +1,4 @@
-"""sin45: the sine of a number or of the sum of joint angles 4 and 5."""
+"""The text sin45, which may be the sine of 45 or of the sum of the joint angles 4 and 5."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""acosd and rad2deg, which return degrees, if angles are in radians."""
+"""Functions such as acosd and rad2deg, which return degrees, in a text with radians."""
 
 import re
 

@@ -1,4 +1,4 @@
-"""An equation that is not a name and its value: sin(q1) = 0.5, a = b = c."""
+"""An equation in place of a value: sin(q1) = 0.5, a = b = c."""
 
 import re
 

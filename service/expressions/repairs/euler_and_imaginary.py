@@ -1,4 +1,4 @@
-"""The letters e, i and j in a formula, where they are no constants."""
+"""The letters e, i and j, which are not constants in a formula."""
 
 import re
 

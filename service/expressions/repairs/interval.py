@@ -12,7 +12,7 @@ _LIST = re.compile(r"\s*(?:\[[^\[\]()]*,[^\[\]()]*[\])]|\([^\[\]()]*,[^\[\]()]*\
 
 
 def repair(failure: Failure) -> Repair:
-    """Ask for one value."""
+    """Ask the student for one value."""
     match = _LIST.fullmatch(failure.source) or _BETWEEN.search(failure.source)
     if match is None:
         return None

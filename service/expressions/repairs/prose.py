@@ -18,7 +18,7 @@ _NUMBERS = {"zero": "0", "one": "1", "two": "2", "ninety": "90", "half": "1/2", 
 
 
 def repair(failure: Failure) -> Repair:
-    """Ask for a number or a formula."""
+    """Ask the student for a number or a formula."""
     text = failure.source.strip().lower()
     number = _NUMBERS.get(text)
     if text not in _PHRASES and number is None and not _is_prose(failure):

@@ -6,7 +6,7 @@ from service.translations import say
 
 @for_causes("values", "grammar")
 def repair(failure: Failure) -> Repair:
-    """Ask for one value, or for an operator between the two values."""
+    """Ask the student for one value, or for an operator between the two values."""
     start, end = failure.span
     if failure.terminal(1) and failure.terminal() != "COMMA":
         start = failure.place(1)[0]

@@ -23,8 +23,8 @@ class Symbol:
     """A declared symbol.
 
     ``name`` is its canonical ASCII name, such as theta1. ``aliases`` are its other names. ``joint``
-    is the index of the joint of which the symbol is the variable, or None. ``latex`` overrides the
-    LaTeX that is derived from the name.
+    is the index of a joint if the symbol is its variable, else None. ``latex`` overrides the LaTeX
+    that is derived from the name.
     """
 
     # Values of angles are radians. Greek spellings and subscripts need no alias. A joint variable

@@ -37,7 +37,7 @@ class SourceText:
         )
 
     def span(self, start: int = 0, end: int | None = None) -> Span:
-        """Return the place in the typed text of the characters [start, end)."""
+        """Return where the characters [start, end) are in the typed text."""
         length = len(self.text)
         start = min(max(start, 0), length)
         stop = start if end is None else min(max(end, start), length)

@@ -1,4 +1,4 @@
-"""Cells between bars: Markdown, with or without the line of dashes, and drawn tables."""
+"""Cells between vertical bars: tables in Markdown, and drawn tables."""
 
 import re
 from typing import Final

@@ -126,7 +126,7 @@ def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...
 def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
     """Return the note on numbers that a script assigns to letters.
 
-    ``read`` are the letters in the cells. Raises GridError if one of them has another value.
+    ``read`` are the letters in the cells. Raises GridError if the value of one is not a number.
     """
     # That is, a value that is not a plain number.
     for each in given:

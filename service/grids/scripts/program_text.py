@@ -112,7 +112,6 @@ def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
 
 
 def _without_forms(source: SourceText) -> SourceText:
-    """Return the matrix without Mathematica's functions that only change its form."""
     for _ in range(_MOST_FORMS):
         form = _FORM_AFTER.search(source.text, len(source.text) - 24)
         if form is None:

@@ -30,7 +30,7 @@ class JointType(StrEnum):
 
 @dataclass(slots=True)
 class RobotLink:
-    """A link as the script writes it. ``cells`` maps names of parameters to their texts."""
+    """A robot link as a script writes it. ``cells`` maps names of parameters to their texts."""
 
     # If ``joint`` is None, one of the cells contains the joint variable.
 

@@ -83,10 +83,11 @@ def describes_robot(text: str) -> bool:
 
 
 def read_script(source: SourceText) -> RobotTable | None:
-    """Return the DH table of the robot in a script; None if only comments name a link.
+    """Return the DH table of the robot in a script, or None.
 
     Raises GridError for several robots, or if the table is not certain.
     """
+    # None if only comments name a link.
     script = _Script()
     found = statements(source)
     if not any(_WORD.search(statement.text) for statement in found):
@@ -289,7 +290,7 @@ class _Script:
         check_count(self.placed, statement)
 
     def robot_links(self, source: SourceText) -> list[RobotLink]:
-        """Return the robot's links in order. Raises GridError if the order is not certain."""
+        """Return the robot's links in order. Raises GridError if their order is not certain."""
         if self.placed:
             if self.robot or self.names.links or self.unnamed:
                 raise too_many_robots(source)

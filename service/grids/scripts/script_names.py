@@ -102,7 +102,7 @@ class ScriptNames:
             raise too_many_rows(statement.whole)
 
     def links_of(self, source: SourceText) -> list[RobotLink] | None:
-        """Return the robot links in an expression, or None."""
+        """Return the robot links that an expression lists, or None."""
         link = read_link(source, self.vector)
         if link is not None:
             return [link]
@@ -152,7 +152,7 @@ class ScriptNames:
         return stripped
 
     def links_of_matrix(self, source: SourceText, *, modified: bool) -> list[RobotLink] | None:
-        """Return the links of ``SerialLink([theta d a alpha; …])``, or None."""
+        """Return the robot links that ``SerialLink([theta d a alpha; …])`` makes, or None."""
         # None if there is no matrix, or if it lists links that are not all known.
         rows = self._matrix(source)
         if not rows or any(map(self._lists_links, rows)):

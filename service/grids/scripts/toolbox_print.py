@@ -55,7 +55,7 @@ def describes_print(text: str) -> bool:
 
 
 def read_print(source: SourceText) -> RobotTable:
-    """Return the table of the printed robot. Raises GridError if it is not certain."""
+    """Return the table of the printed robot. Raises GridError if the table is not certain."""
     # GridError if there are several robots, if the table is incomplete, or if the robot has a base
     # or a tool.
     found = list(_FIRST_LINE.finditer(source.text))

@@ -79,8 +79,9 @@ def binding_page(
 ) -> bytes:
     """Return the page for a browser that has not sent the cookie of its login.
 
-    Without ``storage``, the page has only a button that opens ``window`` in a new window.
+    Without ``storage``, the page has only a button that opens the address ``window``.
     """
+    # The address opens in a window of its own.
     # ``storage`` has the frame and the origin of the platform's storage, and the name of the stored
     # secret.
     frame, origin, name = storage or ("", "", "")

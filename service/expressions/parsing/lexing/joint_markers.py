@@ -38,9 +38,10 @@ _DOTS: Final = frozenset({"·", "⋅", "×", r"\cdot", r"\times"})
 def read_star(text: str, start: int, end: int, typed: str, *, first: bool) -> Star:
     """Return how to read the * at text[start:end], which follows a joint variable.
 
-    ``typed`` is the sign as typed; a dot always multiplies. ``first`` is True if the joint variable
-    is the first factor of its term.
+    ``typed`` is the sign as typed. ``first`` is True if the variable is the first factor of its
+    term.
     """
+    # A dot always multiplies.
     if typed in _DOTS:
         return "product"
     spaced = text[start - 1].isspace()

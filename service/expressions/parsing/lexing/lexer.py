@@ -43,7 +43,7 @@ class Lexer(WordLexer):
     __slots__ = ()
 
     def run(self) -> list[Token]:
-        """Return the tokens, with END last. May raise UnreadableError."""
+        """Return the tokens; the last token is END. May raise UnreadableError."""
         text, length = self.text, len(self.text)
         position = self._plain_run(text) if self.starts is None else 0
         while position < length:

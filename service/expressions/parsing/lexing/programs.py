@@ -25,7 +25,7 @@ def degrees_function_end(text: str, at: int) -> int | None:
 
 
 def is_more_than_a_turn(text: str, at: int) -> bool:
-    """True if the number in brackets at ``text[at]`` is more than a turn in radians."""
+    """True if the number in brackets at ``text[at]`` is more than a full turn in radians."""
     return _MANY.match(text, at) is not None
 
 

@@ -105,7 +105,7 @@ class WordLexer(TokenWriter):
         return end
 
     def _is_float_suffix(self, run: str, start: int) -> bool:
-        """True if ``run`` is the suffix of a float in C: 0.5f."""
+        """True if ``run`` is the last letter of a float in C: 0.5f."""
         return (
             run == "f"
             and self.last == "NUMBER"

@@ -145,7 +145,6 @@ def _joined(first: list[tuple[Piece, ...] | None]) -> tuple[Piece, ...] | None:
 
 
 def _with_other_readings(pieces: tuple[Piece, ...], run: str) -> tuple[Piece, ...]:
-    """Return the pieces with s2 marked as ambiguous in s2θ1, which might mean sin(2θ1)."""
     if len(pieces) == 1:
         return pieces
     return tuple(
@@ -183,7 +182,7 @@ def _candidates(run: str, start: int, vocabulary: Vocabulary) -> list[tuple[Piec
 
 
 def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
-    """Return the shorthand of joint angles at ``start``, or None: c12, s3, cθ1, cosθ12, sin12."""
+    """Return the shorthand of joint angles at ``start``, such as c12 or cosθ12, or None."""
     match = _SHORTHAND.match(run, start)
     if match is None or not vocabulary.joints:
         return None
@@ -211,7 +210,7 @@ def _shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
 
 
 def _angle_shorthand(run: str, start: int, vocabulary: Vocabulary) -> Piece | None:
-    """Return the shorthand of a declared angle at ``start``, or None: cα1, sβ."""
+    """Return the shorthand of a declared angle at ``start``, such as cα1, or None."""
     function = _SHORT.get(run[start])
     if function is None or run[start] in vocabulary.by_name:
         return None

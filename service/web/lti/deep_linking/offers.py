@@ -25,7 +25,7 @@ _LONGEST_LINE: Final = 200
 
 
 class NotYetError(Exception):
-    """The values in the tutor's form do not make links yet; the message says why."""
+    """No links can be made from the tutor's form yet; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +97,7 @@ def picked_in(fields: Mapping[str, list[str]]) -> Picked:
 
 
 def links_of(picked: Picked, offer: Offer, catalogue: Mapping[str, Exercise]) -> Sequence[NewLink]:
-    """Return the links for the values in a tutor's form. Raises NotYetError."""
+    """Return the links that a tutor has chosen in a form. Raises NotYetError."""
     known = {} if offer.ticket.notices_url else {each.id: each for each in offer.assignments}
     there = [known[name] for name in dict.fromkeys(picked.assignments) if name in known]
     links = [
