@@ -1,4 +1,6 @@
-"""Estimate the cost of reading a text before it is read. Every machine gets the same result."""
+"""Estimate the cost of reading a text before it is read."""
+
+# Every machine gets the same result.
 
 import re
 from collections import Counter

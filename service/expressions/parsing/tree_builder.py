@@ -139,7 +139,7 @@ class Builder:
     def unit(self, operand: Node, unit: UnitName, end: int, start: int | None = None) -> Node:
         """Build an operand with a unit, such as 90°.
 
-        Raises UnreadableError if the operand is an angle or a length already.
+        Raises UnreadableError for a unit after an angle or a length.
         """
         # ``start`` is the place where deg2rad(…) starts. π° is also refused, but (π)deg is read.
         span = (operand.start, end)
