@@ -94,7 +94,7 @@ def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[F
     # Each numbering is a finding on it, and a map from written to correct variables.
     first = joints[0].index
     by_index = {joint.index: joint for joint in joints}
-    for start in {0, 1} - {first}:
+    for start in {0, 1, first - 1} - {first}:
         yield (
             _numbered_from(start, joints[0], spelling),
             {

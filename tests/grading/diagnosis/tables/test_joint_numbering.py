@@ -52,6 +52,12 @@ CASES: dict[str, tuple[str, Sequence[Sequence[str]], str, set[tuple[str, str]]]]
         "joint_numbering",
         {("4", "theta"), ("5", "theta"), ("6", "theta")},
     ),
+    "the wrist from 3": (
+        "spherical-wrist",
+        [(*row, f"theta{i + 3}") for i, row in enumerate(WRIST)],
+        "joint_numbering",
+        {("4", "theta"), ("5", "theta"), ("6", "theta")},
+    ),
     "turning joints by themselves": (
         "stanford-arm",
         stanford("theta1", "theta2", "0", "theta3", "theta4", "theta5"),
