@@ -88,7 +88,9 @@ def judged_once(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Ju
     notes = grading.messages((*answer.findings, *findings))
     judge_rows = _judged_wrong if judgement.wrong or judgement.slips else _judged_right
     judged = judge_rows(part, answer, convention, judgement, grading)
-    return JudgedTable(replace(judged, feedback=(*notes, *judged.feedback)), convention)
+    if notes:
+        judged = replace(judged, feedback=(*notes, *judged.feedback))
+    return JudgedTable(judged, convention)
 
 
 def _judged_right(
