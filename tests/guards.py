@@ -1,8 +1,7 @@
-"""Time limits that only guard against hangs: far longer than the slowest run on an idle machine.
+"""Time limits that only detect hangs; they do not measure speed."""
 
-These limits do not measure speed: a test must not fail because the machine is busy. If a test waits
-for a condition, the timeout of pytest is the limit (see pyproject.toml).
-"""
+# These limits do not measure speed: a test must not fail because the machine is busy. If a test
+# waits for a condition, the timeout of pytest is the limit (see pyproject.toml).
 
 from typing import Final
 

@@ -1,4 +1,4 @@
-"""Samples of long lists of cases: the suite runs a part, ``make thorough`` runs all."""
+"""Choose samples of long lists of test cases."""
 
 from collections.abc import Iterable
 
@@ -7,10 +7,8 @@ from _pytest.mark import ParameterSet
 
 
 def one_in(count: int, cases: Iterable[object]) -> list[ParameterSet]:
-    """Return test parameters: the suite runs one case in ``count``, the campaign the others.
-
-    A case with several parameters is a tuple.
-    """
+    """Return test parameters, of which the suite runs one in ``count``."""
+    # A case with several parameters is a tuple.
     return [
         pytest.param(
             *(case if isinstance(case, tuple) else (case,)),

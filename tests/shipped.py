@@ -28,15 +28,13 @@ def shipped_exercises() -> Mapping[str, Exercise]:
 
 
 def without_most_real_robots(ids: Iterable[str]) -> list[str]:
-    """Return these ids of exercises without those of real robots, except for three."""
+    # Return these ids of exercises without those of real robots, except for three.
     return [each for each in ids if each not in REAL_ROBOTS or each in _SAMPLE]
 
 
 def sampled(ids: Iterable[str], one_in: int = 1) -> list[ParameterSet]:
-    """Return parameters for a costly test: the suite runs it for one id in ``one_in``.
-
-    The campaign runs it for all other ids, and for most of the real robots.
-    """
+    """Return parameters of a costly test, which the suite runs for one id in ``one_in``."""
+    # The campaign runs it for all other ids, and for most of the real robots.
     ids = list(ids)
     kept = set(without_most_real_robots(ids)[::one_in])
     return [pytest.param(each, marks=() if each in kept else pytest.mark.campaign) for each in ids]

@@ -1,8 +1,7 @@
-"""compose.yaml uses existing settings, and its containers have no more rights than needed.
+"""Check the settings in compose.yaml, and that its containers have minimal rights."""
 
-If a container engine is installed, its `compose` reads the file. tests/load runs the same services
-without containers (two replicas, PostgreSQL, nginx with the same configuration).
-"""
+# If a container engine is installed, its `compose` reads the file. tests/load runs the same
+# services without containers (two replicas, PostgreSQL, nginx with the same configuration).
 
 import re
 import subprocess

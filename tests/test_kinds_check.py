@@ -1,4 +1,4 @@
-"""The three registries of answer kinds agree, and an incomplete kind is refused at startup."""
+"""The three registries of answer kinds agree."""
 
 import sys
 from types import ModuleType

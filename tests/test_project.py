@@ -1,4 +1,4 @@
-"""The set-up of the project: lock files, image, continuous integration, contents of the wheel."""
+"""Test the project's lock files, image, continuous integration and wheel."""
 
 import importlib.metadata
 import os
@@ -25,7 +25,7 @@ def read(name: str) -> str:
 
 
 def logical_lines(text: str) -> list[str]:
-    """Return the lines, without empty lines and comments; join continued lines."""
+    """Return the lines without comments; join continued lines."""
     lines = text.replace("\\\n", " ").splitlines()
     return [line for line in lines if line.strip() and not line.lstrip().startswith("#")]
 
@@ -71,7 +71,7 @@ def test_the_runtime_lock_satisfies_the_declared_dependencies() -> None:
 
 @pytest.mark.parametrize("lock", LOCKS)
 def test_a_lock_names_the_extras_that_locked_packages_ask_for(lock: str) -> None:
-    """If a lock with hashes pins only `name`, pip looks at newer releases for `name[extra]`."""
+    # If a lock with hashes pins only `name`, pip looks at newer releases for `name[extra]`.
     locked: dict[str, set[str]] = {}
     for pin in pins(lock):
         locked.setdefault(canonicalize_name(pin.name), set()).update(pin.extras)
@@ -204,7 +204,7 @@ def test_continuous_integration_runs_make_test() -> None:
 def test_continuous_integration_fails_if_tests_leave_a_file(
     tests: str, fails: bool, tmp_path: Path
 ) -> None:
-    """Files in the clone that were changed before the tests do not count."""
+    # Files in the clone that were changed before the tests do not count.
     clone, programs = tmp_path / "clone", tmp_path / "programs"
     (clone / ".ci").mkdir(parents=True)
     shutil.copy(ROOT / ".ci" / "run", clone / ".ci" / "run")

@@ -1,7 +1,6 @@
-"""The structure of the project: allowed imports, sizes of files and folders, places of tests.
+"""Test the structure of the project: imports, sizes, and places of tests."""
 
-The source is parsed with ``ast``, so that imports inside functions and for types count as well.
-"""
+# The source is parsed with `ast`, so that imports inside functions and for types count as well.
 
 import ast
 from collections import Counter, defaultdict
@@ -99,7 +98,6 @@ def trees() -> Mapping[str, ast.Module]:
 
 
 def imported_names(tree: ast.Module) -> Iterator[str]:
-    """Yield all imports of a module as ``package.module`` or ``package.name``."""
     for node in ast.walk(tree):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names)
@@ -123,12 +121,10 @@ def imports() -> Mapping[str, frozenset[str]]:
 
 
 def room(module: str, house: str) -> str:
-    """Return the part of a module's dotted name that follows the package ``house``."""
     return module.removeprefix(f"{house}.").partition(".")[0]
 
 
 def against_the_order(place: Mapping[str, int], house: str) -> list[str]:
-    """Return the imports in ``house`` by which a package imports one that is later in the order."""
     return [
         f"{module} imports {target}"
         for module, targets in imports().items()
@@ -192,7 +188,7 @@ def test_no_folder_is_crowded() -> None:
 
 
 def public_types(tree: ast.Module) -> Iterator[str]:
-    """Yield the public classes of a module, and its type aliases in CamelCase."""
+    """Yield the public classes and type aliases of a module."""
     for node in tree.body:
         match node:
             case ast.ClassDef(name=name):
@@ -214,12 +210,10 @@ def test_no_two_public_types_share_a_name() -> None:
 
 
 def has_home(test: Path) -> bool:
-    """True if a test file is in its place.
-
-    The tests of ``service/x/y/z.py`` are in ``tests/x/y/test_z.py``, those of the package
-    ``service/x/y`` in ``tests/x/y/test_y.py``, and those of a test helper next to the helper. In a
-    folder such as ``tests/x``, a test file with a docstring may also be about the whole package.
-    """
+    """True if a test file is in the folder that belongs to the tested code."""
+    # The tests of `service/x/y/z.py` are in `tests/x/y/test_z.py`, those of the package
+    # `service/x/y` in `tests/x/y/test_y.py`, and those of a test helper next to the helper. In a
+    # folder such as `tests/x`, a test file with a docstring may also be about the whole package.
     *folders, file = test.relative_to(TESTS).parts
     if not folders or folders[0] in SUITES:
         return True

@@ -1,4 +1,4 @@
-"""Gradings give the same reports if they take turns in time slices."""
+"""Reports are the same if gradings take turns."""
 
 import asyncio
 import threading
@@ -23,7 +23,6 @@ _NAME = ContextVar("name", default="")
 
 @pytest.fixture(autouse=True)
 def short(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let each time slice end at the next checkpoint."""
     monkeypatch.setattr(time_slices, "FIRST_SLICE", 0.0)
     monkeypatch.setattr(time_slices, "SLICE", 0.0)
 

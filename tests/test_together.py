@@ -1,4 +1,4 @@
-"""A test of many cases fails if one case fails, and names this case."""
+"""If one of many cases in a test fails, the test fails and names this case."""
 
 import pytest
 

@@ -13,11 +13,9 @@ SHOWN = 20
 def together(
     names: str | tuple[str, ...], cases: Iterable[Any]
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Run all cases in one test; report each failed case and its error.
-
-    Use this function like ``pytest.mark.parametrize``. A case with several parameters is a tuple.
-    All cases share the fixtures, so no case may change them.
-    """
+    """Run all cases in one test, and report each failed case."""
+    # Use this function like `pytest.mark.parametrize`. A case with several parameters is a tuple.
+    # All cases share the fixtures, so no case may change them.
     parameters = (names,) if isinstance(names, str) else names
     each: list[tuple[Any, ...]] = [case if isinstance(names, tuple) else (case,) for case in cases]
 

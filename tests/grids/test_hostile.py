@@ -1,4 +1,4 @@
-"""Reading any pasted text gives a grid or one GridError within a time limit."""
+"""Reading any pasted text soon gives a grid of cells or a GridError."""
 
 import time
 from collections.abc import Callable
@@ -70,7 +70,6 @@ def spans(found: Grid | Refusal) -> list[tuple[int, int]]:
 
 
 def twice(read: Callable[[str], Found], text: str) -> Found:
-    """Return ``read(text)``; fail if a second call gives another result, or if both are slow."""
     times = [time.process_time()]
     found = read(text)
     times.append(time.process_time())
@@ -88,7 +87,6 @@ def check(text: str) -> None:
 def check_places(
     text: str, one: Grid | Refusal, found: list[tuple[tuple[int, int], Grid | Refusal]] | Refusal
 ) -> None:
-    """Fail if a place is outside the text or a grid exceeds the limits."""
     places = spans(one)
     if isinstance(found, list):
         assert 1 <= len(found) <= GRID_LIMITS.rows

@@ -1,4 +1,4 @@
-"""Each format reads back the cells written in it, and refuses a text that is not one grid."""
+"""Each format reads back its own cells, and refuses other texts."""
 
 import pytest
 from hypothesis import given, settings

@@ -1,4 +1,4 @@
-"""Several matrices in one text are read in order, each with its name."""
+"""Read several matrices in one text."""
 
 import pytest
 

@@ -1,7 +1,6 @@
-"""Write a table in each format, as people and programs do, independently of the reader.
+"""Write a table in each format, as people and programs do."""
 
-``test_registry`` reads each format back; ``test_hostile`` mutates the texts.
-"""
+# `test_registry` reads each format back; `test_hostile` mutates the texts.
 
 import csv
 import html

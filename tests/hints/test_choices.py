@@ -1,4 +1,4 @@
-"""Independent forward kinematics: other valid choices of frames describe the same robot."""
+"""Other valid choices of frames describe the same robot."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -18,7 +18,6 @@ COLUMNS = ("a", "alpha", "d", "theta")
 
 
 def table_of(exercise: Exercise) -> DhTableSpec | None:
-    """Return a part that asks for a table in frames of the student's choice, or None."""
     tables = (part for part in exercise.parts if isinstance(part, DhTableSpec))
     free = (each for each in tables if each.frames == "free" and each.convention != "either")
     return next(free, None)
@@ -51,7 +50,6 @@ def move(axis: int, length: float) -> Any:
 def pose(
     rows: Sequence[Mapping[str, str]], exercise: Exercise, convention: str, numbers: Any
 ) -> Any:
-    """Return the pose that follows from a table: two turns and two moves for each row."""
     product = np.eye(4)
     for row in rows:
         a, alpha, d, theta = (

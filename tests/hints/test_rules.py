@@ -1,4 +1,4 @@
-"""Each misconception has a rule, and the sentences of rules contain no value of an exercise."""
+"""The general rules in hints contain no value of an exercise."""
 
 import re
 from gettext import NullTranslations
@@ -71,10 +71,9 @@ def test_a_picture_names_the_axes_and_the_parameter(convention: Convention) -> N
 
 
 class German(NullTranslations):
-    """A translation that only contains the title of one rule, in German."""
+    """A German translation of a single title."""
 
     def gettext(self, message: str) -> str:
-        """Return the German title; other texts stay English."""
         return "Gliedlänge a" if message == "Link length a" else message
 
 

@@ -1,4 +1,4 @@
-"""Read the words of a statement and build its robot, with an algebra of its own."""
+"""Build a robot from the words of its statement, without the tested code."""
 
 import re
 
@@ -30,7 +30,7 @@ def way(words: str) -> np.ndarray:
 
 
 def point(words: str, lengths: dict[str, float]) -> np.ndarray:
-    """Return the point that the words describe: three sums of letters and numbers."""
+    """Return the point that the words describe."""
     coordinates = []
     for text in words.split(", "):
         terms = re.findall(r"([+-]?) ?([a-z]\d+|[\d.]+)", text)
@@ -44,7 +44,6 @@ def point(words: str, lengths: dict[str, float]) -> np.ndarray:
 
 
 def pose(statement: str, lengths: dict[str, float], values: np.ndarray) -> list[np.ndarray]:
-    """Return the tool's origin, x and z at these joint values: the joints move the home pose."""
     tool = TOOL.search(statement.replace("\n", " "))
     assert tool
     place, x, z = point(tool["point"], lengths), way(tool["x"]), way(tool["z"])

@@ -1,4 +1,4 @@
-"""Files of real arms, under free licences, are imported as tables that move in the same way."""
+"""Import the URDF files of real arms as tables."""
 
 from pathlib import Path
 from xml.etree import ElementTree
@@ -45,8 +45,6 @@ def file_of(name: str) -> Path:
 
 
 def parts_of(file: Path) -> list[Part]:
-    """Read the joints of a reduced file in their order, without using the importer."""
-
     def numbers(joint: ElementTree.Element, part: str, name: str, default: str) -> list[float]:
         found = joint.find(part)
         text = default if found is None else found.get(name, default)

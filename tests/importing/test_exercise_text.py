@@ -25,7 +25,6 @@ ARM = [
 
 
 def written(text: str, tmp_path: object) -> Exercise:
-    """Write an exercise file with this text, and return its exercise."""
     file = tmp_path / "arm.toml"  # type: ignore[operator]
     file.write_text(text, encoding="utf-8")
     return load_exercise(file)

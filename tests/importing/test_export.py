@@ -21,7 +21,6 @@ def robot(seed: int) -> HomeRobot:
 
 
 def pose(made: HomeRobot, values: np.ndarray) -> np.ndarray:
-    """Return the pose of the tool that follows from the table."""
     table = made.table.copy()
     for i, letter in enumerate(made.structure):
         table[i, 2 if letter == "P" else 3] += values[i]

@@ -10,13 +10,11 @@ from tests.importing.urdf_texts import Part, random_parts, tip, turned, urdf
 
 
 def imported(parts: list[Part], decimals: int = 9) -> tuple[Arm, Placed]:
-    """Import a URDF file with these joints; return the arm and its table."""
     arm, _ = read_urdf(urdf(parts, decimals), f"l{len(parts)}")
     return arm, placed(*home_axes(arm))
 
 
 def by_table(arm: Arm, made: Placed, values: np.ndarray) -> np.ndarray:
-    """Return the pose of the tip that follows from the table."""
     table = made.table.copy()
     for i, letter in enumerate(arm.structure):
         table[i, 2 if letter == "P" else 3] += values[i]

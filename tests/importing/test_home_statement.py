@@ -1,4 +1,4 @@
-"""The words of a statement are complete: the robot is built again from them alone."""
+"""A robot can be built from the words of its statement alone."""
 
 import numpy as np
 import pytest
@@ -15,7 +15,6 @@ from tests.importing.urdf_texts import Part, random_parts, urdf
 
 
 def straight_parts(rng: np.random.Generator) -> list[Part]:
-    """Return an arm in which each link leads along one axis, so that no coordinate needs a root."""
     return [
         Part(
             "revolute",

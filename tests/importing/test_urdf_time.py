@@ -1,4 +1,4 @@
-"""Hostile URDF files are soon refused, and the message says why."""
+"""Hostile URDF files are soon refused, with a reason."""
 
 import time
 from collections.abc import Callable
@@ -16,7 +16,6 @@ GOOD = urdf([ONE])
 
 
 def filled(head: bytes, unit: bytes, end: bytes = b"</robot>") -> bytes:
-    """Return a file of the largest accepted size that repeats one text."""
     return head + unit * ((MEBIBYTE - len(head) - len(end)) // len(unit)) + end
 
 
@@ -27,7 +26,6 @@ def entities() -> bytes:
 
 
 def ring() -> bytes:
-    """Return a URDF file with 199 links in a ring."""
     links = "".join(f'<link name="l{i}"/>' for i in range(199))
     joints = "".join(
         f'<joint name="j{i}" type="fixed"><parent link="l{i}"/><child link="l{(i + 1) % 199}"/>'

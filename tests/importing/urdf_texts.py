@@ -11,7 +11,7 @@ Numbers = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Part:
-    """A joint of a file: its type, xyz, rpy and axis."""
+    """A joint of a URDF file."""
 
     kind: str
     xyz: Sequence[float]
@@ -54,7 +54,6 @@ def turned(q: Numbers, vector: Sequence[float]) -> Numbers:
 
 
 def tip(parts: Sequence[Part], values: Sequence[float]) -> tuple[Numbers, Numbers]:
-    """Return the position and the quaternion of the last link at values of the moving joints."""
     place, turn = np.zeros(3), np.array([1.0, 0, 0, 0])
     left = list(values)
     for part in parts:
@@ -70,7 +69,7 @@ def tip(parts: Sequence[Part], values: Sequence[float]) -> tuple[Numbers, Number
 
 
 def random_parts(rng: np.random.Generator, *, crooked: bool) -> list[Part]:
-    """Return a random arm of 2 to 7 joints with fixed joints in between."""
+    """Return a random arm with 2 to 7 moving joints."""
     parts = []
     for _ in range(rng.integers(2, 8)):
         if rng.random() < 0.3:
@@ -85,7 +84,6 @@ def random_parts(rng: np.random.Generator, *, crooked: bool) -> list[Part]:
 
 
 def _place(rng: np.random.Generator) -> list[float]:
-    """Return a random position in whole millimetres, with some coordinates 0."""
     return list(np.round(rng.uniform(-0.6, 0.6, 3) * (rng.random(3) < 0.5), 3))
 
 

@@ -1,8 +1,7 @@
-"""Install the built wheel with all its dependencies, and grade with it: ``make wheel``.
+"""Install the built wheel with all its dependencies, and grade with it: ``make wheel``."""
 
-Install it with pip on each supported Python of this machine, with pipx on the current one, and in
-a fresh clone with the commands of the README. This needs the package index.
-"""
+# Install it with pip on each supported Python of this machine, with pipx on the current one, and in
+# a fresh clone with the commands of the README. This needs the package index.
 
 import sys
 import tempfile
@@ -16,7 +15,6 @@ POINTS = "8.67 / 32 points"
 
 
 def report(program: Path, folder: Path) -> str:
-    """Return the version of an installed program; check the points that the program gives."""
     graded = run(program, "grade", SUBMISSION, "--exercise", "stanford-arm", cwd=folder)
     assert graded.returncode == 1, graded.stderr
     assert POINTS in graded.stdout
@@ -24,7 +22,6 @@ def report(program: Path, folder: Path) -> str:
 
 
 def newcomer(folder: Path) -> str:
-    """Install a fresh clone with the README's first two commands; check it, return its version."""
     checked("git", "clone", "--quiet", ROOT, folder, cwd=ROOT)
     for command in COMMANDS[:2]:
         checked(*command.split(), cwd=folder)
@@ -32,7 +29,6 @@ def newcomer(folder: Path) -> str:
 
 
 def main() -> None:
-    """Print a line for each installation."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         wheel = build(folder)

@@ -13,7 +13,7 @@ OLDEST = (3, 11)
 
 
 def run(*command: object, cwd: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run a program in a folder, with nothing of the checkout in its environment."""
+    """Run a program in a folder, without the checkout in its environment."""
     clean = {
         name: value
         for name, value in os.environ.items()
@@ -46,10 +46,8 @@ def build(folder: Path) -> Path:
 
 
 def environment(folder: Path, python: str = sys.executable) -> Path:
-    """Create a virtual environment with this environment's packages; return its bin folder.
-
-    Tests in the new environment need no network. Compiled packages need this version of Python.
-    """
+    """Create a virtual environment and return its bin folder."""
+    # Tests in the new environment need no network. Compiled packages need this version of Python.
     if not folder.exists():
         checked(python, "-m", "venv", "--without-pip", folder, cwd=ROOT)
     [site] = folder.glob("lib/python*/site-packages")
@@ -58,13 +56,12 @@ def environment(folder: Path, python: str = sys.executable) -> Path:
 
 
 def install(wheel: Path, programs: Path) -> None:
-    """Install the wheel, without its dependencies, into the environment of these programs."""
     pip = (sys.executable, "-m", "pip", "--python", programs / "python", "install", "--quiet")
     checked(*pip, "--no-index", "--no-deps", "--force-reinstall", wheel, cwd=programs)
 
 
 def other_pythons() -> list[str]:
-    """Return the Pythons on this machine with a supported version, except the running version."""
+    """Return the other supported Pythons on this machine."""
     names = [f"python3.{minor}" for minor in range(OLDEST[1], 20)]
     found = [path for name in names if (path := shutil.which(name))]
     found += map(str, Path.home().glob(".pyenv/versions/3.*/bin/python"))

@@ -1,9 +1,8 @@
-"""Build the image and run the service in it, without a container engine: ``make image``.
+"""Build the image and run the service in it: ``make image``."""
 
-This needs root, Debian's ``buildah`` and ``debootstrap``, the package indexes of Debian and Python,
-and three minutes. If no base image can be pulled, a bootstrapped Debian replaces it. The service
-runs as the user of the image, on a read-only root file system.
-"""
+# This needs root, Debian's `buildah` and `debootstrap`, the package indexes of Debian and Python,
+# and three minutes. If no base image can be pulled, a bootstrapped Debian replaces it. The service
+# runs as the user of the image, on a read-only root file system.
 
 import json
 import os
@@ -42,14 +41,13 @@ mount -o remount,ro,bind "$0" && exec chroot --userspec="$1" "$0" env -i "${@:3}
 
 
 class Builder:
-    """Buildah with a store of its own below ``folder``."""
+    """Runs the program buildah with a storage folder of its own."""
 
     def __init__(self, folder: Path) -> None:
         self._folder = folder
         self._store = ("--root", folder / "images", "--runroot", folder / "run")
 
     def __call__(self, *words: object) -> str:
-        """Run a command of buildah; return its output."""
         command = [str(word) for word in ("buildah", *self._store, *words)]
         settings = {"STORAGE_DRIVER": "vfs", "BUILDAH_ISOLATION": "chroot"}
         done = subprocess.run(
@@ -58,7 +56,6 @@ class Builder:
         return done.stdout.strip()
 
     def stand_in(self, folder: Path, name: str) -> None:
-        """Build an image of Debian with Python, and give it the name of the base image."""
         options = ("--variant=minbase", f"--include={PACKAGES}", SUITE, str(folder))
         subprocess.run(("debootstrap", *options), stdout=subprocess.DEVNULL, check=True)
         (folder / "usr/bin/python").symlink_to("python3")
@@ -69,7 +66,7 @@ class Builder:
         self("commit", "--quiet", container, f"docker.io/library/{name}")
 
     def image(self, context: Path) -> str:
-        """Build the Dockerfile of a folder; return the path of its root file system."""
+        """Build a Dockerfile and return the path of the image's files."""
         borrowed = [f"--volume={path}:{path}:ro" for path in BORROWED if Path(path).exists()]
         # The stand-in has another digest than the base image.
         undigested = self._folder / "Dockerfile"
@@ -90,7 +87,6 @@ def settings_of(dockerfile: str) -> tuple[str, list[str]]:
 
 
 def main() -> int:
-    """Build the image, run the service in it, and print the results; return 1 if one is wrong."""
     dockerfile = (ROOT / "Dockerfile").read_text(encoding="utf-8")
     base = re.findall(r"^FROM ([^\s@]+)", dockerfile, re.MULTILINE)[-1]
     user, environment = settings_of(dockerfile)
@@ -115,7 +111,6 @@ def main() -> int:
 
 
 def report(seen: str, user: str) -> int:
-    """Print the results in ``seen``, the output of the trial run; return 1 if one is wrong."""
     uid, *others = seen.splitlines()
     graded = next(json.loads(line) for line in others if line.startswith("{"))
     points = graded["report"]["points"]

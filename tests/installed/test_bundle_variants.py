@@ -1,4 +1,4 @@
-"""Bundles with variants: each student gets an exercise with their own numbers."""
+"""A bundle with variants gives each student different numbers."""
 
 import json
 import os
@@ -28,7 +28,6 @@ path = "arm.toml"
 
 
 def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
-    """Return the bundle of an assignment with variants."""
     (folder / "arm.toml").write_text(varied_text(), encoding="utf-8")
     (folder / "hw.toml").write_text(ASSIGNMENT, encoding="utf-8")
     file = folder / f"{platform}.zip"
@@ -38,12 +37,10 @@ def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
 
 
 def variant_of(folder: Path, seeds: Mapping[str, str]) -> Exercise:
-    """Return the variant of the exercise in a folder for these seeds."""
     return hidden_variant(load_exercise(folder / "arm.toml"), seeds["arm"])
 
 
 def answers(folder: Path, seeds: Mapping[str, str]) -> dict[str, Any]:
-    """Return the model answer to the variant for these seeds."""
     return {"answers": {"table": solve(variant_of(folder, seeds)).parts[0].answer}}
 
 

@@ -1,4 +1,4 @@
-"""Bundles work: the tests unpack and run them as their platforms do."""
+"""Unpack and run bundles as their platforms do."""
 
 import json
 import os
@@ -32,7 +32,7 @@ def bundle(programs: Path, folder: Path, platform: str, *options: str) -> Path:
 
 
 def valid(file: Path, platform: str) -> dict[str, Any]:
-    """Return the JSON result in a file after checking it against the schema of the platform."""
+    """Return the JSON result in a file after checking it against its schema."""
     schema = json.loads((SCHEMAS / f"{platform}.json").read_text(encoding="utf-8"))
     result: dict[str, Any] = json.loads(file.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator(schema).validate(result)
@@ -89,7 +89,6 @@ def test_prairielearn_gets_a_valid_result(
 
 
 def check_question(question: Path, image: Path) -> None:
-    """Check that a PrairieLearn question shows the statement, and that its image can be built."""
     info = json.loads((question / "info.json").read_text(encoding="utf-8"))
     assert info["gradingMethod"] == "External"
     options = info["externalGradingOptions"]

@@ -1,4 +1,4 @@
-"""The wheel works in an environment of its own."""
+"""The wheel works in a separate environment."""
 
 import asyncio
 import json
@@ -92,7 +92,6 @@ def test_every_other_python_installs_and_starts_it(wheel: Path, tmp_path: Path) 
 
 
 def contents(wheel: Path) -> dict[str, bytes]:
-    """Return the files of a wheel, except those that name the build tool."""
     with zipfile.ZipFile(wheel) as archive:
         return {
             name: archive.read(name)

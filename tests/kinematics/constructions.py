@@ -17,11 +17,9 @@ def trans(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Matrices:
 
 
 def screw_axis(direction: ArrayLike, point: ArrayLike, pitch: ArrayLike = 0.0) -> Numbers:
-    """Return the screw axis ``(..., 6)`` along the unit vector ``direction`` through ``point``.
-
-    ``pitch`` is the advance per radian; it is infinite for a prismatic joint. Source: *Modern
-    Robotics*, definition 3.24.
-    """
+    """Return the screw axis along ``direction`` through ``point``."""
+    # `pitch` is the advance per radian; it is infinite for a prismatic joint. Source: *Modern
+    # Robotics*, definition 3.24.
     direction, point = np.broadcast_arrays(
         np.asarray(direction, dtype=np.float64), np.asarray(point, dtype=np.float64)
     )

@@ -1,4 +1,4 @@
-"""Whole chains: poses equal closed forms, and regrouping the factors keeps the product."""
+"""Poses of whole robots equal closed forms."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -95,13 +95,11 @@ cos, sin = sp.cos, sp.sin
 
 
 def plane(angle: Any, x: Any, y: Any) -> Any:
-    """Return the pose with a turn about z at a point of the plane."""
     c, s = cos(angle), sin(angle)
     return sp.Matrix([[c, -s, 0, x], [s, c, 0, y], [0, 0, 1, 0], [0, 0, 0, 1]])
 
 
 def tool_down(angle: Any, x: Any, y: Any, z: Any) -> Any:
-    """Return the pose of a tool that points down."""
     c, s = cos(angle), sin(angle)
     return sp.Matrix([[c, s, 0, x], [s, -c, 0, y], [0, 0, -1, z], [0, 0, 0, 1]])
 
@@ -222,7 +220,7 @@ POSES = {name: function_of_letters(robot.pose) for name, robot in CLOSED_FORMS.i
 
 @given(values=VALUES)
 def test_the_tip_of_the_cartesian_arm_is_at_its_displacements(values: list[float]) -> None:
-    """Source: Spong, Hutchinson, Vidyasagar, problem 3-7."""
+    # Source: Spong, Hutchinson, Vidyasagar, problem 3-7.
     d1, d2, d3 = values[:3]
     table = numeric([(0, -QUARTER, d1, 0), (0, -QUARTER, d2, -QUARTER), (0, 0, d3, 0)])
     np.testing.assert_allclose(pose(table, STANDARD)[:3, 3], [d3, d2, d1], atol=1e-12)

@@ -1,4 +1,4 @@
-"""Link transforms, compared with the product of four elementary matrices."""
+"""Compare link transforms with products of four elementary matrices."""
 
 import numpy as np
 from hypothesis import given
@@ -29,7 +29,7 @@ def shift(axis: int, length: float) -> Array:
 def test_a_standard_link_is_the_product_of_elementary_transforms(
     a: float, alpha: float, d: float, theta: float
 ) -> None:
-    """Source: MEAM 520, More Denavit-Hartenberg (DH)."""
+    # Source: MEAM 520, More Denavit-Hartenberg (DH).
     expected = turn("z", theta) @ shift(2, d) @ shift(0, a) @ turn("x", alpha)
     np.testing.assert_allclose(standard_link(a, alpha, d, theta), expected, atol=1e-12)
 
@@ -38,14 +38,14 @@ def test_a_standard_link_is_the_product_of_elementary_transforms(
 def test_a_modified_link_is_the_product_of_elementary_transforms(
     a: float, alpha: float, d: float, theta: float
 ) -> None:
-    """Source: Robotic Fundamentals, Forward Kinematics."""
+    # Source: Robotic Fundamentals, Forward Kinematics.
     expected = turn("x", alpha) @ shift(0, a) @ turn("z", theta) @ shift(2, d)
     np.testing.assert_allclose(modified_link(a, alpha, d, theta), expected, atol=1e-12)
 
 
 @given(ANGLE, ANGLE)
 def test_the_two_dh_conditions_hold(alpha: float, theta: float) -> None:
-    """x_1 is perpendicular to z_0 and meets it: Direct Kinematics (Part 2), §2.3."""
+    # x_1 is perpendicular to z_0 and meets it: Direct Kinematics (Part 2), §2.3.
     link = standard_link(1.3, alpha, 0.7, theta)
     x1, origin = link[:3, 0], link[:3, 3]
     assert abs(x1[2]) < 1e-12
@@ -54,7 +54,7 @@ def test_the_two_dh_conditions_hold(alpha: float, theta: float) -> None:
 
 
 def test_links_of_the_stanford_arm_are_as_printed() -> None:
-    """Source: A_1 and A_2 of MEAM 520, More Denavit-Hartenberg (DH), at one joint value."""
+    # Source: A_1 and A_2 of MEAM 520, More Denavit-Hartenberg (DH), at one joint value.
     c, s = np.cos(0.4), np.sin(0.4)
     first = [[c, 0, -s, 0], [s, 0, c, 0], [0, -1, 0, 0], [0, 0, 0, 1]]
     second = [[c, 0, s, 0], [s, 0, -c, 0], [0, 1, 0, 0.3], [0, 0, 0, 1]]

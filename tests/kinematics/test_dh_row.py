@@ -1,4 +1,4 @@
-"""The two DH conditions, each violated alone, and the row if both hold."""
+"""Test the two DH conditions, and the row if both hold."""
 
 import doctest
 
@@ -30,14 +30,14 @@ def test_a_link_transform_has_its_own_row(convention: Convention) -> None:
 
 
 def test_dh1_fails_if_x1_is_not_perpendicular_to_z0() -> None:
-    """A turn by 0.3 about y gives x_1 the component −sin 0.3 along z_0; x_1 still meets z_0."""
+    # A turn by 0.3 about y gives x_1 the component −sin 0.3 along z_0; x_1 still meets z_0.
     transform = trans(0.5, 0.0, 0.2) @ rot_y(0.3)
     assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(-np.sin(0.3))
     assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.0)
 
 
 def test_dh2_fails_if_x1_does_not_meet_z0() -> None:
-    """With a shift by 0.4 along y_0 and no turn about z, x_1 passes z_0 at the distance 0.4."""
+    # With a shift by 0.4 along y_0 and no turn about z, x_1 passes z_0 at the distance 0.4.
     transform = trans(0.5, 0.4, 0.2) @ rot_x(0.3)
     assert dh1_residual(transform, Convention.STANDARD) == pytest.approx(0.0)
     assert dh2_residual(transform, Convention.STANDARD) == pytest.approx(0.4)

@@ -1,4 +1,4 @@
-"""The factors of a table, compared with the link transforms of textbooks."""
+"""Compare the factors of a table with the link transforms of textbooks."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Joint screws, compared with the numeric derivative of the pose, and ranks from textbooks."""
+"""Compare joint screws with the numeric derivative of the pose."""
 
 from collections.abc import Sequence
 
@@ -55,7 +55,6 @@ ARMS = [
 
 
 def table_of(rows: Rows, convention: Convention) -> NDArray[np.float64]:
-    """Return the table at one sample; a modified table has an extra row for the tool."""
     standard = [(float(a), float(alpha), float(d), float(theta)) for a, alpha, d, theta in rows]
     if convention is Convention.MODIFIED:
         standard = modified_rows(standard, 0.0)
@@ -65,7 +64,7 @@ def table_of(rows: Rows, convention: Convention) -> NDArray[np.float64]:
 def numeric(
     table: NDArray[np.float64], convention: Convention, joints: int, prismatic: Sequence[bool]
 ) -> NDArray[np.float64]:
-    """Return the Jacobian, each column as the logarithm of T(q + δ) T(q)⁻¹ divided by δ."""
+    """Return the Jacobian by numeric differentiation."""
     step = 1e-4
     columns = []
     for row in range(joints):

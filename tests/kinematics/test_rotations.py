@@ -1,4 +1,4 @@
-"""Angles and rotations, compared with SciPy for all twelve sequences, moving and fixed axes."""
+"""Compare angles and rotations with SciPy."""
 
 import doctest
 from typing import Any
@@ -29,7 +29,7 @@ ANGLES = RNG.uniform(-np.pi, np.pi, (40, 3))
 
 
 def scipy_rotation(sequence: str, angles: object, fixed: bool) -> Matrices:
-    """Return SciPy's rotation; SciPy uses upper case for moving and lower case for fixed axes."""
+    # Return SciPy's rotation; SciPy uses upper case for moving and lower case for fixed axes.
     name = sequence.lower() if fixed else sequence
     return np.asarray(Rotation.from_euler(name, np.asarray(angles)).as_matrix())
 
@@ -94,7 +94,7 @@ def test_the_first_angle_is_free_if_the_outer_axes_coincide(sequence: str) -> No
 
 
 def test_turns_about_fixed_axes_multiply_from_the_left() -> None:
-    """Source: Direct Kinematics (Part 2), §1.5, compared with SciPy's two kinds of sequence."""
+    # Source: Direct Kinematics (Part 2), §1.5, compared with SciPy's two kinds of sequence.
     turns = [about(axis, ANGLES[:, i]) for i, axis in enumerate("XZY")]
     for fixed in (True, False):
         np.testing.assert_allclose(
@@ -105,7 +105,7 @@ def test_turns_about_fixed_axes_multiply_from_the_left() -> None:
 
 
 def test_steps_about_fixed_and_moving_axes_can_be_mixed() -> None:
-    """A turn about fixed z by φ, moving x by θ and fixed y by ψ is R_y(ψ) R_z(φ) R_x(θ)."""
+    # A turn about fixed z by φ, moving x by θ and fixed y by ψ is R_y(ψ) R_z(φ) R_x(θ).
     found = composed([(about("Z", 0.3), True), (about("X", 0.5), False), (about("Y", 0.7), True)])
     expected = Rotation.from_euler("YZX", [0.7, 0.3, 0.5]).as_matrix()
     np.testing.assert_allclose(found, expected, atol=1e-15)

@@ -1,4 +1,4 @@
-"""Screws, compared with SciPy's matrix exponential and the examples of Lynch and Park."""
+"""Compare screws with SciPy and with Modern Robotics."""
 
 import doctest
 
@@ -80,10 +80,9 @@ def test_the_pitch_is_the_advance_per_radian() -> None:
 
 
 def test_the_twist_of_a_turning_car_is_that_of_the_book() -> None:
-    """Modern Robotics, example 3.23: V_s = (0,0,2,−2,−4,0), V_b = (0,0,−2,2.8,4,0).
-
-    r_s = (2,−1,0), r_b = (2,−1.4,0), ω = 2, and T_sb = [[−1,0,0,4],[0,1,0,0.4],[0,0,−1,0],…].
-    """
+    # Modern Robotics, example 3.23: V_s = (0,0,2,−2,−4,0), V_b = (0,0,−2,2.8,4,0).
+    #
+    # r_s = (2,−1,0), r_b = (2,−1.4,0), ω = 2, and T_sb = [[−1,0,0,4],[0,1,0,0.4],[0,0,−1,0],…].
     space = 2 * screw_axis([0, 0, 1], [2, -1, 0])
     body = 2 * screw_axis([0, 0, -1], [2, -1.4, 0])
     transform = np.array([[-1.0, 0, 0, 4], [0, 1, 0, 0.4], [0, 0, -1, 0], [0, 0, 0, 1]])
@@ -93,7 +92,7 @@ def test_the_twist_of_a_turning_car_is_that_of_the_book() -> None:
 
 
 def test_the_adjoint_commutes_with_the_exponential() -> None:
-    """T e^{[S]θ} T⁻¹ = e^{[Ad_T S]θ} (Modern Robotics, eq. 3.91)."""
+    # T e^{[S]θ} T⁻¹ = e^{[Ad_T S]θ} (Modern Robotics, eq. 3.91).
     transform = rot_z(0.4) @ trans(0.3, -0.2, 0.9) @ rot_x(1.1)
     for screw in SCREWS.values():
         np.testing.assert_allclose(
@@ -114,7 +113,7 @@ def test_skew_is_the_matrix_of_the_cross_product() -> None:
 
 
 def test_both_products_give_the_pose_of_the_book() -> None:
-    """Source: the example of FKinSpace and FKinBody, Modern Robotics, code library, chapter 4."""
+    # Source: the example of FKinSpace and FKinBody, Modern Robotics, code library, chapter 4.
     home = np.array([[-1.0, 0, 0, 0], [0, 1, 0, 6], [0, 0, -1, 2], [0, 0, 0, 1]])
     space = np.array([[0.0, 0, 1, 4, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, -1, -6, 0, -0.1]])
     body = np.array([[0.0, 0, -1, 2, 0, 0], [0, 0, 0, 0, 1, 0], [0, 0, 1, 0, 0, 0.1]])
@@ -126,7 +125,7 @@ def test_both_products_give_the_pose_of_the_book() -> None:
 
 
 def test_both_products_give_the_closed_form_of_the_planar_rpr_arm() -> None:
-    """The closed form is x = (L1 + θ2) c1 + L2 c13, with the rotation θ1 + θ3 about z."""
+    # The closed form is x = (L1 + θ2) c1 + L2 c13, with the rotation θ1 + θ3 about z.
     l1, l2 = 0.7, 0.4
     one, two, three = amounts = RNG.uniform(-1, 1, (3, 6))
     space = np.array([[0.0, 0, 1, 0, 0, 0], [0, 0, 0, 1, 0, 0], [0, 0, 1, 0, -l1, 0]])
@@ -143,7 +142,7 @@ def test_both_products_give_the_closed_form_of_the_planar_rpr_arm() -> None:
 
 @pytest.mark.parametrize("angle", [0.4, 1.1, -0.7])
 def test_the_axis_of_a_turn_is_found(angle: float) -> None:
-    """The turn is SciPy's exponential of an axis without pitch."""
+    # The turn is SciPy's exponential of an axis without pitch.
     axis = screw_axis(np.array([0.36, -0.48, 0.8]), np.array([0.5, 0.1, -0.4]))
     displacement = expm(bracket(axis) * angle)
     np.testing.assert_allclose(turning_axis(displacement, angle), axis, atol=1e-12)

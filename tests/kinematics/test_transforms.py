@@ -1,4 +1,4 @@
-"""Rotations, compared with SciPy, and translations and inverses by their definitions."""
+"""Compare rotations with SciPy; test translations and inverses."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Each of 5,000 seeds draws one slip; full marks need its place and the corrected table."""
+"""Draw exercises in which the student must find a slip in a table."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -22,7 +22,6 @@ Texts = list[list[str]]
 
 
 def asked(catalogue: Mapping[str, Exercise], seed: int) -> tuple[Exercise, FindSlipSpec]:
-    """Return an exercise that asks for a slip and, in another part, for the whole table."""
     robots = [
         (exercise, convention)
         for exercise in catalogue.values()
@@ -82,10 +81,9 @@ def elsewhere(drawn: DrawnSlip, count: int) -> Iterator[tuple[int, int]]:
 
 
 def covers_all(drawn: DrawnSlip, count: int) -> bool:
-    """True if every cell is wrong, or lies in a row or column with two or more wrong cells.
-
-    Then the student may mark all rows at once.
-    """
+    # True if every cell is wrong, or lies in a row or column with two or more wrong cells.
+    #
+    # Then the student may mark all rows at once.
     rows = Counter(i for i, _ in drawn.cells)
     columns = Counter(j for _, j in drawn.cells)
     fine = {(i, j) for i in range(count) for j in range(4) if rows[i] > 1 or columns[j] > 1}
@@ -93,7 +91,7 @@ def covers_all(drawn: DrawnSlip, count: int) -> bool:
 
 
 def is_one_slip(exercise: Exercise, given: Texts, drawn: DrawnSlip) -> bool:
-    """True if grading the given table finds one misconception, in the cells that were changed."""
+    # True if grading the given table finds one misconception, in the cells that were changed.
     report = part(handed_in(exercise, {"table": table(given)}), "table")
     codes = {each.code for each, _, _ in messages_of(report) if each.severity is Severity.ERROR}
     wrong = {

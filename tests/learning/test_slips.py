@@ -1,4 +1,4 @@
-"""Every misconception of a table can be drawn, or there is a reason why not."""
+"""Every misconception about a table can be drawn as a slip, or there is a reason why not."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -24,7 +24,7 @@ TRIES: Final = 300
 
 @dataclass
 class Results:
-    """The responses to clients: waits in seconds, failures, and attempt ids by request key."""
+    """The waiting times, failures and attempt ids of clients."""
 
     waits: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -36,18 +36,16 @@ class Results:
 
     @property
     def per_second(self) -> float:
-        """The number of responses per second."""
         return len(self.waits) / self.seconds
 
     def quantile(self, share: float) -> float:
-        """Return the quantile of the waiting times for a share between 0 and 1, in seconds."""
         ordered = sorted(self.waits) or [float("nan")]
         return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
 
 
 @dataclass(frozen=True)
 class Mix:
-    """The shares of recorded and of trivial requests; all other requests are only graded."""
+    """The shares of recorded, of trivial and of only graded requests."""
 
     recorded: float = 0.0
     trivial: float = 0.0
@@ -77,7 +75,6 @@ class Client:
         self._lines: dict[int, tuple[asyncio.StreamReader, asyncio.StreamWriter]] = {}
 
     async def submit(self, until: float) -> None:
-        """Send requests until ``time.perf_counter()`` is ``until``, and finish the last request."""
         for i in range(1_000_000):
             if time.perf_counter() > until:
                 break
@@ -115,7 +112,6 @@ class Client:
         self._results.attempts[key] = found
 
     async def _post(self, path: str, body: dict[str, object], key: str = "") -> str:
-        """Post to the next service; return the id of the attempt, or "" if there is none."""
         self._turn += 1
         port = self._ports[self._turn % len(self._ports)]
         content = json.dumps(body).encode()
@@ -174,10 +170,8 @@ def submitted(
     results: Results | None = None,
     pause: float = 0.0,
 ) -> Results:
-    """Run clients for some seconds; return their results. ``run`` is part of the learners' names.
-
-    Each client pauses for ``pause`` seconds after each response.
-    """
+    """Run clients for some seconds and return their results."""
+    # Each client pauses for `pause` seconds after each response.
     results = Results() if results is None else results
     began = time.perf_counter()
     everybody = [Client(number, ports, mix, results, run, pause) for number in range(clients)]

@@ -1,7 +1,7 @@
-"""No attempt is lost or recorded twice when real faults happen under load.
+"""No attempt is lost or recorded twice when real faults happen under load."""
 
-Clients send an attempt again until it is recorded. tests/attempts has short tests of these faults.
-"""
+# Clients send an attempt again until it is recorded. tests/attempts has short tests of these
+# faults.
 
 import os
 import shutil
@@ -37,7 +37,7 @@ NGINX = shutil.which("nginx") or shutil.which("nginx", path="/usr/sbin")
 
 @contextmanager
 def meanwhile(happens: Callable[[], None], after: float = 2.0) -> Iterator[None]:
-    """Call ``happens`` after some seconds, while the body of the ``with`` runs."""
+    """Call ``happens`` after some seconds, during the ``with`` block."""
     timer = threading.Timer(after, happens)
     timer.start()
     yield
@@ -46,7 +46,7 @@ def meanwhile(happens: Callable[[], None], after: float = 2.0) -> Iterator[None]
 
 @contextmanager
 def cramped(folder: Path, url: str, most: int) -> Iterator[Service]:
-    """Run a service whose files may not grow beyond ``most`` bytes, as if the disk were full."""
+    """Run a service that cannot write large files, as if the disk were full."""
     limited = (
         "import resource, runpy, sys;"
         f"resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most}));"

@@ -1,4 +1,4 @@
-"""A short sample of `make load`."""
+"""Run a short part of `make load`."""
 
 import sys
 from pathlib import Path

@@ -1,9 +1,10 @@
 """`python -m tests.load.wrong_answers`: measure the service with mostly wrong answers.
 
-A course server sends tables with slips over eight connections from one address, then 120 students
-submit in the same instant. Compare both with grading the same tables in this process. Exit with
-1 if the service is slower than promised. Run nothing else meanwhile.
+Exit with 1 if the service is slower than promised. Run nothing else meanwhile.
 """
+
+# A course server sends tables with slips over eight connections from one address, then 120 students
+# submit in the same instant. Compare both with grading the same tables in this process.
 
 import argparse
 import asyncio
@@ -46,7 +47,6 @@ class Body(NamedTuple):
 
 
 def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: int) -> Any:
-    """Return the rows after ``slips`` changes of cells, such as students make."""
     changed = [dict(row) for row in rows]
     for _ in range(slips):
         row, column = choose.choice(changed), choose.choice(_COLUMNS)
@@ -57,7 +57,6 @@ def _with_slips(rows: Sequence[dict[str, str]], choose: random.Random, slips: in
 
 @cache
 def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
-    """Return all parts of these exercises that ask for a table, each with the correct rows."""
     shipped = shipped_exercises()
     return [
         (exercise, part.id, dict[str, Any](solved(exercise).answers)[part.id]["rows"])
@@ -68,10 +67,8 @@ def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
 
 
 def tables(seed: int, wrong: float, names: tuple[str, ...] | None = None) -> Iterator[Body]:
-    """Yield tables of exercises without end; the share ``wrong`` of them has one to four slips.
-
-    ``names`` are the ids of the exercises; by default all shipped exercises.
-    """
+    """Yield tables of exercises without end, many of them wrong."""
+    # `names` are the ids of the exercises; by default all shipped exercises.
     choose, models = random.Random(seed), _models(names)
     while True:
         exercise, part, rows = choose.choice(models)
@@ -83,7 +80,6 @@ def tables(seed: int, wrong: float, names: tuple[str, ...] | None = None) -> Ite
 
 
 def in_process(bodies: Sequence[Body], catalogue: dict[str, Exercise]) -> list[float]:
-    """Return the processor seconds for grading each body in this process, without a server."""
     found = []
     for exercise, content in bodies:
         body = validated(GradeRequest, json.loads(content), ())
@@ -109,7 +105,6 @@ def _processor_time(running: Service) -> float:
 
 
 def in_turn(running: Service, bodies: Sequence[Body]) -> tuple[float, list[float]]:
-    """Send all bodies over eight connections; return the seconds, and each waiting time."""
     left, lock, waits = iter(bodies), threading.Lock(), list[float]()
 
     def send() -> None:
@@ -132,8 +127,6 @@ def in_turn(running: Service, bodies: Sequence[Body]) -> tuple[float, list[float
 
 
 async def _at_once(running: Service, bodies: Sequence[Body]) -> float:
-    """Send each body on a connection of its own; return the seconds until all have a response."""
-
     async def connect() -> tuple[asyncio.StreamReader, asyncio.StreamWriter]:
         return await asyncio.open_connection("127.0.0.1", running.port)
 
@@ -153,7 +146,6 @@ async def _at_once(running: Service, bodies: Sequence[Body]) -> float:
 
 
 def measure(count: int, seed: int) -> list[str]:
-    """Print the figures; return the missed limits."""
     catalogue = dict(shipped_exercises())
     drawn = tables(seed, 1.0)
     warm = [next(drawn) for _ in range(100)]
@@ -188,7 +180,6 @@ def measure(count: int, seed: int) -> list[str]:
 
 
 def main() -> int:
-    """Measure with the options of the command line; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=3000)
     parser.add_argument("--seed", type=int, default=1)

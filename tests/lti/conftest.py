@@ -1,4 +1,4 @@
-"""Our own LTI platform for tests, and a service at which this platform is registered."""
+"""Fixtures: an LTI platform, and a service that is registered there."""
 
 import asyncio
 import re
@@ -41,7 +41,6 @@ RECORDED = (
 
 @pytest.fixture(scope="session")
 def one_platform() -> Iterator[Platform]:
-    """Start one platform for all tests of a process."""
     platform = Platform()
     with running(platform.app()) as port:
         platform.port = port
@@ -50,7 +49,7 @@ def one_platform() -> Iterator[Platform]:
 
 @pytest.fixture
 def platform(one_platform: Platform) -> Iterator[Platform]:
-    """Return the platform; after the test, reset its behaviour, keys and records."""
+    # Return the platform; after the test, reset its behaviour, keys and records.
     keys = list(one_platform.keys)
     # The service memoizes keys by their address.
     one_platform.visit += 1
@@ -66,7 +65,7 @@ def platform(one_platform: Platform) -> Iterator[Platform]:
 
 @dataclass(frozen=True)
 class Begun:
-    """A begun login in a browser: the query for the platform, and the cookies of the service."""
+    """The state of a browser after a login has begun: its query and cookies."""
 
     asked: Mapping[str, str]
     cookies: str
@@ -75,7 +74,7 @@ class Begun:
 
 @dataclass
 class Tool:
-    """The service, and a browser that moves between the service and the platform."""
+    """The service, and a browser that visits the service and the platform."""
 
     app: Any
     store: AttemptStore
@@ -83,7 +82,6 @@ class Tool:
 
     @property
     def url(self) -> str:
-        """The address of the database."""
         return self.store.engine.url.render_as_string(hide_password=False)
 
     def do(self, work: Callable[[Connection], Any]) -> Any:
@@ -98,7 +96,6 @@ class Tool:
         return asyncio.run(sent())
 
     def login(self, user: str = "ada", link: str = "link-1", **more: str) -> Begun:
-        """Begin a login; ``more`` are further fields."""
         fields = self.platform.login(user, link, **more)
         answer = self.send("GET", "/lti/login", params={k: v for k, v in fields.items() if v})
         query = parse_qs(urlsplit(answer.headers.get("location", "")).query)
@@ -106,7 +103,6 @@ class Tool:
         return Begun({name: each[0] for name, each in query.items()}, cookies, answer)
 
     def post(self, state: str, token: str, cookies: str, **more: str) -> httpx.Response:
-        """Post a message to the launch route of the service."""
         headers = {
             "cookie": cookies,
             "origin": self.platform.address,
@@ -124,7 +120,6 @@ class Tool:
         return self.post(unescape(fields["state"]), unescape(fields["id_token"]), begun.cookies)
 
     def counts(self) -> dict[str, int]:
-        """Return the number of rows in each table in which a launch records something."""
         with self.store.engine.connect() as connection:
             return {
                 each.name: connection.scalar(select(func.count()).select_from(each)) or 0
@@ -143,7 +138,7 @@ def services(
 
 @pytest.fixture(scope="session")
 def own_key(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Any]:
-    """The database row of one signing key for all tests: making a key takes longer than a test."""
+    # The database row of one signing key for all tests: making a key takes longer than a test.
     store = AttemptStore.open(new_file(tmp_path_factory.mktemp("own-key")))
     in_transaction(store.engine, lambda it: ensure_key(it, SECRET, datetime.now(UTC)))
     with store.engine.connect() as connection:
@@ -160,8 +155,6 @@ def tool(
     catalogue: Mapping[str, Exercise],
     platform: Platform,
 ) -> Tool:
-    """The service with the registered platform; the parameter is the kind of its database."""
-
     def build(store: AttemptStore, keys: KeyRing) -> Any:
         access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=keys)
         pages = web_routes(catalogue, Tutoring(access, records=True, store=store))

@@ -1,4 +1,4 @@
-"""The gradebook of our own platform (AGS), with switches for the behaviour of real platforms."""
+"""The gradebook of the test platform (the LTI service AGS)."""
 
 import asyncio
 import json
@@ -23,7 +23,7 @@ Trouble = tuple[int, dict[str, str]]
 
 @dataclass
 class Item:
-    """A line item; ``grades`` maps a user to the score in per cent of the maximum, or None."""
+    """A column of the test platform's gradebook (an LTI line item)."""
 
     link: str
     label: str = ""
@@ -33,12 +33,10 @@ class Item:
 
 @dataclass
 class Gradebook:
-    """Line items, access tokens and scores; the other fields change the platform's behaviour.
+    """The test platform's gradebook, with its access tokens and scores."""
 
-    ``received`` are the accepted scores in the order of arrival; ``asked`` are the kinds of all
-    requests, ``refused`` the refusals.
-    """
-
+    # `received` are the accepted scores in the order of arrival; `asked` are the kinds of all
+    # requests, `refused` the refusals.
     address: Callable[[], str]
     # Answers requests for tokens that read the roster.
     roster_token: Callable[[Mapping[str, str]], Response]
@@ -71,7 +69,6 @@ class Gradebook:
         self.items["1"] = Item("link-1")
 
     def reset(self) -> None:
-        """Remove all scores, and restore the usual behaviour."""
         self.__dict__.update(Gradebook(self.address, self.roster_token).__dict__)
 
     def url(self, item: str) -> str:
@@ -79,12 +76,10 @@ class Gradebook:
         return f"{self.address()}/items/{item}" + (f"?{self.query}" if self.query else "")
 
     def grades(self, item: str = "1") -> dict[str, float | None]:
-        """Return the grades of a line item, by the user names that tests use."""
         found = self.items[item].grades
         return {user.removeprefix("user "): grade for user, grade in found.items()}
 
     def routes(self) -> APIRouter:
-        """Return the routes of the gradebook and of access tokens."""
         router = APIRouter()
 
         @router.post("/token")

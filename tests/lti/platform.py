@@ -1,7 +1,6 @@
-"""Our own LTI platform over real HTTP: a course with links, and switches for its behaviour.
+"""The tests' own LTI platform, over real HTTP."""
 
-The functions in ``Platform.habits`` change the claims of messages; tests add such functions.
-"""
+# The functions in `Platform.habits` change the claims of messages; tests add such functions.
 
 import html
 import json
@@ -46,10 +45,9 @@ Habit = Callable[[dict[str, Any]], None]
 
 
 def deep_linking(address: str, **settings: Any) -> Habit:
-    """Return a habit that turns a launch into a deep-linking request with this return address.
-
-    A setting is left out if it is None.
-    """
+    # Return a habit that turns a launch into a deep-linking request with this return address.
+    #
+    # A setting is left out if it is None.
     asked = {
         "deep_link_return_url": address,
         "accept_types": ["link", "ltiResourceLink"],
@@ -81,12 +79,10 @@ def public_jwk(key: Any, key_id: str, **more: Any) -> dict[str, Any]:
 
 @dataclass
 class Platform:
-    """The platform. ``fetched`` has the requested paths, ``keys`` the keys that it publishes.
+    """The LTI platform of the tests."""
 
-    ``storage`` is true if its pages offer storage to tools. ``members`` is the roster, sent in
-    pages of ``page_size``; ``next_page`` replaces the address of the second page of the roster.
-    """
-
+    # `storage` is true if its pages offer storage to tools. `members` is the roster, sent in pages
+    # of `page_size`; `next_page` replaces the address of the second page of the roster.
     key: Any = field(default_factory=rsa_key)
     keys: list[dict[str, Any]] = field(default_factory=list)
     port: int = 0
@@ -113,7 +109,6 @@ class Platform:
 
     @property
     def registration(self) -> dict[str, Any]:
-        """The data with which an operator registers the platform at the service."""
         return {
             "id": "moodle",
             "name": "Moodle of the university",
@@ -129,7 +124,6 @@ class Platform:
         }
 
     def login(self, user: str = "ada", link: str = "link-1", **more: str) -> dict[str, str]:
-        """Return the fields of the request that begins a login."""
         return {
             "iss": self.address,
             "client_id": CLIENT,
@@ -141,7 +135,6 @@ class Platform:
         }
 
     def claims(self, user: str, link: str, nonce: str) -> dict[str, Any]:
-        """Return the claims of a message, as changed by the platform's habits."""
         now = int(time.time())
         claims = {
             "iss": self.address,
@@ -177,7 +170,6 @@ class Platform:
         return claims
 
     def signed(self, claims: Any, key: Any = None, **header: Any) -> str:
-        """Return a token, signed with the platform's key or another one."""
         content = json.dumps(claims).encode()
         return jwt.PyJWS().encode(content, key or self.key, "RS256", {"kid": "key-1", **header})
 
@@ -288,7 +280,7 @@ def _course(login: str, fields: dict[str, str], storage: bool) -> str:
 
 @contextmanager
 def running(app: Any) -> Iterator[int]:
-    """Serve an application on a free port of this machine, in a thread; yield the port."""
+    """Serve an application on a free port, in a thread; yield the port."""
     config = uvicorn.Config(app, "127.0.0.1", 0, log_level="error", lifespan="off")
     server = uvicorn.Server(config)
     thread = threading.Thread(target=server.run, daemon=True)

@@ -1,4 +1,4 @@
-"""Deep linking: the platform asks for links, a tutor picks exercises, learners launch the links."""
+"""Deep linking: a tutor picks exercises on the platform, and learners open them."""
 
 import json
 import re
@@ -21,19 +21,16 @@ KINDS = pytest.mark.parametrize("tool", ["sqlite", "postgresql"], indirect=True)
 
 
 def picker(tool: Tool, user: str = "turing", address: str = "", **settings: Any) -> httpx.Response:
-    """Let the platform ask for links; return the page on which the user picks exercises."""
     address = address or f"{tool.platform.address}/return?course=1"
     tool.platform.habits[:] = [deep_linking(address, **settings)]
     return tool.launch(user)
 
 
 def submitted(tool: Tool, page: str, **fields: Any) -> httpx.Response:
-    """Submit the form on the page that picks exercises."""
     return tool.send("POST", "/lti/links", data={"ticket": hidden(page, "ticket"), **fields})
 
 
 def answer(tool: Tool, page: httpx.Response) -> dict[str, Any]:
-    """Check the message that a page posts to the platform; return the claims of the message."""
     assert page.status_code == 200
     [address] = re.findall(r'id="send" method="post" action="([^"]+)"', page.text)
     assert unescape(address) == f"{tool.platform.address}/return?course=1"
@@ -53,8 +50,6 @@ def answer(tool: Tool, page: httpx.Response) -> dict[str, Any]:
 
 
 def launched(tool: Tool, item: dict[str, Any], link: str) -> dict[str, Any]:
-    """Return the assignments by title that a learner sees after launching a link."""
-
     def of_link(claims: dict[str, Any]) -> None:
         claims[f"{LTI}custom"] = item["custom"]
         claims[f"{LTI}resource_link"] = {"id": link, "title": item["title"]}

@@ -1,4 +1,4 @@
-"""The service fetches data only from public addresses of platforms, and limits the data."""
+"""The service fetches data only from public addresses, and limits its size."""
 
 import gzip
 import json

@@ -1,4 +1,4 @@
-"""The service refuses forged, replayed, mixed-up and stale messages, and gives the reason."""
+"""The service refuses forged and stale LTI messages, and gives the reason."""
 
 import base64
 import json
@@ -144,7 +144,7 @@ LINKING: list[tuple[str, Callable[[Claims], None], str]] = [
 
 
 def tokens(platform: Platform, begun: Begun) -> list[tuple[str, str, str]]:
-    """Return forged tokens: a description, the token, and the reason for which it is refused."""
+    # Return forged tokens: a description, the token, and the reason for which it is refused.
     claims = platform.claims("ada", "link-1", begun.asked["nonce"])
     good = platform.signed(claims)
     head, body, signature = good.split(".")
@@ -194,7 +194,6 @@ def reason(page: Any) -> str:
 
 @pytest.fixture
 def keys(platform: Platform) -> Platform:
-    """The platform, which also publishes a short key and a key for encryption."""
     platform.keys.append(public_jwk(SHORT_KEY, "short"))
     platform.keys.append(public_jwk(platform.key, "encrypts", use="enc"))
     return platform
@@ -363,7 +362,7 @@ def test_every_reason_says_what_to_do() -> None:
 
 @pytest.mark.long
 def test_two_platforms_and_two_courses_with_the_same_user(tool: Tool, platform: Platform) -> None:
-    """A user id is one learner in two courses of a platform, but two learners at two platforms."""
+    # A user id is one learner in two courses of a platform, but two learners at two platforms.
     other = platform.registration | {"id": "second", "client_id": "client-2"}
     new = NewRegistration.model_validate(other)
     tool.do(lambda it: add_registration(it, new, datetime.now(UTC)))

@@ -1,4 +1,4 @@
-"""Dynamic registration by one-time links, as Moodle, Canvas and Brightspace do it."""
+"""Platforms register themselves by one-time links (LTI dynamic registration)."""
 
 import json
 from collections.abc import Iterator
@@ -28,7 +28,7 @@ SCORE = "https://purl.imsglobal.org/spec/lti-ags/scope/score"
 
 @dataclass
 class Registrar:
-    """A platform that registers tools; ``changes`` replaces values of its configuration."""
+    """A platform that registers the service."""
 
     token: str = "one-time-token"
     port: int = 0
@@ -103,7 +103,6 @@ def registrar(one_registrar: Registrar) -> Registrar:
 
 
 def invited(tool: Tool, *, waits: bool = False, address: str = ADDRESS) -> str:
-    """Return the secret text in the link of a new invitation."""
     now = datetime.now(UTC)
     link = tool.do(
         lambda it: invite(it, "Uni <X>", address, "Europe/Berlin", now, days=7, waits=waits)
@@ -113,7 +112,6 @@ def invited(tool: Tool, *, waits: bool = False, address: str = ADDRESS) -> str:
 
 
 def opened(tool: Tool, registrar: Registrar, text: str, **more: str) -> httpx.Response:
-    """Open the invitation as a platform does, and confirm it; return the response."""
     fields = {
         "invitation": text,
         "openid_configuration": f"{registrar.address}/configuration",

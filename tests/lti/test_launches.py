@@ -1,4 +1,4 @@
-"""Launches of learners, tutors and visitors, from the platform's login to the page they see."""
+"""Test launches of learners, tutors and visitors."""
 
 import re
 from typing import Any
@@ -212,7 +212,7 @@ def test_a_tutor_reviews_the_attempts_of_a_learner(tool: Tool) -> None:
 @pytest.mark.long
 @KINDS
 def test_launches_of_a_class_share_no_row_that_changes(tool: Tool) -> None:
-    """If two launches changed the same row, one would wait for the other in PostgreSQL."""
+    # If two launches changed the same row, one would wait for the other in PostgreSQL.
     tool.launch("ada")
     changed = []
 

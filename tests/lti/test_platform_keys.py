@@ -12,7 +12,7 @@ from tests.lti.platform import Platform, public_jwk
 
 
 class Clock:
-    """A settable clock, and a platform whose response is settable and whose fetches are counted."""
+    """A clock that tests set, and a platform that counts the requests for its keys."""
 
     def __init__(self, platform: Platform) -> None:
         self.now, self.count = 1000.0, 0
@@ -30,7 +30,6 @@ class Clock:
         return self.answer
 
     def told(self, key_id: str) -> str:
-        """Return "" if the service gets the key with this id, else the reason of the refusal."""
         try:
             asyncio.run(self.keys.key(self.registration, key_id))
         except LtiError as error:

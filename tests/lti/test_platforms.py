@@ -1,4 +1,4 @@
-"""The page of the registered platforms, for those who run the service."""
+"""The operators' page of registered platforms."""
 
 from service.lti.problems import LTI_PROBLEMS, LtiError, cause_without_values
 from service.translations import LANGUAGES, say, told

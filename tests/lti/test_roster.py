@@ -1,4 +1,4 @@
-"""Rosters of platforms: rosters in several pages, renamed learners, and unenrolled learners."""
+"""Read class lists (rosters) from platforms."""
 
 from typing import Any
 

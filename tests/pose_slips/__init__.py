@@ -1,1 +1,1 @@
-"""Check that slips in a table are named in poses, orientations, positions and link transforms."""
+"""Check that reports on wrong poses name the slip in the student's table."""

@@ -1,4 +1,4 @@
-"""Print how often a slip of the table is named, for each robot and kind of part: ``make slips``."""
+"""Print how often reports name a slip, for each robot and kind of part: ``make slips``."""
 
 import argparse
 from collections import Counter, defaultdict
@@ -10,7 +10,6 @@ from tests.pose_slips.robots import robots
 
 
 def main() -> int:
-    """Try all slips, or every n-th slip; return 1 if fewer than 95 % are named."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--every", type=int, default=1, help="try every n-th slip (1)")
     parser.add_argument("--robot", help="only this robot")

@@ -1,4 +1,4 @@
-"""Try each slip of a robot's table in its pose, orientation, position and link transforms."""
+"""Submit answers that follow from a wrong table, and check that the report names the slip."""
 
 import re
 import tempfile
@@ -24,11 +24,9 @@ SAME = 1e-9
 
 @dataclass(frozen=True)
 class Trial:
-    """A graded answer with a slip; ``alone`` is True if no other slip gives the same answer.
+    """A graded answer with a slip."""
 
-    ``outcome`` is "named", "silent", "unread", "several messages: …", or the one wrong message.
-    """
-
+    # `outcome` is "named", "silent", "unread", "several messages: …", or the one wrong message.
     robot: str
     kind: str
     slip: TableSlip
@@ -37,7 +35,6 @@ class Trial:
 
 
 def exercise_of(robot: SpoiltRobot) -> Exercise:
-    """Return the exercise of a robot with a part of each kind."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / f"{robot.name}.toml"
         file.write_text(robot.text, encoding="utf-8")
@@ -45,7 +42,7 @@ def exercise_of(robot: SpoiltRobot) -> Exercise:
 
 
 def answer_to(kind: str, robot: SpoiltRobot, rows: list[list[sp.Expr]]) -> Any:
-    """Return the answer to a kind of part that follows from a table."""
+    """Return the answer that follows from a table."""
     if kind == "links":
         return [printed(link(row, robot.convention)) for row in rows]
     reached = pose(rows, robot.convention)
@@ -57,7 +54,6 @@ def answer_to(kind: str, robot: SpoiltRobot, rows: list[list[sp.Expr]]) -> Any:
 
 
 def spoilt(robot: SpoiltRobot, slip: TableSlip | None) -> list[list[sp.Expr]]:
-    """Return the table with the slip, or the correct table for None."""
     if slip is not None and slip.rows:
         return [list(row) for row in slip.rows]
     rows = [list(row) for row in robot.rows]
@@ -67,7 +63,7 @@ def spoilt(robot: SpoiltRobot, slip: TableSlip | None) -> list[list[sp.Expr]]:
 
 
 class Numbers:
-    """Compute link transforms at random joint values, to find slips that give equal answers."""
+    """Computes link transforms at random joint values."""
 
     def __init__(self, robot: SpoiltRobot) -> None:
         self.robot = robot
@@ -78,7 +74,6 @@ class Numbers:
         self.values = dict(zip(symbols, values.tolist(), strict=True))
 
     def of(self, slip: TableSlip | None) -> np.ndarray:
-        """Return all link transforms ``(rows, 4, 4)`` of the table with the slip."""
         rows = spoilt(self.robot, slip)
         numeric = [[float(cell.subs(self.values)) for cell in row] for row in rows]
         return np.array(
@@ -90,7 +85,6 @@ class Numbers:
 
 
 def asked(kind: str, links: np.ndarray) -> np.ndarray:
-    """Return the answer to a kind of part, from link transforms in numbers."""
     if kind == "links":
         return links
     reached: np.ndarray = np.linalg.multi_dot(links) if len(links) > 1 else links[0]
@@ -100,7 +94,6 @@ def asked(kind: str, links: np.ndarray) -> np.ndarray:
 
 
 def trials(robot: SpoiltRobot, chosen: Callable[[int], bool] = lambda _: True) -> Iterator[Trial]:
-    """Yield a trial of each chosen slip in each kind of part."""
     exercise, numbers, slips = exercise_of(robot), Numbers(robot), list(slips_of(robot))
     right, found = numbers.of(None), [numbers.of(slip) for slip in slips]
     for kind in KINDS:
@@ -126,7 +119,6 @@ def _is_same(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def outcome(report: PartReport, slip: TableSlip, *, alone: bool) -> str:
-    """Return "named" if the report has one message, about this slip; else what it has instead."""
     if report.verdict is Verdict.UNREADABLE:
         return "unread"
     said = [m for m, _, _ in messages_of(report) if m.severity is Severity.ERROR]

@@ -1,4 +1,4 @@
-"""The robots of the campaign: those of shipped exercises, and some others."""
+"""The robots whose slips are tried."""
 
 import re
 import tomllib
@@ -51,12 +51,10 @@ UNSEEN = {
 
 @dataclass(frozen=True)
 class SpoiltRobot:
-    """A robot: its exercise as TOML, its table in SymPy (a, α, d, θ in radians) and its joints.
+    """A robot: its exercise, and its table in SymPy."""
 
-    ``joints`` has an entry for each row: the number, the variable, and True for a prismatic joint;
-    or None for a fixed row.
-    """
-
+    # `joints` has an entry for each row: the number, the variable, and True for a prismatic joint;
+    # or None for a fixed row.
     name: str
     text: str
     convention: str
@@ -65,7 +63,6 @@ class SpoiltRobot:
 
 
 def robots() -> Iterator[SpoiltRobot]:
-    """Yield the robots of shipped exercises without variants, and some others."""
     for file in sorted(shipped_folder().glob("*.toml")):
         text = file.read_text(encoding="utf-8")
         if "table = [\n" in text and "[robot]" in text and "[vary]" not in text:
@@ -98,7 +95,6 @@ def _degrees(cell: str) -> str:
 
 
 def robot_of(name: str, setting: str) -> SpoiltRobot:
-    """Return the robot of ``setting``, the beginning of an exercise file, with parts added."""
     robot = tomllib.loads(setting)["robot"]
     variables = [sp.Symbol(each) for each in robot["joints"]]
     first = int("".join(filter(str.isdigit, robot["joints"][0])))
@@ -113,7 +109,6 @@ def robot_of(name: str, setting: str) -> SpoiltRobot:
 
 
 def _formula(cell: str) -> sp.Expr:
-    """Return the formula of a cell: a sum of letters, numbers and degrees."""
     terms = re.findall(r"([+-]?)\s*([A-Za-z]\w*|[\d.]+(?:deg)?)", cell)
     return sp.Add(*(_term(term) * (-1 if sign == "-" else 1) for sign, term in terms))
 

@@ -1,7 +1,6 @@
-"""Generate slips of a table: in one cell, or in whole rows and columns.
+"""Generate slips of a table: in one cell, or in whole rows and columns."""
 
-In a cell: wrong sign, zero, quarter turn, wrong index, missing or negated joint variable.
-"""
+# In a cell: wrong sign, zero, quarter turn, wrong index, missing or negated joint variable.
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -16,12 +15,10 @@ A, ALPHA, D, THETA = range(4)
 
 @dataclass(frozen=True)
 class TableSlip:
-    """A slip: the row, column and wrong formula of a cell, or a whole wrong table (``rows``).
+    """A slip in one cell, or a whole wrong table."""
 
-    A message with one of ``codes`` names the slip. ``joint`` is the number of the row's joint; for
-    a fixed row, it is the number of the last joint. ``label`` is the label of the row.
-    """
-
+    # A message with one of `codes` names the slip. `joint` is the number of the row's joint; for a
+    # fixed row, it is the number of the last joint. `label` is the label of the row.
     row: int
     column: int
     cell: sp.Expr
@@ -39,11 +36,10 @@ def slips_of(robot: SpoiltRobot) -> Iterator[TableSlip]:
 
 
 def _of_rows(robot: SpoiltRobot) -> Iterator[tuple[str, tuple[tuple[sp.Expr, ...], ...]]]:
-    """Yield whole wrong tables, each with the codes of its slip.
-
-    In a wrong table, a and d are exchanged in a row, two rows are exchanged, all α are negated, or
-    the rows are those of the other convention.
-    """
+    # Yield whole wrong tables, each with the codes of its slip.
+    #
+    # In a wrong table, a and d are exchanged in a row, two rows are exchanged, all α are negated,
+    # or the rows are those of the other convention.
     rows, none = robot.rows, (sp.Integer(0), sp.Integer(0))
     for i, ((a, alpha, d, theta), joint) in enumerate(zip(rows, robot.joints, strict=True)):
         moving = joint[1] if joint and d.has(joint[1]) else 0

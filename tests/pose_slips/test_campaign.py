@@ -1,4 +1,4 @@
-"""A sample of the campaign: ``make slips`` tries all slips of all robots."""
+"""Try some slips of some robots; ``make slips`` tries all."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,8 +1,7 @@
-"""`python -m tests.server.impatient`: the service with short timeouts, so that tests are quick.
+"""`python -m tests.server.impatient`: the service with short timeouts for tests."""
 
-It has two more routes, `GET /hanging` and `GET /working` (in a thread), which never answer. The
-environment variable ``TIMEOUT`` lengthens all timeouts except for heads and the shutdown.
-"""
+# It has two more routes, `GET /hanging` and `GET /working` (in a thread), which never answer. The
+# environment variable `TIMEOUT` lengthens all timeouts except for heads and the shutdown.
 
 import asyncio
 import os

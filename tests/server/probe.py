@@ -1,9 +1,8 @@
-"""Compare how servers treat seven slow clients: `python -m tests.server.probe`.
+"""Compare how servers treat slow clients: `python -m tests.server.probe`."""
 
-Print the seconds after which each server closes the connection of each client, as a table in
-Markdown. granian and hypercorn are installed into a temporary folder; a server that cannot be
-installed has no column.
-"""
+# Print the seconds after which each server closes the connection of each client, as a table in
+# Markdown. granian and hypercorn are installed into a temporary folder; a server that cannot be
+# installed has no column.
 
 import os
 import select
@@ -85,7 +84,6 @@ def free_port() -> int:
 
 
 def probed(packages: list[str], command: list[str]) -> Mapping[str, float | None] | None:
-    """Return the seconds until a server closes each connection, or None without the server."""
     with tempfile.TemporaryDirectory() as folder, (Path(folder) / "log").open("wb") as log:
         pip = [sys.executable, "-m", "pip", "install", "--quiet", "--target", folder]
         if packages and subprocess.run([*pip, *packages], stderr=log, check=False).returncode:
@@ -116,7 +114,6 @@ def probed(packages: list[str], command: list[str]) -> Mapping[str, float | None
 
 
 def main() -> None:
-    """Print the table of all servers and clients."""
     columns = {name: found for name, how in SERVERS.items() if (found := probed(*how)) is not None}
     lines = [["a client that …", *columns], ["---"] * (1 + len(columns))]
     for client in CLIENTS:

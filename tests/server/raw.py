@@ -21,13 +21,12 @@ HEALTH = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n"
 
 
 def until(holds: Callable[[], bool]) -> None:
-    """Wait until a condition holds, or until the test's own timeout."""
+    """Wait until a condition holds."""
     while not holds():
         time.sleep(0.02)
 
 
 def preview(body: bytes = TEXT, *headers: bytes) -> bytes:
-    """Return the bytes of a small request with a body."""
     lines = [b"POST /v1/preview HTTP/1.1", b"Host: x", b"Content-Length: %d" % len(body), *headers]
     return b"\r\n".join(lines) + b"\r\n\r\n" + body
 
@@ -42,11 +41,9 @@ class Service:
 
     @property
     def log(self) -> str:
-        """The text of the log so far."""
         return self._log.read_text(encoding="utf-8")
 
     def _wait_for_port(self) -> int:
-        """Return the port from the log, as soon as the process has logged it."""
         while True:
             if found := re.search(r"running on http://\S+:(\d+)", self.log):
                 return int(found[1])
@@ -55,7 +52,6 @@ class Service:
             time.sleep(0.02)
 
     def connect(self, sent: bytes = b"", source: str = "127.0.0.1") -> socket.socket:
-        """Connect and send bytes; retry until a process listens."""
         end = time.monotonic() + ANSWER
         while True:
             try:
@@ -71,7 +67,7 @@ class Service:
                 return connection
 
     def ask(self, sent: bytes, source: str = "127.0.0.1") -> list["Answer"]:
-        """Send bytes, close the sending end, and return all responses."""
+        """Send bytes and return all responses."""
         with self.connect(sent, source) as connection:
             connection.shutdown(socket.SHUT_WR)
             return answers(connection)
@@ -100,7 +96,6 @@ class Answer:
         self.body = body
 
     def json(self) -> Any:
-        """Return the body, parsed as JSON."""
         return json.loads(self.body)
 
 
@@ -114,7 +109,8 @@ def received(connection: socket.socket) -> bytes:
 
 
 def answers(connection: socket.socket) -> list[Answer]:
-    """Return all responses until the server closes the connection. Fail if one is incomplete."""
+    """Return all responses until the server closes the connection."""
+    # Fail if one is incomplete.
     stream, found = received(connection), []
     while stream:
         head, end, rest = stream.partition(b"\r\n\r\n")
@@ -127,7 +123,7 @@ def answers(connection: socket.socket) -> list[Answer]:
 
 
 def workers(running: Service) -> set[int]:
-    """Return the child processes of the service, without multiprocessing's resource tracker."""
+    """Return the worker processes of the service."""
     found = set()
     for folder in Path("/proc").glob("[0-9]*"):
         with contextlib.suppress(OSError):

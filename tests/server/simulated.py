@@ -1,8 +1,7 @@
-"""Simulate clients of one process on a simulated clock, which advances by work and by waiting.
+"""Simulate clients of one process on a simulated clock."""
 
-The event loop and the admission are real. The waiting times are exact, however busy this machine
-is.
-"""
+# The event loop and the admission are real. The waiting times are exact, however busy this machine
+# is.
 
 import asyncio
 import selectors
@@ -24,7 +23,7 @@ ORDINARY = 0.0075
 
 
 def simulate_speed(monkeypatch: pytest.MonkeyPatch, slower: float = 1.0) -> None:
-    """Let the service find the speed of the simulated machine instead of this machine's speed."""
+    # Let the service find the speed of the simulated machine instead of this machine's speed.
     monkeypatch.setattr(speed, "_measured", lambda: slower * ORDINARY / speed.ORDINARY)
 
 
@@ -41,12 +40,10 @@ class _Clock(selectors.SelectSelector):
 
 
 class Process:
-    """A simulated process with fair admission; each request says how long it takes.
+    """A simulated process; each request says how long it takes."""
 
-    A grading has a checkpoint every ``step`` seconds, at which it may be suspended. ``slower`` is
-    the factor by which the simulated machine is slower than usual.
-    """
-
+    # A grading has a checkpoint every `step` seconds, at which it may be suspended. `slower` is the
+    # factor by which the simulated machine is slower than usual.
     def __init__(
         self, monkeypatch: pytest.MonkeyPatch, step: float = 0.001, slower: float = 1.0
     ) -> None:

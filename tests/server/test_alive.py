@@ -1,4 +1,4 @@
-"""The health check of the image."""
+"""Test the health check of the container image."""
 
 import json
 import re

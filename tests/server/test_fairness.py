@@ -1,4 +1,4 @@
-"""How long clients wait for each other, in a simulation."""
+"""Simulate how long clients wait for each other."""
 
 import itertools
 import random
@@ -20,7 +20,7 @@ WRONG = 10 * WRONG[:-1] + 9 * WRONG[-1:] + [0.050]
 
 
 def cost(choose: random.Random) -> float:
-    """Return the random duration of a grading in seconds; half of the answers are wrong."""
+    """Return the random duration of a grading in seconds."""
     right = choose.random() < 0.5
     return 0.001 if right else choose.choice([0.002, 0.003, 0.003, 0.004, 0.004, 0.006, 0.015])
 
@@ -28,11 +28,9 @@ def cost(choose: random.Random) -> float:
 def waits(
     monkeypatch: pytest.MonkeyPatch, pause: float, step: float, *attack: object, apart: bool = False
 ) -> Waits:
-    """Return the sorted waiting times of six honest clients.
-
-    If ``attack`` has the parameters of ``attacker``, sixteen attackers send requests, too. The
-    honest clients share one address unless ``apart``.
-    """
+    """Return the sorted waiting times of six honest clients."""
+    # If `attack` has the parameters of `attacker`, sixteen attackers send requests, too. The honest
+    # clients share one address unless `apart`.
     process = Process(monkeypatch, step)
     ports = itertools.count(1000)
     found: Waits = []

@@ -1,4 +1,4 @@
-"""The bytes of unread responses count towards the limit of the client's connection."""
+"""Unread responses count towards the byte limit of their connection."""
 
 import asyncio
 import contextlib
@@ -25,7 +25,6 @@ async def large(_scope: Any, _receive: Any, send: Any) -> None:
 
 
 async def unsent_to(clients: int, *, reading: bool) -> tuple[int, int]:
-    """Return the unsent bytes of the responses to some clients, and how many stay connected."""
     loop = asyncio.get_running_loop()
     config = uvicorn.Config(large, http=GuardedProtocol, ws="none", log_level="critical")
     config.load()

@@ -1,7 +1,6 @@
-"""Check the parts of uvicorn that the server uses although they are not documented.
+"""Check the undocumented parts of uvicorn that the server uses."""
 
-If a new version of uvicorn changes one of these parts, the tests name the part.
-"""
+# If a new version of uvicorn changes one of these parts, the tests name the part.
 
 import ast
 import asyncio
@@ -69,7 +68,6 @@ def tree_of(of: type) -> ast.AST:
 
 
 def set_on_self(of: type) -> set[str]:
-    """Return the attributes that a class sets on its instances, or annotates in its body."""
     found = set()
     for node in ast.walk(tree_of(of)):
         match node:
@@ -83,7 +81,6 @@ def set_on_self(of: type) -> set[str]:
 
 
 def read_from(of: type, *owners: str) -> Iterator[str]:
-    """Yield the names of the attributes of ``owners``, such as ``self``, that a class uses."""
     for node in ast.walk(tree_of(of)):
         if isinstance(node, ast.Attribute) and ast.unparse(node.value) in owners:
             yield node.attr
@@ -91,7 +88,6 @@ def read_from(of: type, *owners: str) -> Iterator[str]:
 
 @cache
 def own_names(of: type) -> set[str]:
-    """Return the attributes that a class of this project defines itself."""
     return set(vars(of)) | (set_on_self(of) - ATTRIBUTES[of.__mro__[1]])
 
 

@@ -1,8 +1,10 @@
-"""Submit model solutions in the notation of other programs: one matrix, or all link transforms.
+"""Submit model solutions in the notation of other programs.
 
-``python -m tests.solutions.prints`` submits all of them, ``test_printers`` a sample. Printers that
-SymPy lacks are written here; they imitate the programs.
+``python -m tests.solutions.prints`` submits all of them.
 """
+
+# Printers that SymPy lacks are written here; they imitate the programs. `test_printers` submits a
+# sample.
 
 import argparse
 import re
@@ -252,7 +254,7 @@ IN_BRACKETS: Mapping[str, Join] = {
 
 
 class Print(NamedTuple):
-    """A model answer as another program prints it. It must get full marks."""
+    """A model answer as another program prints it."""
 
     exercise: str
     part: str
@@ -271,7 +273,6 @@ def matrix_of(exercise: Exercise, algebra: Algebra, entries: Sequence[Sequence[s
 
 
 def matrices(exercise: Exercise) -> Iterator[tuple[str, list[sp.Matrix]]]:
-    """Yield each part's id and model matrices: all link transforms, or a list of one matrix."""
     algebra = Algebra(exercise)
     for solution in solved(exercise).parts:
         answer = solution.answer
@@ -283,16 +284,14 @@ def matrices(exercise: Exercise) -> Iterator[tuple[str, list[sp.Matrix]]]:
 
 
 def ways_around(name: str) -> Mapping[str, Callable[[str], str]]:
-    """Return functions that put text around a matrix, such as a name or a product in front of it.
-
-    A matrix that is drawn over several lines must begin on a new line; it gets fewer functions.
-    """
+    # Return functions that put text around a matrix, such as a name or a product in front of it.
+    #
+    # A matrix that is drawn over several lines must begin on a new line; it gets fewer functions.
     left_out = {"named", "product"} if name in DRAWN else set()
     return {way: AROUND[way] for way in AROUND if way not in left_out}
 
 
 def ways_together(name: str) -> Mapping[str, Join]:
-    """Return the ways to write all link transforms in one text."""
     if name in DRAWN:
         more = ["in order"] if name.startswith("pretty") else []
         return {way: LISTS[way] for way in ("MATLAB", "prompts", "headings", *more)}
@@ -303,7 +302,6 @@ def ways_together(name: str) -> Mapping[str, Join]:
 
 
 def prints(exercise: Exercise) -> Iterator[Print]:
-    """Yield every print of every matrix of an exercise."""
     for part_id, found in matrices(exercise):
         spec = exercise.part(part_id)
         for name, printer in PRINTERS.items():
@@ -334,7 +332,6 @@ _RIGHTLY_REFUSED = {
 
 
 def refused(each: Print, exercise: Exercise) -> str:
-    """Return why a printed answer gets no full marks, or "" if it gets them or may be refused."""
     text = each.text
     report = part(handed_in(exercise, {each.part: text}), each.part)
     codes = {message.code for message in report.feedback}

@@ -1,4 +1,4 @@
-"""Model solutions of the shipped exercises, each computed once in a process."""
+"""Compute the model solution of each shipped exercise once."""
 
 from collections.abc import Callable
 from typing import TypeVar
@@ -10,7 +10,7 @@ Answer = TypeVar("Answer")
 
 
 def memoized_by_exercise(compute: Callable[[Exercise], Answer]) -> Callable[[Exercise], Answer]:
-    """Memoize a function of an exercise by the exercise's id and version."""
+    """Memoize a function of an exercise."""
     known: dict[tuple[str, str], Answer] = {}
 
     def of(exercise: Exercise) -> Answer:

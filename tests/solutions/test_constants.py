@@ -1,4 +1,4 @@
-"""Robots given in numbers: each constant in the model solution is one correct number."""
+"""In solutions of robots given in numbers, each constant is one correct number."""
 
 from collections.abc import Callable
 
@@ -50,7 +50,7 @@ home = true
 
 
 def link(a: float, alpha: float, d: float, theta: float) -> np.ndarray:
-    """Return the standard link transform. Source: Spong et al., eq. 3.10."""
+    """Return the standard link transform (Spong et al., eq. 3.10)."""
     ca, sa, ct, st = np.cos(alpha), np.sin(alpha), np.cos(theta), np.sin(theta)
     return np.array(
         [[ct, -st * ca, st * sa, a * ct], [st, ct * ca, -ct * sa, a * st], [0, sa, ca, d],

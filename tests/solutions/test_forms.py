@@ -81,7 +81,7 @@ def test_the_pose_of_the_stanford_arm_has_the_textbooks_brackets(stanford: Model
 
 
 def test_the_link_transforms_of_the_stanford_arm(stanford: ModelSolution) -> None:
-    """The expected A_1 and A_2 are from MEAM 520, More Denavit-Hartenberg."""
+    # The expected A_1 and A_2 are from MEAM 520, More Denavit-Hartenberg.
     assert [link.label for link in stanford.links] == ["1", "2", "3", "4", "5", "6"]
     assert stanford.links[0].text == (
         "[c1, 0,  -s1, 0;\n s1, 0,  c1,  0;\n 0,  -1, 0,   0;\n 0,  0,  0,   1]"
@@ -115,7 +115,7 @@ def test_the_zyz_angles_of_a_wrist_are_its_joint_angles(catalogue: Mapping[str, 
 def test_the_spatial_arm_has_the_correct_roll_pitch_yaw_angles(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The lecture prints β = θ2 + θ3, which contradicts its own formula."""
+    # The lecture prints β = θ2 + θ3, which contradicts its own formula.
     answers = solved(catalogue["spatial-rrr"]).answers
     assert answers["rpy"] == ["theta1", "-theta2 - theta3", "pi/2"]
 

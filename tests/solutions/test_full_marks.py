@@ -17,7 +17,6 @@ IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 
 
 def posted(part: PartAnswer, solution: ModelSolution, form: str) -> object:
-    """Return the part's answer as JSON, or as text to paste."""
     if form == "json":
         return part.answer
     if part.kind == "link_transforms":  # a list of matrices, each of which is pasted

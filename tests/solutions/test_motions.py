@@ -1,4 +1,4 @@
-"""Symbolic products of motions equal the numeric products of service.kinematics."""
+"""Symbolic products of motions equal numeric products."""
 
 from collections.abc import Callable
 from typing import Any

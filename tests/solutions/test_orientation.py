@@ -1,4 +1,4 @@
-"""Euler angles as formulas, compared with SciPy."""
+"""Compare formulas of Euler angles with SciPy."""
 
 from itertools import permutations, product
 

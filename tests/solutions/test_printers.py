@@ -1,8 +1,7 @@
-"""The model solution of every exercise gets full marks in the output format of other programs.
+"""Model solutions get full marks in the output formats of other programs."""
 
-``tests.solutions.prints`` defines these formats and submits every solution in every format; this
-file submits a sample.
-"""
+# `tests.solutions.prints` defines these formats and submits every solution in every format; this
+# file submits a sample.
 
 from collections.abc import Callable, Mapping
 from functools import partial, reduce
@@ -35,7 +34,6 @@ _expressions: dict[tuple[str, str | float], sympy.Expr] = {}
 
 
 def expression(exercise: Exercise, entry: str | float) -> sympy.Expr:
-    """Return the entry as a SymPy expression (memoized)."""
     key = (exercise.id, entry)
     if key not in _expressions:
         _expressions[key] = Algebra(exercise).of(read(entry, exercise.vocabulary))
@@ -43,7 +41,6 @@ def expression(exercise: Exercise, entry: str | float) -> sympy.Expr:
 
 
 def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], str]) -> object:
-    """Return the answer with every formula converted to SymPy and printed by ``printer``."""
     if isinstance(answer, dict):
         # The marks on a slip are no formulas.
         return {
@@ -61,7 +58,6 @@ def printed(answer: object, exercise: Exercise, printer: Callable[[sympy.Expr], 
 
 
 def _unchanged_entries(before: object, after: object) -> int:
-    """Return the number of long entries that are the same before and after."""
     if isinstance(before, list) and isinstance(after, list):
         return sum(map(_unchanged_entries, before, after))
     return int(isinstance(before, str) and before == after and len(before) > 100)
@@ -121,7 +117,7 @@ LONG = (
 def test_the_expanded_pose_of_seven_joints_gets_full_marks(
     printer: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """This is the longest pose in textbook exercises: entries of 1,100 characters."""
+    # This is the longest pose in textbook exercises: entries of 1,100 characters.
     exercise = catalogue["baxter-left-arm"]
     write = partial(MATRIX_PRINTERS[printer], multiplied_out(exercise))
     assert refused(Print(exercise.id, "pose", printer, write), exercise) == ""
@@ -129,7 +125,8 @@ def test_the_expanded_pose_of_seven_joints_gets_full_marks(
 
 @memoized_by_exercise
 def multiplied_out(exercise: Exercise) -> sympy.Matrix:
-    """Return the product of the link matrices (SHV eq. 3.10), expanded and not simplified."""
+    """Return the robot's pose as expanded formulas."""
+    # The link matrices are those of SHV, eq. 3.10.
     table = exercise.robot.tables[Convention.STANDARD]
     algebra = Algebra(exercise)
 

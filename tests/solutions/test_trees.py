@@ -1,4 +1,4 @@
-"""SymPy expressions printed in students' notation."""
+"""Print SymPy expressions in students' notation."""
 
 from collections.abc import Callable
 

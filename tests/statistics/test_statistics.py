@@ -1,4 +1,4 @@
-"""The statistics of a class, compared with counts made by hand."""
+"""Compare the statistics of a class with counts made by hand."""
 
 import tracemalloc
 from dataclasses import replace
@@ -115,7 +115,6 @@ def test_submissions_with_identical_mistakes_are_grouped(counted: ClassStatistic
 
 
 def with_entries(report: Report, text: str) -> Report:
-    """Return the report with only its table part, in which each entry is this text and wrong."""
     table = report.parts[0]
     cells = tuple(
         CellReport(name, Verdict.INCORRECT, read=ReadEntry(text, text)) for name in "abcd"

@@ -1,4 +1,4 @@
-"""A file answers an exercise because of its name or content, or because there is only one."""
+"""Find which exercise a file answers."""
 
 import json
 from collections.abc import Mapping
@@ -20,7 +20,6 @@ CSV = "a, alpha, d, theta\n0, 0, 0, q1\n"
 
 
 def handed(folder: Path, files: Mapping[str, Any], what: Assignment) -> list[ExerciseAnswers]:
-    """Write these files into a student's folder; return the answers that the program finds."""
     for name, content in files.items():
         file = folder / "anna" / name
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -1,4 +1,4 @@
-"""The service has its own sentence for every error in a request body, in each language."""
+"""Every error in a request body has a translated sentence."""
 
 from collections.abc import Iterator, Mapping
 from typing import Any, Final
@@ -31,7 +31,8 @@ def errors_of(model: type[BaseModel], body: object) -> list[Any]:
 
 
 def request_models() -> Iterator[type[BaseModel]]:
-    """Yield the models of request bodies. Models of responses do not refuse unknown fields."""
+    """Yield the models of request bodies."""
+    # Models of responses do not refuse unknown fields.
     assert application is not None
     waiting: list[type[BaseModel]] = [BaseModel]
     while waiting:
@@ -43,7 +44,7 @@ def request_models() -> Iterator[type[BaseModel]]:
 
 
 def wrong(schema: Mapping[str, Any], models: Mapping[str, Any]) -> Iterator[Any]:
-    """Yield values that do not match a JSON schema, each with at least one error."""
+    """Yield values that do not match a JSON schema."""
     yield from HOSTILE
     if "$ref" in schema:
         schema = models[schema["$ref"].rpartition("/")[2]]

@@ -99,7 +99,7 @@ def test_brackets_in_strings_are_not_counted_as_nesting() -> None:
 
 
 def test_too_many_values_are_refused() -> None:
-    """Without the limit, the program would read, check and hash each of 120,000 numbers."""
+    # Without the limit, the program would read, check and hash each of 120,000 numbers.
     assert read_json(b"[" + b"1," * MAX_COMMAS + b"1]") == [1] * (MAX_COMMAS + 1)
     with pytest.raises(MalformedError, match="more than 20000 commas"):
         read_json(b"[" + b"1," * (MAX_COMMAS + 1) + b"1]")

@@ -1,14 +1,11 @@
-"""Bring the catalogues of all languages up to date with the sentences in the source.
+"""Update the translations with the sentences in the source.
 
-``python -m tests.translations.catalogues`` adds new sentences to each ``.po`` file, removes
-those that are no longer in the source, and compiles the ``.mo`` files for the program. Sentences
-without a translation stay empty; nothing is guessed. The command writes these sentences to
-``untranslated.json``, with an empty text for each language. Fill in the texts, and run the command
-again.
-
-For one language, ``--missing de sentences`` prints the sentences that German lacks, as JSON;
-``--fill de sentences FILE`` writes translations into the catalogue from such a JSON file.
+``python -m tests.translations.catalogues`` updates all languages. It writes sentences without a
+translation to ``untranslated.json``. Fill in the texts there, and run the command again.
 """
+
+# For one language, `--missing de sentences` prints the sentences that German lacks, as JSON;
+# `--fill de sentences FILE` writes translations into the catalogue from such a JSON file.
 
 import argparse
 import json
@@ -51,11 +48,9 @@ _QUOTED: Final = re.compile(r"`[^`]+`")
 
 @cache
 def extracted(domain: str) -> Catalog:
-    """Return the sentences of a domain in the source, with their files.
-
-    Sentences in ``service/web`` belong to the domain of pages. Help texts and sentences in
-    ``service/cli`` belong to that of the command line, all other sentences to that of reports.
-    """
+    """Return the sentences of a domain (pages, command line or reports) in the source."""
+    # Sentences in `service/web` belong to the domain of pages. Help texts and sentences in
+    # `service/cli` belong to that of the command line, all other sentences to that of reports.
     found = Catalog(charset="utf-8", fuzzy=False)
     for file, method in _files(domain):
         with file.open("rb") as content:
@@ -76,7 +71,6 @@ def extracted(domain: str) -> Catalog:
 
 
 def help_texts() -> Iterator[tuple[str, str]]:
-    """Yield the paragraphs of the help of all commands and options, with their files."""
     file = "service/cli/program.py"
     yield from _help_texts(program, file)
     for name in COMMANDS:
@@ -111,7 +105,7 @@ def _domain(file: Path) -> str:
 
 
 def catalogue(code: str, domain: str) -> Catalog:
-    """Return the committed catalogue of a language, or an empty catalogue if there is none."""
+    """Return the catalogue of a language, or an empty one."""
     file = FOLDER / code / f"{domain}.po"
     if not file.is_file():
         return Catalog(locale=code, domain=domain, charset="utf-8", fuzzy=False)
@@ -138,7 +132,7 @@ def updated(code: str, domain: str) -> Catalog:
 
 
 def as_po(found: Catalog) -> bytes:
-    """Return the text of a catalogue, sorted by files, without line numbers and dates."""
+    """Return the text of a ``.po`` file."""
     out = BytesIO()
     # Babel's own comment names a holder of rights and a year.
     found.header_comment = "# Translations of DH Grader; the terms are those of glossary.md."
@@ -155,7 +149,7 @@ def as_po(found: Catalog) -> bytes:
 
 
 def as_mo(found: Catalog) -> bytes:
-    """Return the compiled catalogue, without the sentences that have no translation."""
+    """Return the content of a ``.mo`` file, without untranslated sentences."""
     # The text has no date, so the header would have that of today.
     found.creation_date = _NO_DATE
     out = BytesIO()
@@ -164,7 +158,7 @@ def as_mo(found: Catalog) -> bytes:
 
 
 def write(code: str, domain: str, found: Catalog) -> None:
-    """Write the ``.po`` file of a catalogue, and compile its ``.mo`` file from the ``.po`` file."""
+    """Write the ``.po`` and the ``.mo`` file of a catalogue."""
     (FOLDER / code).mkdir(exist_ok=True)
     text = as_po(found)
     (FOLDER / code / f"{domain}.po").write_bytes(text)
@@ -173,11 +167,9 @@ def write(code: str, domain: str, found: Catalog) -> None:
 
 
 def faults(found: Catalog) -> Iterator[str]:
-    """Yield the faults in the translations of a catalogue, one line for each wrong translation.
-
-    A translation must have the same placeholders and the same texts between backticks as its
-    sentence. The translation must begin and end with a blank exactly where the sentence does.
-    """
+    """Yield the faults in the translations of a catalogue."""
+    # A translation must have the same placeholders and the same texts between backticks as its
+    # sentence. The translation must begin and end with a blank exactly where the sentence does.
     for message in found:
         sources = _texts(message.id)
         for text in filter(None, _texts(message.string) if message.id else ()):
@@ -201,7 +193,6 @@ def _ends(text: str) -> tuple[bool, bool]:
 
 
 def _missing(code: str, domain: str) -> list[dict[str, Any]]:
-    """Return the sentences without a translation, each with an empty text to be filled in."""
     plurals = catalogue(code, domain).num_plurals
     found = []
     for message in updated(code, domain):
@@ -218,7 +209,6 @@ def _texts(text: Any) -> tuple[str, ...]:
 
 
 def untranslated() -> list[dict[str, Any]]:
-    """Return the sentences that some language lacks, with an empty text for each such language."""
     found: dict[object, dict[str, Any]] = {}
     for domain in DOMAINS:
         for code in CODES:
@@ -229,7 +219,6 @@ def untranslated() -> list[dict[str, Any]]:
 
 
 def filled(found: Catalog, translations: Iterable[tuple[Any, Any]]) -> Catalog:
-    """Return the catalogue with these translations: pairs of a sentence and its translation."""
     for sentence, text in translations:
         message = found.get(tuple(sentence) if isinstance(sentence, list) else sentence)
         if message is None:
@@ -246,7 +235,6 @@ def _fill(code: str, domain: str, file: Path) -> None:
 
 
 def _update_all() -> None:
-    """Update all catalogues, with the translations in ``untranslated.json``."""
     known = json.loads(UNTRANSLATED.read_text("utf-8")) if UNTRANSLATED.is_file() else []
     for domain in DOMAINS:
         for code in CODES:

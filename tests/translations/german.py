@@ -1,4 +1,4 @@
-"""German for tests: each test writes the translations of a few sentences."""
+"""Offer German with a few translations to tests."""
 
 from collections.abc import Mapping
 from gettext import NullTranslations
@@ -23,7 +23,7 @@ class _Words(NullTranslations):
 
 
 def german(words: Mapping[str, str]) -> Language:
-    """Return the language German with these translations from English, and no others."""
+    """Return the language German with only these translations."""
     # Another name: templates are cached by language, and later tests need the whole German.
     made = Language("de", "Deutsch in Tests", "de")
     made.__dict__["translation"] = _Words(words)
@@ -38,13 +38,11 @@ def offer_german(patch: pytest.MonkeyPatch, words: Mapping[str, str]) -> Languag
 
 
 def as_sentence(text: str) -> str:
-    """Return a plain text as a ``Sentence`` without values; leave other texts as they are."""
     is_plain = not isinstance(text, Sentence) and not {"{", "}"} & set(text)
     return Sentence(text) if is_plain else text
 
 
 def messages_in(report: Report | Mapping[str, Any]) -> list[str]:
-    """Return the messages about lost points in a report, or in the JSON of a report."""
     if isinstance(report, Report):
         return [each.message for part in report.parts for each in part.lost]
     return [each["message"] for part in report["parts"] for each in part["lost"]]

@@ -1,8 +1,7 @@
-"""A pseudo-language: English with accents, and a third longer.
+"""A pseudo-language: English with accents, and a third longer."""
 
-A text that the service shows without accents is not translatable.
-``python -m tests.translations.pseudo serve`` starts the service with the pseudo-language.
-"""
+# A text that the service shows without accents is not translatable. `python -m
+# tests.translations.pseudo serve` starts the service with the pseudo-language.
 
 import re
 from gettext import NullTranslations
@@ -21,10 +20,9 @@ _MORE: Final = " ťéxť"
 
 
 class PseudoTranslation(NullTranslations):
-    """Translations into the pseudo-language: each sentence, with accents."""
+    """Translates each sentence by adding accents."""
 
     def gettext(self, message: str) -> str:
-        """Return a text with accents that is a third longer."""
         pieces = _KEPT.split(message)
         told = "".join(
             each if i % 2 else each.translate(_ACCENTED) for i, each in enumerate(pieces)
@@ -33,7 +31,6 @@ class PseudoTranslation(NullTranslations):
         return told + _MORE * max(1, round(letters / 3 / len(_MORE)))
 
     def ngettext(self, one: str, many: str, count: int) -> str:
-        """Return the singular or plural text for a count, with accents."""
         return self.gettext(one if count == 1 else many)
 
 
@@ -51,7 +48,6 @@ def offer_pseudo() -> None:
 
 
 def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Offer only English in this test."""
     # The last first: at the end of the test, they come back in their own order.
     for code in [code for code in reversed(list(LANGUAGES)) if code != ENGLISH.code]:
         monkeypatch.delitem(LANGUAGES, code)

@@ -1,4 +1,4 @@
-"""The catalogues of all languages fit the sentences in the source."""
+"""The translations of all languages match the sentences in the source."""
 
 import re
 from io import BytesIO

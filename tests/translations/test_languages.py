@@ -1,4 +1,4 @@
-"""The choice of a language for a reader."""
+"""Choose the language for a reader."""
 
 import pickle
 

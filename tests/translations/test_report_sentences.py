@@ -1,4 +1,4 @@
-"""Every message of a report is a ``Sentence``, so that it can be translated."""
+"""Every message of a report can be translated."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -32,7 +32,6 @@ class Pseudo:
     """A language for tests: English in capital letters."""
 
     def gettext(self, message: str, /) -> str:
-        """Return the template in capital letters, with unchanged placeholders."""
         pieces = []
         for text, name, _, _ in Formatter().parse(message):
             pieces.append(text.upper().replace("{", "{{").replace("}", "}}"))
@@ -40,7 +39,6 @@ class Pseudo:
         return "".join(pieces)
 
     def ngettext(self, one: str, many: str, count: int, /) -> str:
-        """Return the template for this count in capital letters."""
         return self.gettext(one if count == 1 else many)
 
 
@@ -59,7 +57,6 @@ def reports(share: int) -> tuple[PartReport, ...]:
 
 
 def said_of(part: PartReport) -> Iterator[tuple[str, str]]:
-    """Yield the texts in the report on a part, each with the code of its message."""
     for message, _, _ in messages_of(part):
         yield message.message, message.code
         for correction in (message.correction, *(each.correction for each in message.places or ())):
@@ -108,7 +105,6 @@ each_share = pytest.mark.parametrize("share", range(SHARES))
 
 
 def leaves(sentence: Sentence) -> Iterator[tuple[str, str]]:
-    """Yield the names and values that a sentence shows, also those in nested sentences."""
     is_plural = sentence.plural and sentence.values["count"] != 1
     template = sentence.plural if is_plural else sentence.template
     for name, value in sentence.values.items():
@@ -119,7 +115,6 @@ def leaves(sentence: Sentence) -> Iterator[tuple[str, str]]:
 
 
 def is_prose(value: str) -> bool:
-    """True if a value has English words and is not the Unicode name of a character."""
     try:
         lookup(value)
     except KeyError:

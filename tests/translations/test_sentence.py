@@ -1,4 +1,4 @@
-"""A ``Sentence`` and its translation into another language."""
+"""Translate a ``Sentence`` into another language."""
 
 import copy
 import pickle
@@ -11,7 +11,7 @@ from service.translations import LANGUAGES, bulleted, joined, listed, say, say_c
 
 
 class German(NullTranslations):
-    """A language for tests: German translations of a few sentence templates."""
+    """Translates a few sentences into German."""
 
     words: ClassVar = {
         "{first} and {last}": "{first} und {last}",
@@ -21,11 +21,9 @@ class German(NullTranslations):
     }
 
     def gettext(self, message: str) -> str:
-        """Return the German template, or the English one if there is no translation."""
         return self.words.get(message, message)
 
     def ngettext(self, one: str, many: str, count: int) -> str:
-        """Return the German template for a count."""
         return self.gettext(one if count == 1 else many)
 
 

@@ -1,4 +1,4 @@
-"""Formulas in a text are converted to MathML."""
+"""Convert the formulas in a text to MathML."""
 
 import re
 
@@ -8,7 +8,6 @@ from service.typeset.formulas import formula
 
 
 def shown(html: str) -> str:
-    """Return the text of the HTML, with [ ] around each formula."""
     html = html.replace("<math>", "[").replace("</math>", "]")
     return re.sub("<[^>]*>|&#x206[12];", "", html)
 

@@ -1,4 +1,4 @@
-"""Symbol names in texts; `tests/front/units/names.test.js` tests scripts with the same cases."""
+"""Find symbol names in texts."""
 
 import json
 import time

@@ -1,4 +1,4 @@
-"""Statements as HTML: Markdown and formulas, and nothing that a browser would run or load."""
+"""Convert statements to HTML without scripts or external content."""
 
 from html.parser import HTMLParser
 
@@ -8,7 +8,7 @@ from service.typeset.statement import statement_html
 
 
 class Elements(HTMLParser):
-    """The elements and attributes of a text, as the parser of a browser finds them."""
+    """The HTML elements and attributes in a text."""
 
     def __init__(self, html: str) -> None:
         super().__init__()

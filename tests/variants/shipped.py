@@ -1,4 +1,4 @@
-"""The shipped exercises with ``[vary]``."""
+"""The shipped exercises that have variants."""
 
 from service.catalogue import Exercise, load_exercise, shipped_folder
 

@@ -1,4 +1,4 @@
-"""Deployed variants are different and equally hard; the exercise file contains their seeds."""
+"""The variants of an assignment are different and equally hard."""
 
 import tomllib
 

@@ -1,4 +1,4 @@
-"""The shipped exercises with variants: every seed is sound, and as hard as the others."""
+"""All variants of a shipped exercise are sound and equally hard."""
 
 import re
 from collections.abc import Iterable, Iterator
@@ -62,7 +62,7 @@ def test_statement_and_figure_suit_every_seed(name: str) -> None:
 
 
 def slips(rows: list[list[str]]) -> Iterator[tuple[str, list[list[str]]]]:
-    """Yield a description and a wrong table for each slip in each row."""
+    """Yield wrong tables with one slip, each with a description."""
     for i in range(len(rows)):
         for slip, (column, text) in SLIPS.items():
             wrong = [list(row) for row in rows]
@@ -77,7 +77,6 @@ def points(variant: Exercise, rows: list[list[str]]) -> float:
 
 
 def alike(exercise: Exercise, seeds: Iterable[str]) -> None:
-    """Check that each slip costs the same in all variants of the same structure and difficulty."""
     earned: dict[tuple[object, ...], set[float]] = {}
     for seed in seeds:
         variant = built(exercise, seed)

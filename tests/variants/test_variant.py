@@ -1,4 +1,4 @@
-"""Variants of an exercise: their values, texts, versions and faults."""
+"""Test variants of an exercise."""
 
 import hashlib
 import json

@@ -1,4 +1,4 @@
-"""Exercise files with ``[vary]`` for the tests."""
+"""Exercise files with variants, for tests."""
 
 from pathlib import Path
 
@@ -39,13 +39,10 @@ frames = "free"
 
 
 def varied_text(vary: str = VARY, more: str = "") -> str:
-    """Return the text of an exercise file.
-
-    ``vary`` is its section ``[vary]``; ``more`` is written before the α of the second DH row.
-    """
+    """Return the text of an exercise file with variants."""
+    # `vary` is its section `[vary]`; `more` is written before the α of the second DH row.
     return _FILE.format(vary=vary, more=more)
 
 
 def varied(vary: str = VARY, more: str = "", name: str = "arm") -> Exercise:
-    """Return the exercise of ``varied_text``. Raises CatalogueError."""
     return read_exercise(Path(f"{name}.toml"), varied_text(vary, more))

@@ -1,4 +1,4 @@
-"""The service names and refuses archives among the files of a class, and never unpacks them."""
+"""The service refuses archives among a class's files, and never unpacks them."""
 
 import base64
 import gzip
@@ -31,7 +31,6 @@ def zipped(files: Iterable[tuple[str, bytes]]) -> bytes:
 
 
 def nested(content: bytes, levels: int) -> bytes:
-    """Return nested zip files that unpack to ``10 ** levels`` copies of the content."""
     for _ in range(levels):
         content = zipped((f"{i}.zip", content) for i in range(10))
     return content

@@ -1,4 +1,4 @@
-"""The words by which the catalogue's search finds the shipped exercises."""
+"""Test the words by which the search finds exercises."""
 
 import pytest
 

@@ -15,6 +15,6 @@ FORMS = [
 
 @pytest.mark.parametrize(("page", "form"), FORMS, ids=lambda each: getattr(each, "name", None))
 def test_no_form_puts_its_fields_into_an_address(page: Path, form: str) -> None:
-    """If a form has no method, a browser puts the typed text into the query of the address."""
+    # If a form has no method, a browser puts the typed text into the query of the address.
     [method] = re.findall(r'method="(\w+)"', form)
     assert method in ("post", "dialog"), page

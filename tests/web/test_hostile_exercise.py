@@ -1,4 +1,4 @@
-"""Pages and figures show the texts of a hostile exercise as text, never as markup or scripts."""
+"""Pages show the texts of a hostile exercise as plain text."""
 
 import json
 import re
@@ -28,7 +28,7 @@ WORDS = {"alt", "title", "aria-label", "content", "placeholder", "value", "data-
 
 
 class Markup(HTMLParser):
-    """The elements and the text of a page; checks that no attribute contains a script."""
+    """The elements and the text of a page."""
 
     def __init__(self, page: str) -> None:
         super().__init__(convert_charrefs=True)
@@ -62,7 +62,7 @@ def tutor_of(text: str, folder: Path) -> Tutor:
 
 @pytest.fixture(scope="module")
 def both(tmp_path_factory: pytest.TempPathFactory) -> tuple[Tutor, Tutor]:
-    """A service with the hostile exercise, and one with the same exercise in harmless words."""
+    # A service with the hostile exercise, and one with the same exercise in harmless words.
     folder = tmp_path_factory.mktemp("exercises")
     assert "stolen" not in PLAIN
     return tutor_of(HOSTILE_EXERCISE, folder / "hostile"), tutor_of(PLAIN, folder / "plain")

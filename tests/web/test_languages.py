@@ -1,4 +1,4 @@
-"""The pages in other languages: the choice of a language, the switch, and the sentences."""
+"""Test the pages in other languages."""
 
 import asyncio
 import re

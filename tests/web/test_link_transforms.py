@@ -1,4 +1,4 @@
-"""The page "DH in ten minutes" shows the matrix of a row: the product of the row's four moves."""
+"""The page "DH in ten minutes" shows the correct matrix of a table row."""
 
 import asyncio
 import html
@@ -32,7 +32,6 @@ def move(name: str) -> sp.Matrix:
 
 
 def factors(text: str) -> tuple[bool, list[str]]:
-    """Return True if a product is negative, and the sorted factors."""
     return text.startswith("-"), sorted(text.removeprefix("-").split("*"))
 
 

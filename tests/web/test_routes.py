@@ -1,4 +1,4 @@
-"""The responses for pages and static files."""
+"""Test the responses for pages and static files."""
 
 import asyncio
 import gzip

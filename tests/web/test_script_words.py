@@ -1,4 +1,4 @@
-"""The dictionaries with which the scripts of the pages translate sentences."""
+"""Test the dictionaries for translations in the scripts of pages."""
 
 import json
 import re
@@ -16,7 +16,6 @@ SCRIPTS = [file.read_text("utf-8") for file in FOLDER.rglob("*.js") if "vendor" 
 
 
 def words_in(module: str) -> tuple[dict[str, str], dict[str, list[str]]]:
-    """Return a dictionary's sentences, and its sentences that have a singular and a plural."""
     found = json.loads(module.removeprefix("export default ").removesuffix(";\n"))
     assert found["tag"] == PSEUDO.tag
     return found["words"], found["counts"]

@@ -1,1 +1,1 @@
-"""Search for the costliest requests, as an attacker with access to the code could."""
+"""Search for the requests that cost the most processor time."""

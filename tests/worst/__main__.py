@@ -1,6 +1,7 @@
-"""`python -m tests.worst --minutes 10`: find the costliest request bodies, and print their stages.
+"""`python -m tests.worst --minutes 10`: find the costliest request bodies.
 
-Exit with 1 if a body costs more than 400 times the benchmarks' floor, a pose in plain NumPy.
+Print where their processor time goes. Exit with 1 if a body costs more than 400 times a pose
+computed in NumPy.
 """
 
 import argparse
@@ -19,7 +20,6 @@ PROMISED = 400
 
 
 def line_of(found: Found, target: Target) -> str:
-    """Return the cost, the stages and the beginning of a request body as text."""
     stages = Stages()
 
     def action() -> None:
@@ -36,7 +36,6 @@ def line_of(found: Found, target: Target) -> str:
 
 
 def main() -> int:
-    """Search and print; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tests.worst", description=__doc__)
     parser.add_argument("--minutes", type=float, default=10)
     parser.add_argument("--seed", type=int, default=1)

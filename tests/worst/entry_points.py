@@ -1,4 +1,4 @@
-"""The entry points of the program, called with a request body and measured with empty caches."""
+"""Send request bodies to the program and measure their cost."""
 
 import asyncio
 import gc
@@ -43,29 +43,26 @@ _CACHES = (
 
 @dataclass(frozen=True)
 class Attack:
-    """A request: its entry point, the exercise in its path, and its body.
+    """A request: its entry point, its exercise and its body."""
 
-    Whenever an attempt is sent, it belongs to a new learner.
-    """
-
+    # Whenever an attempt is sent, it belongs to a new learner.
     entry: str
     exercise: str
     body: Mapping[str, Any]
 
     @cached_property
     def content(self) -> bytes:
-        """The body as bytes."""
         return json.dumps(self.body, ensure_ascii=False).encode("utf-8", "replace")
 
 
 def forget() -> None:
-    """Empty the caches of texts, because an attacker would change each body slightly."""
+    """Empty the caches of texts."""
     for cache in _CACHES:
         cache.cache_clear()
 
 
 def floor_seconds() -> float:
-    """Return the processor time of the benchmarks' floor: a Stanford arm's pose in plain NumPy."""
+    """Return the processor time for one pose in NumPy, to which costs are compared."""
     times = []
     for _ in range(20):
         start = time.process_time()
@@ -91,17 +88,14 @@ class Target:
         gc.freeze()
 
     def close(self) -> None:
-        """Close the loop and the store, and remove the folder."""
         self._loop.close()
         self._store.close()
         self._folder.cleanup()
 
     def answer(self, attack: Attack) -> int:
-        """Send a request and return the response's status: 200 or 201 if the body was accepted."""
         return self._action(attack)()
 
     def seconds(self, attack: Attack, rounds: int = 2) -> tuple[float, int]:
-        """Send a request several times, with empty caches; return the least time and the status."""
         action = self._action(attack)
         best, status = float("inf"), 0
         for _ in range(rounds):
@@ -149,7 +143,6 @@ class Target:
         return status
 
     def _file(self, path: Path, exercise: str) -> int:
-        """Grade a file as `dh-grader grade` does, with the report as text."""
         terms = GradingTerms(of_one(self.exercises[exercise]), pass_mark=0.8)
         [handed_in] = all_handed_in([path])
         submission = graded(handed_in, terms)

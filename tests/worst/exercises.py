@@ -13,7 +13,7 @@ _JOINTS = 6
 
 
 def exercises() -> Mapping[str, Exercise]:
-    """Return all exercises by id; of those with a table, also a copy for both conventions."""
+    # Return all exercises by id; of those with a table, also a copy for both conventions.
     shipped = shipped_exercises()
     return {**shipped, **dict(_either(shipped)), **dict(_robots())}
 

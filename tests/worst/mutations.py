@@ -44,7 +44,7 @@ class Mutator:
         )  # fmt: skip
 
     def mutated(self, attack: Attack, others: Sequence[Attack]) -> Attack:
-        """Return a body changed in a few steps, which may copy parts of ``others``."""
+        """Return a randomly changed body."""
         body = copy.deepcopy(dict(attack.body))
         for _ in range(self._choose.choice((1, 1, 1, 2, 3))):
             if attack.entry == PREVIEW:
@@ -109,7 +109,6 @@ class Mutator:
                 value[key] = self._text(found if isinstance(found, str) else json.dumps(found))
 
     def _spread_leaf(self, answers: Any) -> None:
-        """Copy a cell to all cells of a part or of a row, each time slightly changed."""
         place = self._leaf(answers)
         if place is None:
             return
@@ -143,7 +142,6 @@ class Mutator:
                 )
 
     def _pasted(self, answers: Any) -> None:
-        """Replace a part by one pasted text in a random format."""
         part = self._choose.choice(list(answers))
         answer = answers[part]
         rows = answer.get("rows") if isinstance(answer, dict) else answer
@@ -158,7 +156,6 @@ class Mutator:
         answers[part] = write([[str(cell) for cell in row] for row in rows])
 
     def _numbers_everywhere(self, answers: Any) -> None:
-        """Put numbers with three digits into many cells."""
         share = self._choose.choice((0.2, 0.6, 1.0))
         for value, key in list(self._leaves(answers)):
             if self._choose.random() < share:

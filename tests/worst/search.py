@@ -18,7 +18,7 @@ NEARLY = 0.8
 
 @dataclass(frozen=True)
 class Found:
-    """A measured request body; its cost ``ratio`` is a multiple of the floor."""
+    """A request body and its measured cost."""
 
     ratio: float
     attack: Attack
@@ -37,7 +37,6 @@ class Search:
         self._floor = floor_seconds()
 
     def measured(self, attack: Attack, rounds: int = 2) -> Found:
-        """Return the body with its cost."""
         if rounds > 1:
             self._floor = floor_seconds()
         seconds, status = self._target.seconds(attack, rounds)
@@ -60,7 +59,7 @@ class Search:
             del kept[KEPT:]
 
     def evolve(self, begin: Iterable[Attack], until: float, entry: str = "") -> None:
-        """Try the first bodies, then changed copies of the costliest, until the time ``until``."""
+        """Search for costly bodies until a given time."""
         first = list(begin)
         self._choose.shuffle(first)
         for attack in first:
@@ -78,7 +77,6 @@ class Search:
             self.tried_out(self._mutator.mutated(parent.attack, others))
 
     def _place(self) -> tuple[str, str]:
-        """Return a random entry point and exercise, often one with a costly body."""
         entries = sorted({entry for entry, _ in self.kept})
         entry = self._choose.choice(entries)
         places = [place for place in self.kept if place[0] == entry and self.kept[place]]
@@ -88,6 +86,5 @@ class Search:
         return places[min(int(self._choose.expovariate(0.35)), len(places) - 1)]
 
     def costliest(self, entry: str, most: int) -> list[Found]:
-        """Return the costliest body of each exercise at an entry point, the costliest first."""
         found = [kept[0] for (name, _), kept in self.kept.items() if name == entry and kept]
         return sorted(found, key=lambda each: -each.ratio)[:most]

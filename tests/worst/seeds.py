@@ -1,4 +1,4 @@
-"""The first request bodies of the search: known costly ones, and answers from exercise files."""
+"""The request bodies with which the search begins."""
 
 import random
 from collections.abc import Iterator, Mapping
@@ -14,23 +14,19 @@ LONG_TABLE = ["=", "=", "=", {}, "=", ["0^-1", "sqrt(q1)", "theta1", "atan2(0,0)
 
 
 def halves(i: int, runs: int = 6) -> str:
-    """Return an unreadable text that looks repairable but is not. Each ``i`` gives another text."""
     return "//".join([HALVES] * runs) + str(i)
 
 
 def grid(rows: int, columns: int, runs: int = 6) -> list[list[str]]:
-    """Return a matrix of the texts that ``halves`` returns."""
     return [[halves(columns * i + j, runs) for j in range(columns)] for i in range(rows)]
 
 
 def padded(rows: int, size: int = 16_000, pad: str = "$") -> str:
-    """Return a pasted matrix of four columns, followed by many meaningless characters."""
     lines = [", ".join(f"c{(i + j) % 3 + 1}" for j in range(4)) for i in range(rows)]
     return "\n".join(lines) + "\n" + pad * (size - sum(map(len, lines)) - rows)
 
 
 def links_of(text: str, number: int = 0, links: int = 6) -> list[list[list[str]]]:
-    """Return link transforms whose entries contain ``text``, different for each ``number``."""
     return [
         [[f"{text}+{1000 * number + 16 * k + 4 * i + j}" for j in range(4)] for i in range(4)]
         for k in range(links)
@@ -38,16 +34,11 @@ def links_of(text: str, number: int = 0, links: int = 6) -> list[list[list[str]]
 
 
 def previews_of(exercise: str, part: str, text: str) -> Attack:
-    """Return a request with as many previews as allowed."""
     entries = [{"text": f"{text}+{i}", "quantity": "length"} for i in range(192)]
     return Attack(PREVIEWS, exercise, {"exercise": exercise, "part": part, "entries": entries})
 
 
 def frames_of(exercise: str, joints: int, text: str) -> Attack:
-    """Return a request for the frames of a table with long cells, and for a figure.
-
-    The request has as many sets of joint values as allowed.
-    """
     rows = [dict.fromkeys(KEYS[:3], f"{text}+{i}") | {"theta": f"q{i + 1}"} for i in range(joints)]
     values = [[0.1 * k + 0.01 * i for i in range(joints)] for k in range(30)]
     body = {"exercise": exercise, "table": {"rows": rows}, "joints": values, "figure": "auto"}
@@ -55,11 +46,6 @@ def frames_of(exercise: str, joints: int, text: str) -> Attack:
 
 
 def free_frames_of(exercise: str, text: str, **other: object) -> Attack:
-    """Return a request for the frames, formulas and figure of a free table with long cells.
-
-    The request belongs to no exercise: ``exercise`` is only the place of the request in the search.
-    ``other`` are further fields of the table.
-    """
     rows = [
         {key: f"{text}+{3 * i + j}" for j, key in enumerate(KEYS[:3])} | {"theta": f"q{i + 1}"}
         for i in range(12)
@@ -70,12 +56,10 @@ def free_frames_of(exercise: str, text: str, **other: object) -> Attack:
 
 
 def garbage_table(rows: int, choose: random.Random) -> list[list[str]]:
-    """Return rows of random numbers with three digits."""
     return [[f"{choose.uniform(-3, 3):.3g}" for _ in KEYS] for _ in range(rows)]
 
 
 def cells() -> list[str]:
-    """Return texts for cells: all texts of the corpora, and known costly ones."""
     return [
         *seeds(), *hostile(), HALVES, halves(0), "//" * 200, "=", "sqrt(q1)", "0^-1", "atan2(0,0)",
         "½" * 240, "(" * 120, "x" * 240, "q9 " * 80, "sin" * 80, "1,5 " * 60, "θ₁" * 100, "$" * 240,
@@ -91,7 +75,6 @@ def answers_of(exercise: Exercise) -> Iterator[dict[str, Any]]:
 
 
 def _spread(exercise: Exercise, choose: random.Random) -> Iterator[dict[str, Any]]:
-    """Yield known costly answers to the parts that accept them."""
     tables, matrices, links = {}, {}, {}
     joints = max(len(exercise.joints), 3)
     for part in exercise.parts:

@@ -1,4 +1,4 @@
-"""A sampling profiler: find the stages that take the time of a request."""
+"""A sampling profiler for the stages of a request."""
 
 import signal
 from collections import Counter
@@ -30,7 +30,6 @@ def _path(frame: FrameType) -> str:
 
 
 def _stage(frame: FrameType | None) -> tuple[str, str]:
-    """Return the stage of a sample, and the innermost function of the service on the stack."""
     paths: list[str] = []
     innermost = ""
     follows = False
@@ -50,15 +49,13 @@ def _stage(frame: FrameType | None) -> tuple[str, str]:
 
 
 class Stages:
-    """Counts samples by stage and by innermost function."""
+    """Counts the profiler's samples by stage of the request."""
 
     def __init__(self) -> None:
         self.stages: Counter[str] = Counter()
         self.functions: Counter[str] = Counter()
 
     def watch(self, action: Callable[[], object], rounds: int = 3) -> None:
-        """Call ``action`` for ``rounds`` times, and take samples of the stack meanwhile."""
-
         def look(_: int, frame: FrameType | None) -> None:
             stage, function = _stage(frame)
             self.stages[stage] += 1
@@ -74,7 +71,6 @@ class Stages:
             signal.signal(signal.SIGPROF, before)
 
     def line(self, most: int = 3) -> str:
-        """Return the stages and functions with the largest shares as one line."""
         return "; ".join(
             ", ".join(f"{name} {count / (counts.total() or 1):.0%}" for name, count in largest)
             for counts in (self.stages, self.functions)

@@ -1,7 +1,4 @@
-"""The costliest known request bodies take roughly no more time than promised.
-
-The search for costly request bodies works.
-"""
+"""The costliest known request bodies take no more time than promised."""
 
 import random
 from collections.abc import Callable, Iterator

@@ -1,4 +1,4 @@
-"""The robot that a toolbox prints is a table only if the print is whole and has no other frames."""
+"""Read a robot that a toolbox prints as a table."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The axes of an arm are moved onto the axes of a rigidly moved copy of the arm."""
+"""Move the axes of an arm onto those of its moved copy."""
 
 import numpy as np
 import pytest

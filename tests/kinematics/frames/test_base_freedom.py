@@ -1,4 +1,4 @@
-"""The freedom that each further joint axis leaves to a free base frame."""
+"""Each joint axis restricts the choice of a base frame."""
 
 import numpy as np
 

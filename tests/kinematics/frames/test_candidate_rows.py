@@ -1,4 +1,4 @@
-"""Every candidate row leads to its target, and the candidates include the textbook's rows."""
+"""Every candidate row leads to its target frame."""
 
 import numpy as np
 import pytest
@@ -31,7 +31,6 @@ RELATIONS = pytest.mark.parametrize("relation", TARGETS)
 
 
 def reached(rows: Numbers, target: Matrices) -> Matrices:
-    """Return the frames to which the rows lead, seen from the target frame."""
     return np.asarray(inverse(target)[:, None] @ standard_link(*np.moveaxis(rows, 2, 0)))
 
 

@@ -1,7 +1,6 @@
-"""A chain in other frames matches the reference, and another mechanism does not.
+"""A valid table in other frames matches the reference; another robot does not."""
 
-The identities are from the documentation.
-"""
+# The identities are from the documentation.
 
 from collections.abc import Sequence
 

@@ -1,4 +1,4 @@
-"""For a table with one slip, the nearest valid table is the table without the slip."""
+"""The valid table nearest to a table with a slip is the table without the slip."""
 
 from dataclasses import replace
 
@@ -25,7 +25,7 @@ ANGLES = np.array([0.0, np.pi / 2, -np.pi / 2, 0.0])
 
 
 def arm() -> Numbers:
-    """Return four rows from base to tool with general lengths and right angles between axes."""
+    # Return four rows from base to tool with general lengths and right angles between axes.
     rows = LENGTHS.copy()
     rows[:, 1], rows[:, 3] = ANGLES[:, None], 0.3
     rows[0] = 0.0

@@ -1,4 +1,4 @@
-"""Reversed chains: their product is the inverse, and valid tables are found from the tool."""
+"""The product of a reversed chain of transforms is the inverse."""
 
 from collections.abc import Sequence
 
@@ -48,7 +48,6 @@ OFFSETS = z_links(cells_of(REFERENCE)[1:])
 
 
 def seen_from_tool(table: Rows) -> tuple[float, Numbers]:
-    """Search for the nearest valid table from the tool to the base; return its cost and rows."""
     targets = reversed_targets(TARGETS, OFFSETS)
     match = nearest_table(reversed_rows(rows_of(table)), targets, 0.5)
     return match.cost, -reversed_cells(match.rows)

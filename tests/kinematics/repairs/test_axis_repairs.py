@@ -1,4 +1,4 @@
-"""The correct value of a wrong cell is among the values that follow from the axes."""
+"""Find the correct value of a wrong cell from the joint axes."""
 
 import numpy as np
 import pytest
@@ -18,7 +18,6 @@ SLIDING = np.array([False, True, False, False, False])
 
 
 def arm(rng: np.random.Generator) -> Table:
-    """Return five rows of random numbers without zeros, so that no axes are parallel."""
     return rng.uniform(0.3, 1.2, (5, 4, SAMPLES))
 
 

@@ -1,4 +1,4 @@
-"""The correct values of one or two wrong cells are among the repairs."""
+"""Find the correct values of one or two wrong cells."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,6 @@ SEEDS = together("seed", range(40))
 
 
 def arm(rng: np.random.Generator) -> Table:
-    """Return five rows of random numbers, with right angles and zeros as in real arms."""
     table = rng.uniform(0.3, 1.2, (5, 4, SAMPLES))
     table[:, 1] = rng.choice([0.0, np.pi / 2, -np.pi / 2, np.pi], 5)[:, None]
     table[:, 0][rng.random(5) < 0.4] = 0.0

@@ -1,10 +1,13 @@
 """`python -m tests.load.sizing`: measure one process, and simulate classes before a deadline.
 
-The program prints the processor time of each kind of request. For one, two and eight processes, it
-prints the waiting times of 10,000 students, and the size of the largest class that does not wait
-too long. It also prints how many attempts fit into a GB. Do not run other programs during the
-measurement.
+Print processor times, waiting times, and the largest class that one, two and eight processes can
+serve.
 """
+
+# The program prints the processor time of each kind of request. For one, two and eight processes,
+# it prints the waiting times of 10,000 students, and the size of the largest class that does not
+# wait too long. It also prints how many attempts fit into a GB. Do not run other programs during
+# the measurement.
 
 import argparse
 import http.client
@@ -40,7 +43,6 @@ def processor_time(running: Service) -> float:
 
 
 def each(running: Service, send: Send, count: int) -> float:
-    """Return the service's processor time in seconds for one request: the mean of ``count``."""
     line = http.client.HTTPConnection("127.0.0.1", running.port, timeout=ANSWER)
     send(line, -1)
     began = processor_time(running)
@@ -60,7 +62,6 @@ def answered(line: http.client.HTTPConnection, method: str, path: str, body: byt
 
 
 def measured(running: Service, count: int) -> Costs:
-    """Return the processor times of each kind of request, in seconds."""
     catalogue = dict(shipped_exercises())
 
     def graded(bodies: list[Body], route: str) -> Numbers:
@@ -95,7 +96,6 @@ def measured(running: Service, count: int) -> Costs:
 
 
 def report(costs: Costs, students: int) -> Iterable[str]:
-    """Yield the lines of the tables."""
     for kind, seconds in costs.items():
         slow = np.quantile(seconds, 0.99)
         yield f"{kind}: {seconds.mean() * 1000:.1f} ms on average, p99 {slow * 1000:.0f} ms"
@@ -110,7 +110,6 @@ def report(costs: Costs, students: int) -> Iterable[str]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure and simulate; print the tables."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--students", type=int, default=10_000)
     parser.add_argument("--count", type=int, default=2000)

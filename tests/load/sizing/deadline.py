@@ -1,10 +1,10 @@
-"""Simulate a class that submits before a deadline: how long students wait for a service.
+"""Simulate a class that submits before a deadline, and how long students wait."""
 
-In the model, students work for a week. The times of submission follow a power law: half of the
-students submit on the last day, about one in six in the last hour, and one in 27 in the last
-minute. Before that, a student types the answers (each pause sends a preview) and checks them; some
-are wrong. Each student's connection goes to a random process, which answers one request at a time.
-"""
+# In the model, students work for a week. The times of submission follow a power law: half of the
+# students submit on the last day, about one in six in the last hour, and one in 27 in the last
+# minute. Before that, a student types the answers (each pause sends a preview) and checks them;
+# some are wrong. Each student's connection goes to a random process, which answers one request at a
+# time.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -33,12 +33,10 @@ REQUESTS: Final[Mapping[str, tuple[int, float]]] = {
 
 @dataclass(frozen=True)
 class Waits:
-    """The waits in seconds for responses to hand-ins in the last hour, and the greatest load.
+    """The waiting times in the last hour, and the greatest load."""
 
-    ``busiest`` is the load of the processes in the busiest minute: 1 means that all are busy for
-    the whole minute.
-    """
-
+    # `busiest` is the load of the processes in the busiest minute: 1 means that all are busy for
+    # the whole minute.
     median: float
     p99: float
     longest: float
@@ -46,12 +44,12 @@ class Waits:
 
 
 def before_deadline(students: int, choose: np.random.Generator) -> Numbers:
-    """Return for each student the time between hand-in and deadline, in seconds."""
+    """Return each student's time between hand-in and deadline, in seconds."""
     return WEEK * choose.random(students) ** (1 / EXPONENT)
 
 
 def waits(students: int, processes: int, seconds: Costs, choose: np.random.Generator) -> Waits:
-    """Simulate the last hour with measured processor times of each kind of request."""
+    """Simulate the last hour before the deadline."""
     moments, costs, places, handed_in = [], [], [], []
     hand_ins = -before_deadline(students, choose)
     at = choose.integers(processes, size=students)
@@ -77,10 +75,8 @@ def waits(students: int, processes: int, seconds: Costs, choose: np.random.Gener
 
 
 def waited(asked: Numbers, cost: Numbers) -> Numbers:
-    """Return the waits in seconds for responses of one process, which takes requests in order.
-
-    Work on a request begins when it arrives or when the previous work ends, whichever is later.
-    """
+    """Return the waiting times at one process, which takes requests in order."""
+    # Work on a request begins when it arrives or when the previous work ends, whichever is later.
     order = np.argsort(asked, kind="stable")
     asked, cost = asked[order], cost[order]
     worked = np.cumsum(cost)
@@ -91,7 +87,7 @@ def waited(asked: Numbers, cost: Numbers) -> Numbers:
 
 
 def most_students(processes: int, seconds: Costs, p99: float, choose: np.random.Generator) -> int:
-    """Return the largest class for which 99 % wait at most ``p99`` seconds, to two figures."""
+    """Return the largest class in which 99 % wait at most ``p99`` seconds."""
     enough, too_many = 100, 100
     while waits(too_many, processes, seconds, choose).p99 <= p99:
         enough, too_many = too_many, 2 * too_many

@@ -1,4 +1,4 @@
-"""The simulation of a deadline: arrivals, the queue of a process, and waits in larger classes."""
+"""Test the simulation of a class before a deadline."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The files that students submit at our own platform (Asset Processor), and faults on demand."""
+"""Files that students submit at the test platform (LTI Asset Processor)."""
 
 import base64
 import hashlib
@@ -19,11 +19,9 @@ LTI: Final = "https://purl.imsglobal.org/spec/lti/claim/"
 
 @dataclass
 class FileStore:
-    """Files by id, the handlers of notices, and the reports in the order of arrival.
+    """The files that students submit at the test platform, and the reports on them."""
 
-    If ``other_host`` is set, the files are on that host, and the platform redirects requests to it.
-    """
-
+    # If `other_host` is set, the files are on that host, and the platform redirects requests to it.
     platform: "Platform"
     files: dict[str, bytes] = field(default_factory=dict)
     handlers: dict[str, str] = field(default_factory=dict)
@@ -34,7 +32,6 @@ class FileStore:
     trouble: dict[str, list[int]] = field(default_factory=dict)
 
     def reset(self) -> None:
-        """Remove all files and reports, and restore the usual behaviour."""
         self.__dict__.update(FileStore(self.platform).__dict__)
 
     def routes(self) -> APIRouter:
@@ -88,7 +85,6 @@ class FileStore:
         return None
 
     def notice(self, *names: str, user: str = "ada", notice: str = "notice-1") -> dict[str, Any]:
-        """Return the claims of a notice which says that a user has submitted files."""
         from tests.lti.platform import CLIENT, DEPLOYMENT
 
         address, now = self.platform.address, int(time.time())

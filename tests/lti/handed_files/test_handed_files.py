@@ -1,4 +1,4 @@
-"""Files that students submit at the platform: from the tutor's choice to the report on a file."""
+"""Grade files that students submit at the platform."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -41,7 +41,7 @@ OTHER_KEY = rsa_key()
 
 @dataclass
 class Course:
-    """An assignment at the platform; the service grades its files."""
+    """An assignment at the platform whose files the service grades."""
 
     tool: Tool
     clock: Clock
@@ -57,14 +57,12 @@ class Course:
         return self.tool.send("POST", "/lti/notices", json=body)
 
     def hand_in(self, user: str = "ada", notice: str = "notice-1", **files: bytes) -> None:
-        """Submit files; the argument ``table_csv`` has the content of the file ``table.csv``."""
         named = {name.replace("_", "."): data for name, data in files.items()}
         self.store.files |= named
         answer = self.notify(self.store.notice(*named, user=user, notice=notice))
         assert (answer.status_code, answer.json()) == (200, {})
 
     def grade(self) -> list[dict[str, Any]]:
-        """Grade all files that are due now; return the reports that the platform has."""
         while self.reporting.send_next():
             pass
         return self.store.reports
@@ -74,8 +72,6 @@ class Course:
         return found
 
     def review(self, user: str, asset: str = "id of table.csv", of: str = "ada") -> httpx.Response:
-        """Open the report on a file as the platform does; return the response."""
-
         def asked(claims: dict[str, Any]) -> None:
             claims[f"{LTI}message_type"] = "LtiReportReviewRequest"
             del claims[f"{LTI}resource_link"]
@@ -192,10 +188,9 @@ def test_several_files_are_graded_together(course: Course) -> None:
 
 
 def test_a_text_that_was_typed_at_the_platform_is_read(course: Course) -> None:
-    """Platforms send a typed text as a web page without a file name.
-
-    The service can grade the text if the assignment has only one exercise with one part.
-    """
+    # Platforms send a typed text as a web page without a file name.
+    #
+    # The service can grade the text if the assignment has only one exercise with one part.
     course.store.files["text"] = (
         b"<table><tr><td>a1</td><td>0</td><td>0</td><td>q1</td></tr></table>"
     )
@@ -360,7 +355,7 @@ def test_after_three_days_files_are_given_up(course: Course) -> None:
 
 
 def test_a_killed_process_reports_again(course: Course) -> None:
-    """The platform accepts the second report, because this report has a later time stamp."""
+    # The platform accepts the second report, because this report has a later time stamp.
     course.hand_in(table_csv=RIGHT)
     taken = course.tool.do(lambda it: queue.take(it, course.clock.now()))
     assert taken is not None

@@ -1,8 +1,7 @@
-"""An independent platform, built with the library lti1p3platform, with its services over HTTP.
+"""An LTI platform built with the library lti1p3platform."""
 
-The library checks and makes tokens and messages. This module has the parts that the library leaves
-to its users: the storage, and the routes that call the library's handlers.
-"""
+# The library checks and makes tokens and messages. This module has the parts that the library
+# leaves to its users: the storage, and the routes that call the library's handlers.
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -39,7 +38,7 @@ _FORM: Final = "application/x-www-form-urlencoded"
 
 
 class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
-    """The registration of our service at the independent platform, and the platform's key."""
+    """The registration of the service at the independent platform."""
 
     def init_platform_config(self, **kwargs: Any) -> None:
         platform = kwargs["platform"]
@@ -50,7 +49,6 @@ class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
         self.sign_with(platform.key)
 
     def sign_with(self, key: Any) -> None:
-        """Change the platform's key; then the old key's signatures are no longer accepted."""
         private = key.private_bytes(Encoding.PEM, PrivateFormat.PKCS8, NoEncryption())
         public = key.public_key().public_bytes(Encoding.PEM, PublicFormat.SubjectPublicKeyInfo)
         self._registration.set_platform_public_key(public.decode())
@@ -87,11 +85,9 @@ class Called(Request):  # type: ignore[misc]
 
 @dataclass
 class OtherPlatform:
-    """The platform's line items, scores and members; ``asked`` are the kinds of all requests.
+    """The platform's gradebook columns, scores and members."""
 
-    ``makes_items`` is true if our service may make line items.
-    """
-
+    # `makes_items` is true if our service may make line items.
     configuration: Configuration
     port: int = 0
     makes_items: bool = True
@@ -170,7 +166,7 @@ class Grades(AssignmentsGradesService):  # type: ignore[misc]
     def find_lineitems(
         self, page: int = 1, resource_link_id: str = "", limit: int | None = None
     ) -> Any:
-        """Return the line item on this page: pages have one line item each."""
+        # Return the line item on this page: pages have one line item each.
         del limit
         listed = list(self._platform.items.values())[page - 1 :]
         mine = [each for each in listed[:1] if each["resourceLinkId"] == resource_link_id]

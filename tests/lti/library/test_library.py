@@ -1,4 +1,4 @@
-"""A launch and deep links for an independent platform, built with the library lti1p3platform."""
+"""Test launches from an independent platform, built with lti1p3platform."""
 
 import jwt
 import pytest

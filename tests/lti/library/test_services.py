@@ -1,4 +1,4 @@
-"""Scores and the roster of an independent platform, built with the library lti1p3platform."""
+"""Test scores and class lists with an independent platform, built with lti1p3platform."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -28,10 +28,9 @@ class Course:
     journey: Journey
 
     def launch(self, user: str) -> None:
-        """Launch the tool as ``user``, with a launch message that the library makes.
-
-        The message contains the addresses of the platform's services for scores and the roster.
-        """
+        # Launch the tool as `user`, with a launch message that the library makes.
+        #
+        # The message contains the addresses of the platform's services for scores and the roster.
         tool, other = self.journey.tool, self.other
         begun = tool.login(user)
         launch = Launch(Preflight(begun.asked), other.configuration)
@@ -67,7 +66,7 @@ def course(tool: Tool, journey: Journey) -> Iterator[Course]:
 
 @pytest.mark.long
 def test_scores_arrive_at_a_platform_by_others(course: Course) -> None:
-    """The platform has no line item, so the first score makes one. The latest score counts."""
+    # The platform has no line item, so the first score makes one. The latest score counts.
     other, journey = course.other, course.journey
     course.launch("ada")
     attempt = journey.hand_in()

@@ -1,10 +1,12 @@
 """`python -m tests.lti.load.rush`: 200 students open an exercise from their course in a minute.
 
-Each student logs in at the platform, launches, and requests all that the first page needs. Before
-that, a tenth of the students come with new browsers, which also request the scripts. All students
-have one address, as on a campus. Print the waiting times and the processor time of the service per
-student. Exit with 1 if a request fails, or if a view takes more than 300 ms of processor time.
+Print the waiting times and the processor time per student. Exit with 1 if a request fails or takes
+too much time.
 """
+
+# Each student logs in at the platform, launches, and requests all that the first page needs. Before
+# that, a tenth of the students come with new browsers, which also request the scripts. All students
+# have one address, as on a campus. A view may take at most 300 ms of processor time.
 
 import argparse
 import asyncio
@@ -50,7 +52,6 @@ class Rush:
     requests: int = 0
 
     def quantile(self, share: float) -> float:
-        """Return the quantile of the waiting times for a share between 0 and 1."""
         ordered = sorted(self.waits) or [float("nan")]
         return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
 
@@ -62,7 +63,8 @@ class Browser:
         self._client, self._platform, self._rush = client, platform, rush
 
     async def view(self, user: str, *, is_new: bool) -> None:
-        """Open the exercise. A new browser requests all scripts; old browsers have cached them."""
+        """Open the exercise."""
+        # A new browser requests all scripts; old browsers have cached them.
         began = time.perf_counter()
         try:
             await self._view(user, is_new=is_new)
@@ -113,10 +115,8 @@ async def rush(
     is_new: bool,
     mounts: Mapping[str, httpx.AsyncBaseTransport] | None = None,
 ) -> Rush:
-    """Let users open the exercise, evenly spread over some seconds.
-
-    ``mounts`` maps an address to the transport for it, if no server listens there.
-    """
+    """Let users open the exercise, evenly spread over some seconds."""
+    # `mounts` maps an address to the transport for it, if no server listens there.
     told = Rush()
 
     async def one(number: int, user: str) -> None:
@@ -141,7 +141,6 @@ def processor_time(running: Service) -> float:
 
 
 def measure(kind: str, students: int, seconds: float, workers: int) -> list[str]:
-    """Let a tenth of a class come, then all, then all faster; return faults and missed limits."""
     broken = []
     with (
         tempfile.TemporaryDirectory() as name,
@@ -185,7 +184,6 @@ def measure(kind: str, students: int, seconds: float, workers: int) -> list[str]
 
 
 def main() -> int:
-    """Measure on each database; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--students", type=int, default=200)
     parser.add_argument("--seconds", type=float, default=60)

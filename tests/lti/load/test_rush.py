@@ -1,4 +1,4 @@
-"""A small run of `python -m tests.lti.load.rush`, in this process."""
+"""A small run of `python -m tests.lti.load.rush`."""
 
 import asyncio
 from time import process_time
@@ -12,7 +12,7 @@ from tests.lti.load.rush import BUDGET, rush
 
 @pytest.mark.long
 def test_a_class_opens_its_exercise_at_once(tool: Tool) -> None:
-    """The measured processor time includes that of the platform and of the browsers."""
+    # The measured processor time includes that of the platform and of the browsers.
     users = [f"u{i}" for i in range(10)]
     mounts = {tool.platform.tool: httpx.ASGITransport(tool.app)}
     tool.launch("ada")

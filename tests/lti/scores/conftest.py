@@ -1,4 +1,4 @@
-"""A course at a platform whose gradebook gets scores, and a clock that can be set."""
+"""Fixtures: a course at a platform whose gradebook gets scores, and a clock."""
 
 import itertools
 from collections.abc import Callable, Iterator
@@ -55,7 +55,6 @@ class Journey:
         self.tokens[user] = {"authorization": f"Bearer {token_of(page)}"}
 
     def place(self, user: str = "ada", number: int = 0) -> tuple[str, str]:
-        """Return the ids of a learner's course and of one of its assignments."""
         view = self.tool.send("GET", "/v1/me", headers=self.tokens[user]).json()
         course = view["courses"][0]
         return course["id"], course["assignments"][number]["id"]
@@ -82,7 +81,6 @@ class Journey:
         return found
 
     def total(self, user: str = "ada") -> float:
-        """Return a learner's points in the gradebook of the course, as tutors see it."""
         course, assignment = self.place(user)
         learner = self.learner(user)
         path = f"/v1/courses/{course}/gradebook?assignment={assignment}"
@@ -107,7 +105,6 @@ class Journey:
         return found
 
     def tutor(self) -> dict[str, str]:
-        """Return request headers with the key of a tutor of all courses."""
         from service.access.caller import Scope
         from service.access.key_table import add_key
         from service.access.key_text import new_key_text
@@ -121,7 +118,6 @@ class Journey:
         return self.tokens["tutor"]
 
     def send(self, most: int = 1000) -> int:
-        """Send all scores that are due now; return the number of tries."""
         for i in range(most):
             if not self.sender.send_next():
                 return i
@@ -138,13 +134,11 @@ class Journey:
         return {each.sub.removeprefix("user "): each.state for each in self.rows()}
 
     def another_sender(self, chance: Callable[[], float] = lambda: 1.0) -> ScoreSender:
-        """Return the sender of another replica."""
         return ScoreSender(self.tool.store.engine, SECRET, self.clock.now, chance)
 
 
 @pytest.fixture
 def journey(tool: Tool) -> Journey:
-    """Return a journey whose clock is also the clock of the platform's gradebook."""
     clock = Clock()
     sender = ScoreSender(tool.store.engine, SECRET, clock.now, lambda: 1.0)
     made = Journey(tool, clock, sender)

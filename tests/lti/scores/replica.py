@@ -1,11 +1,11 @@
-"""A process that starts senders of scores as child processes, and kills them on command.
+"""A process that starts and kills senders of scores on command.
 
 ``python -m tests.lti.scores.replica URL FILE SECRET``
-
-FILE has the seconds that are added to the time of this machine. Each line of the input is
-``start`` or ``kill`` with a number of children; the process answers with the line ``done``. A child
-begins at once, because its parent has already imported the service.
 """
+
+# FILE has the seconds that are added to the time of this machine. Each line of the input is `start`
+# or `kill` with a number of children; the process answers with the line `done`. A child begins at
+# once, because its parent has already imported the service.
 
 import os
 import signal

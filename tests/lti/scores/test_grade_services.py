@@ -1,4 +1,4 @@
-"""Platforms that are busy, down, or refuse a score."""
+"""Test platforms that are busy, down, or refuse a score."""
 
 import json
 from datetime import timedelta
@@ -40,7 +40,7 @@ def test_scores_is_a_part_of_the_path() -> None:
 def test_a_failing_platform_is_asked_ever_more_rarely(
     journey: Journey, trouble: tuple[int, dict[str, str]]
 ) -> None:
-    """The pauses between tries grow. When the platform works again, all scores arrive."""
+    # The pauses between tries grow. When the platform works again, all scores arrive.
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.trouble = trouble
@@ -70,7 +70,7 @@ def test_the_platform_says_how_long_to_wait(journey: Journey) -> None:
 
 
 def test_a_score_waits_for_an_unreachable_platform(journey: Journey) -> None:
-    """No server listens at the line item's address."""
+    # No server listens at the line item's address.
     journey.hand_in()
     gone = update(tables.line_items).values(url="http://127.0.0.1:1/items/1")
     journey.tool.do(lambda it: it.execute(gone))
@@ -105,7 +105,7 @@ def test_a_token_is_used_until_shortly_before_its_end(journey: Journey) -> None:
 
 
 def test_a_refused_token_is_renewed_once(journey: Journey) -> None:
-    """If the platform refuses a token, the sender tries once with a new token, and then waits."""
+    # If the platform refuses a token, the sender tries once with a new token, and then waits.
     journey.gradebook.lifetime = -1
     journey.hand_in()
     assert journey.send() == 1
@@ -115,7 +115,7 @@ def test_a_refused_token_is_renewed_once(journey: Journey) -> None:
 
 
 def test_the_audience_of_the_token(journey: Journey) -> None:
-    """Brightspace requires its own audience. Without this audience, scores wait with a reason."""
+    # Brightspace requires its own audience. Without this audience, scores wait with a reason.
     journey.gradebook.audience = "https://api.brightspace.example/auth/token"
     journey.hand_in()
     journey.send()
@@ -131,7 +131,7 @@ def test_the_audience_of_the_token(journey: Journey) -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("status", [400, 403, 404, 422])
 def test_the_score_of_a_learner_waits_for_the_enrolment(journey: Journey, status: int) -> None:
-    """The service does not send a refused score again until the learner launches again."""
+    # The service does not send a refused score again until the learner launches again.
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.enrolled = {"user grace"}
@@ -163,7 +163,7 @@ def test_a_line_item_is_found_at_its_new_address(journey: Journey) -> None:
 
 
 def test_a_deleted_line_item_is_not_made_again(journey: Journey) -> None:
-    """A teacher has deleted the column at the platform. The service does not make it again."""
+    # A teacher has deleted the column at the platform. The service does not make it again.
     journey.hand_in()
     journey.gradebook.items.clear()
     journey.send()
@@ -173,7 +173,7 @@ def test_a_deleted_line_item_is_not_made_again(journey: Journey) -> None:
 
 @pytest.mark.long
 def test_timestamps_are_later_by_a_second(journey: Journey) -> None:
-    """Moodle compares whole seconds. The clock of the platform may be ahead of ours, too."""
+    # Moodle compares whole seconds. The clock of the platform may be ahead of ours, too.
     attempt = journey.hand_in()
     for points in (1, 2, 3):
         body = {"points": points, "reason": "r", "author": "t"}
@@ -207,8 +207,7 @@ UNUSABLE: list[object] = [
 
 @pytest.mark.long
 def test_unusable_lists_of_line_items_cost_one_try(journey: Journey) -> None:
-    """A hostile list of line items costs one try. The token goes only to the platform's host."""
-
+    # A hostile list of line items costs one try. The token goes only to the platform's host.
     def habit(claims: dict[str, dict[str, object]]) -> None:
         claims[ENDPOINT].pop("lineitem")
         claims[ENDPOINT]["scope"] = [f"{AGS}score", f"{AGS}lineitem.readonly"]

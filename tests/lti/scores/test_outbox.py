@@ -1,4 +1,4 @@
-"""A regrade queues many scores for a slow platform; the score of a new hand-in goes first."""
+"""A new score is sent before the many scores of a regrade."""
 
 from collections.abc import Callable
 from datetime import UTC, datetime
@@ -16,7 +16,6 @@ PACE = (20, 10)
 
 
 def enrol_many(journey: Journey, number: int) -> None:
-    """Copy Ada's attempt for further learners, and queue their scores as a regrade does."""
     [row] = journey.tool.do(lambda it: it.execute(select(attempts)).all())
     names = [f"{i:05}" for i in range(number)]
     of_platform = [
@@ -36,7 +35,6 @@ def enrol_many(journey: Journey, number: int) -> None:
 
 
 def sent_while(journey: Journey, ended: Callable[[], bool]) -> int:
-    """Send scores until ``ended``, and skip the pauses between them; return the number of tries."""
     tries = 0
     while not ended():
         if journey.sender.send_next():

@@ -1,4 +1,4 @@
-"""The list of sent scores for tutors, and sending scores again."""
+"""Test the tutors' list of sent scores."""
 
 import pytest
 
@@ -11,7 +11,6 @@ from tests.lti.scores.conftest import Journey
 
 
 def refused_and_sent(journey: Journey) -> str:
-    """Send a score that is refused and a score that is accepted; return the id of the course."""
     for user in ("ada", "grace"):
         journey.hand_in(user)
     journey.gradebook.enrolled = {"user grace"}

@@ -1,4 +1,4 @@
-"""Scores from the hand-in to the gradebook of the platform."""
+"""Send a score from the hand-in to the platform's gradebook."""
 
 import json
 from datetime import UTC, datetime, timedelta
@@ -49,7 +49,7 @@ def test_a_hand_in_an_override_and_a_forgotten_learner_arrive(journey: Journey) 
 
 
 def test_only_the_best_attempt_is_sent(journey: Journey) -> None:
-    """An attempt that is worse than the best, or as good, changes nothing at the platform."""
+    # An attempt that is worse than the best, or as good, changes nothing at the platform.
     journey.hand_in(answers=WRONG)
     journey.send()
     best = journey.hand_in()
@@ -66,7 +66,7 @@ def test_only_the_best_attempt_is_sent(journey: Journey) -> None:
 
 
 def test_more_time_gives_a_late_score_its_points_back(journey: Journey) -> None:
-    """A late attempt counts half. With a later due date, its points come back."""
+    # A late attempt counts half. With a later due date, its points come back.
     journey.launch()
     course, assignment = journey.place()
     path = f"courses/{course}/assignments/{assignment}"
@@ -96,7 +96,7 @@ def test_points_of_the_assignment_that_change(journey: Journey) -> None:
 
 
 def test_a_regrade_queues_only_what_it_changes(journey: Journey) -> None:
-    """An earlier program gave one of two learners wrong points. Only that learner is queued."""
+    # An earlier program gave one of two learners wrong points. Only that learner is queued.
     changed = journey.hand_in("ada")
     journey.hand_in("grace")
     journey.send()
@@ -145,7 +145,7 @@ def test_a_deleted_course_can_be_launched_again(journey: Journey) -> None:
 
 
 def test_a_learner_who_comes_back_keeps_the_new_score(journey: Journey) -> None:
-    """A forgotten learner submits again before the service has cleared the platform's score."""
+    # A forgotten learner submits again before the service has cleared the platform's score.
     journey.hand_in()
     journey.send()
     journey.post("learners/forget", learner=journey.learner(), apply=True)
@@ -165,7 +165,7 @@ def test_a_learner_of_whom_nothing_was_sent_leaves_nothing(journey: Journey) -> 
 
 @pytest.mark.long
 def test_a_platform_without_line_items_gets_one(journey: Journey) -> None:
-    """The service makes one line item for all learners, with the title of the assignment."""
+    # The service makes one line item for all learners, with the title of the assignment.
     journey.tool.platform.habits.append(lambda claims: claims[ENDPOINT].pop("lineitem"))
     journey.gradebook.items.clear()
     for user in ("ada", "grace"):
@@ -216,7 +216,7 @@ def test_a_score_is_refused_if_its_line_item_may_not_be_made(
 
 
 def test_earlier_scores_are_sent_once_the_platform_takes_scores(journey: Journey) -> None:
-    """When the platform begins to accept scores, scores of earlier attempts are sent, too."""
+    # When the platform begins to accept scores, scores of earlier attempts are sent, too.
     journey.tool.platform.habits.append(lambda claims: claims.pop(ENDPOINT))
     journey.hand_in()
     assert journey.rows() == []
@@ -243,7 +243,7 @@ def test_names_that_change_change_no_score(journey: Journey) -> None:
 
 @pytest.mark.long
 def test_no_timestamp_is_in_the_future(journey: Journey) -> None:
-    """If a score changes often in a second, some changes wait. The platform gets the last score."""
+    # If a score changes often in a second, some changes wait. The platform gets the last score.
     attempt = journey.hand_in()
     for points in range(1, 7):
         body = {"points": points, "reason": "r", "author": "t"}

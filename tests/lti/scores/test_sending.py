@@ -1,4 +1,4 @@
-"""Replicas send scores; the tests kill replicas before the platform responds to a score."""
+"""Kill replicas of the service while they send scores."""
 
 import asyncio
 import random
@@ -30,7 +30,7 @@ ROOT = Path(__file__).parents[3]
 
 
 class Replicas:
-    """Two processes that send scores, and the clock that they share with the platform."""
+    """Two processes that send scores."""
 
     def __init__(self, journey: Journey, folder: Path) -> None:
         self._file = folder / "added"
@@ -50,7 +50,6 @@ class Replicas:
         draft.replace(self._file)
 
     def kill(self, number: int) -> None:
-        """Kill some of the replicas, and wait until they are gone."""
         self._ask("kill", number)
         self._number -= number
 
@@ -78,7 +77,7 @@ def replicas(journey: Journey, tmp_path: Path) -> Iterator[Replicas]:
 
 
 class Round:
-    """A round: ``killed`` replicas are killed when the platform gets score number ``at``."""
+    """A round of the test, in which replicas are killed."""
 
     def __init__(self, replicas: Replicas, at: int, killed: int) -> None:
         self._replicas, self._at, self._killed = replicas, at, killed
@@ -86,7 +85,6 @@ class Round:
         self.received = 0
 
     def answer(self) -> None:
-        """Count a score; if it is number ``at``, kill replicas before the platform responds."""
         with self._lock:
             if self.received + 1 == self._at:
                 self._replicas.kill(self._killed)
@@ -98,7 +96,6 @@ class Round:
 
 
 def killed(journey: Journey, replicas: Replicas, rounds: int) -> str:
-    """In each round, change scores, kill senders while they send one, and check the gradebook."""
     choose = random.Random(rounds)
     ids = {user: journey.hand_in(user) for user in USERS}
     most = ids["ada"]["max_points"]
@@ -141,7 +138,7 @@ def _wait(until: Callable[[], bool]) -> None:
 def test_the_service_sends_what_it_has_committed(
     journey: Journey, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A commit wakes the sending thread, long before its next regular look at the queue."""
+    # A commit wakes the sending thread, long before its next regular look at the queue.
     monkeypatch.setattr("service.lti.scores.sending._LOOK", 3600)
     # A closed one takes no note away.
     closed = BackgroundSending(journey.tool.store.engine, journey.sender, QUEUED)
@@ -163,7 +160,7 @@ def test_the_service_sends_what_it_has_committed(
 def test_all_listen_before_a_thread_begins(
     catalogue: Mapping[str, Exercise], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """A commit iterates over its listeners, so all of them must be added before a thread starts."""
+    # A commit iterates over its listeners, so all of them must be added before a thread starts.
     store = AttemptStore.open(new_file(tmp_path))
     keys = KeyRing(store.engine, Secret(SECRET_TEXT))
     access = Access(OPEN_HERE, solutions=None, read_attempts=None, keys=keys)

@@ -1,1 +1,1 @@
-"""Slips in tables of random arms, with kinematics that are independent of the program."""
+"""Check that reports name the slips in tables of random arms."""

@@ -1,4 +1,4 @@
-"""Print how often each class of slips of random arms is named: part of ``make slips``."""
+"""Print how often reports name slips of random arms: part of ``make slips``."""
 
 import argparse
 from collections import Counter, defaultdict
@@ -14,20 +14,18 @@ OF_ENTRIES = {"value", "independent_of", "joint_variable_extra", "term_sign", "q
 
 
 class Counts:
-    """Counts of trials, of trials with the slip named, and of trials with slip and place named."""
+    """Counts of all trials, and of those whose report named the slip."""
 
     def __init__(self) -> None:
         self.all = self.named = self.placed = 0
 
     def add(self, trial: ArmTrial) -> None:
-        """Count a trial."""
         self.all += 1
         self.named += trial.is_named
         self.placed += trial.is_placed
 
 
 def main() -> int:
-    """Try some slips of each class; return 1 if fewer than 95 % are named."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--arms", type=int, default=60, help="the number of arms (60)")
     parser.add_argument("--seed", type=int, default=1)

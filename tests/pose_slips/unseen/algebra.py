@@ -1,9 +1,8 @@
-"""Matrices whose entries are sums of lengths times exponentials of joint angles, and their text.
+"""Matrices of trigonometric formulas, and their text."""
 
-An entry maps (letters, frequencies) to a complex factor: ``(("a2",), (("q1", 1),))`` is
-a2·exp(i·q1). So a product of cosines is at once a sum of cosines of sums of angles, and no program
-for algebra is needed.
-"""
+# An entry maps (letters, frequencies) to a complex factor: `(("a2",), (("q1", 1),))` is
+# a2·exp(i·q1). So a product of cosines is at once a sum of cosines of sums of angles, and no
+# program for algebra is needed.
 
 from collections.abc import Mapping
 from functools import reduce
@@ -111,7 +110,7 @@ def _term(factor: float, letters: tuple[str, ...], function: str) -> str:
 
 
 def numeric_link(row: Row, convention: str, values: Mapping[str, float]) -> np.ndarray:
-    """Return the link transform in numbers, as a product of rotations and translations."""
+    """Return the link transform in numbers."""
 
     def size(cell: Cell, unit: float) -> float:
         return sum(

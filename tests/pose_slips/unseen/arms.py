@@ -1,4 +1,4 @@
-"""Random arms of two to six joints with parallel and perpendicular axes, as exercises."""
+"""Draw random arms of two to six joints, as exercises."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -38,29 +38,24 @@ convention = "{convention}"
 
 @dataclass(frozen=True)
 class Arm:
-    """An arm: its table, one letter for each joint ("RRP"), and its convention.
+    """An arm: its table, its joint types and its convention."""
 
-    Joint i has the variable q<i>. Rows beyond the joints are fixed.
-    """
-
+    # Joint i has the variable q<i>. Rows beyond the joints are fixed.
     table: Table
     structure: str
     convention: str
 
     @property
     def labels(self) -> list[str]:
-        """The labels of the rows, as in a report."""
         fixed = ["e", "e2"][: len(self.table) - len(self.structure)]
         return [str(i + 1) for i in range(len(self.structure))] + fixed
 
     @property
     def symbols(self) -> set[str]:
-        """All symbols of the table."""
         return {name for row in self.table for cell in row for name in cell if name}
 
     @property
     def text(self) -> str:
-        """The text of the exercise file."""
         joints = [f"q{i + 1}" for i in range(len(self.structure))]
         rows = [
             [written(cell, column % 2 == 1) for column, cell in enumerate(r)] for r in self.table
@@ -88,7 +83,7 @@ def written(cell: Cell, is_angle: bool) -> str:
 
 
 def arms(seed: int, count: int) -> Iterator[Arm]:
-    """Yield ``count`` arms; the lengths are letters in every second arm, else numbers."""
+    """Yield ``count`` random arms."""
     random = Random(seed)
     found = 0
     while found < count:
@@ -130,7 +125,6 @@ def _arm(random: Random, joints: int, *, letters: bool) -> Arm | None:
 
 
 def _moves_freely(arm: Arm, random: Random) -> bool:
-    """True if the joints move the arm independently, and no two turn about one line."""
     if not arm.table[-1][0] and len(arm.table) > len(arm.structure) and not arm.table[-1][2]:
         return False
     values = {name: random.uniform(0.3, 1.2) for name in sorted(arm.symbols)}

@@ -1,4 +1,4 @@
-"""Generate slips in the table of an arm, each with the codes that name it."""
+"""Generate slips in an arm's table, each with the codes of its messages."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -18,11 +18,9 @@ CLASSES = (CELL, SWAPPED_ROW, SWAPPED_ALL, OTHER_FORMULA, OTHER_TABLE, NEGATED, 
 
 @dataclass(frozen=True)
 class ArmSlip:
-    """A slip: the resulting table and convention, and the codes that name it.
+    """A slip: the wrong table, and the codes of the messages that name it."""
 
-    ``order`` is the order in which the links are multiplied. The message must contain ``words``.
-    """
-
+    # `order` is the order in which the links are multiplied. The message must contain `words`.
     kind: str
     codes: frozenset[str]
     table: Table
@@ -32,7 +30,6 @@ class ArmSlip:
 
 
 def slips_of(arm: Arm) -> Iterator[ArmSlip]:
-    """Yield all slips of an arm, including those that change nothing."""
     table, convention = arm.table, arm.convention
     order = tuple(range(len(table)))
 
@@ -131,7 +128,6 @@ def _minus(cell: Cell) -> Cell:
 
 
 def _swapped(row: Row, arm: Arm, i: int) -> Row:
-    """Return the row with a and the constant part of d swapped."""
     moving = f"q{i + 1}"
     a, alpha, d, theta = row
     stays = {moving: d[moving]} if moving in d else {}
@@ -158,7 +154,6 @@ def _with_names(row: Row, names: Mapping[str, str]) -> Row:
 
 
 def _other_tables(arm: Arm) -> Iterator[list[Row]]:
-    """Yield the table in the other convention: a and α move by one row."""
     rows, none = arm.table, (NONE, NONE)
     links = [(row[A], row[ALPHA]) for row in rows]
     is_standard = arm.convention == STANDARD

@@ -1,4 +1,4 @@
-"""A sample of the random arms: ``make slips`` tries more of them."""
+"""Try some slips of random arms; ``make slips`` tries more."""
 
 from collections.abc import Callable, Sequence
 from functools import cache
@@ -26,7 +26,6 @@ LEAST = 10
 
 @cache
 def one_slip_each() -> Sequence[ArmTrial]:
-    """Return the trials of all arms in the sample, with one slip of each class."""
     return [trial for i, arm in enumerate(SAMPLE) for trial in trials(arm, i, each=1)]
 
 
@@ -50,7 +49,7 @@ def test_if_several_slips_fit_one_of_them_is_named() -> None:
 
 @pytest.mark.long
 def test_two_slips_are_not_explained_by_one_slip_of_rows_or_columns() -> None:
-    """A slip of one cell may explain two slips; a slip of rows or columns must not."""
+    # A slip of one cell may explain two slips; a slip of rows or columns must not.
     found = [trial for i, arm in enumerate(SAMPLE) for trial in two_slips(arm, i)]
     of_many = {code for arm in SAMPLE for slip in slips_of(arm) for code in slip.codes}
     of_many -= {code for arm in SAMPLE for s in slips_of(arm) if s.kind == CELL for code in s.codes}

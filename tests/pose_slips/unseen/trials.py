@@ -1,4 +1,4 @@
-"""Grade the answers that follow from slips in an arm's table, and check which slips are named."""
+"""Grade wrong answers about random arms, and check which slips are named."""
 
 import tempfile
 from collections import defaultdict
@@ -33,11 +33,9 @@ Said = tuple[tuple[str, str], ...]
 
 @dataclass(frozen=True)
 class ArmTrial:
-    """A graded answer: its kind, its slip, and the codes of all slips that give the same answer.
+    """A graded answer, its slip, and the report's messages."""
 
-    ``said`` are the codes and the messages of the report.
-    """
-
+    # `said` are the codes and the messages of the report.
     kind: str
     slip: ArmSlip
     codes: frozenset[str]
@@ -45,22 +43,18 @@ class ArmTrial:
 
     @property
     def is_alone(self) -> bool:
-        """True if no slip with other codes gives the same answer."""
         return self.codes == self.slip.codes
 
     @property
     def is_named(self) -> bool:
-        """True if there is one message, and it names a slip that gives this answer."""
         return len(self.said) == 1 and self.said[0][0] in self.codes
 
     @property
     def is_placed(self) -> bool:
-        """True if the message names the slip and its place, in the words of the slip."""
         return self.is_named and all(word in self.said[0][1] for word in self.slip.words)
 
 
 def exercise_of(arm: Arm) -> Exercise:
-    """Return the exercise of an arm with a part of each kind."""
     return loaded(arm.text)
 
 
@@ -73,12 +67,10 @@ def loaded(text: str) -> Exercise:
 
 
 def right_answer(arm: Arm) -> ArmSlip:
-    """Return the correct table of the arm, as an ArmSlip without codes."""
     return ArmSlip("", frozenset(), arm.table, arm.convention, tuple(range(len(arm.table))))
 
 
 def answer_to(kind: str, slip: ArmSlip) -> Any:
-    """Return the answer as text, or None if it is too long."""
     links = [link(slip.table[i], slip.convention) for i in slip.order]
     if kind == "links":
         return [_printed(matrix) for matrix in links]
@@ -95,7 +87,6 @@ def _printed(matrix: Matrix) -> list[list[str]]:
 
 
 def said_of(exercise: Exercise, kind: str, answer: Any) -> Said:
-    """Return the codes and messages of the errors in the answer to one part."""
     report = grade(exercise, Submission({kind: answer}))
     part = next(part for part in report.parts if part.part == kind)
     messages = [m for m, _, _ in messages_of(part) if m.severity is Severity.ERROR]
@@ -103,7 +94,7 @@ def said_of(exercise: Exercise, kind: str, answer: Any) -> Said:
 
 
 class Slipped:
-    """An arm's slips, and the numeric answers to one kind of part that follow from the slips."""
+    """The slips of an arm, and the answers that follow from them."""
 
     def __init__(self, kind: str, arm: Arm, slips: Sequence[ArmSlip]) -> None:
         self.kind, self.arm, self.slips = kind, arm, slips
@@ -115,7 +106,6 @@ class Slipped:
         self.right, *self.found = (self.of(slip) for slip in every)
 
     def of(self, slip: ArmSlip, shift: float = 0.0) -> np.ndarray:
-        """Return the answer in numbers, with all joints moved by ``shift``."""
         at = {n: v + shift if n.startswith("q") else v for n, v in self.values.items()}
         links = [numeric_link(slip.table[i], slip.convention, at) for i in slip.order]
         if self.kind == "links":
@@ -126,20 +116,17 @@ class Slipped:
         return reached if self.kind == "transform" else reached[:3, :3]
 
     def is_answer(self, slip: ArmSlip) -> bool:
-        """True if the answer is wrong, has the right shape, and depends on the joints."""
         found = self.of(slip)
         if found.shape != self.right.shape or (self.kind == "links" and slip.kind == PRODUCT):
             return False
         return not _is_same(found, self.of(slip, 0.2)) and not _is_same(found, self.right)
 
     def alike(self, slip: ArmSlip) -> list[ArmSlip]:
-        """Return the slips that lead to the same answer."""
         wanted = self.of(slip)
         pairs = zip(self.slips, self.found, strict=True)
         return [each for each, found in pairs if _is_same(found, wanted)]
 
     def codes(self, slip: ArmSlip) -> frozenset[str]:
-        """Return the codes of all slips with the same answer, and codes that fit its numbers."""
         of_slips: frozenset[str] = frozenset().union(*(each.codes for each in self.alike(slip)))
         if self.kind != "links" or slip.kind == CELL:
             return of_slips | of_numbers(self.of(slip), self.right)
@@ -153,7 +140,6 @@ def _is_same(one: np.ndarray, other: np.ndarray) -> bool:
 
 
 def of_numbers(found: np.ndarray, right: np.ndarray) -> frozenset[str]:
-    """Return the codes that fit the numbers of an answer, such as the wrong sign of one entry."""
     differs = np.abs(found - right) > SAME
     is_opposite = np.abs(found + right) < SAME
     codes = {"sign"} if differs.sum() == 1 and is_opposite[differs].all() else set()
@@ -174,7 +160,6 @@ def of_numbers(found: np.ndarray, right: np.ndarray) -> frozenset[str]:
 
 
 def trials(arm: Arm, seed: int, each: int = 2) -> Iterator[ArmTrial]:
-    """Yield trials of each kind of part: ``each`` random slips of each class."""
     random, exercise, slips = Random(seed), exercise_of(arm), list(slips_of(arm))
     for kind in KINDS:
         slipped = Slipped(kind, arm, slips)
@@ -195,7 +180,6 @@ def _trial(slipped: Slipped, exercise: Exercise, slip: ArmSlip) -> Iterator[ArmT
 
 
 def two_slips(arm: Arm, seed: int, each: int = 3) -> Iterator[ArmTrial]:
-    """Yield trials with unrelated slips in two rows, which no single slip explains."""
     random, exercise, slips = Random(seed), exercise_of(arm), list(slips_of(arm))
     of_row = [slip for slip in slips if slip.kind in (CELL, SWAPPED_ROW)]
     for kind in KINDS:

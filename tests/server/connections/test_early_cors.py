@@ -1,4 +1,4 @@
-"""Web pages from the configured origins may read the responses that refuse their requests."""
+"""Web pages of allowed origins can read the responses that refuse their requests."""
 
 import pytest
 

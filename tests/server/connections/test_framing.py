@@ -1,4 +1,4 @@
-"""The ends of requests are found, however the network cuts the bytes."""
+"""Find the end of each request in a stream of bytes."""
 
 from http import HTTPStatus
 
@@ -24,7 +24,6 @@ REQUESTS: list[tuple[bytes, int | None, bytes]] = [
 
 
 def read(framing: Framing, data: bytes, lengths: list[int | None]) -> list[bytes]:
-    """Feed bytes to the framing; return the requests, of which the last may be incomplete."""
     requests: list[bytes] = []
     taken = b""
     framing.receive(data)
@@ -70,7 +69,6 @@ def test_a_request_ends_at_the_same_place_however_it_is_cut(
 
 
 def refused(data: bytes, length: int | None = 0) -> HTTPStatus | None:
-    """Return the status with which bytes are refused, or None; send them at once and in parts."""
     statuses: set[HTTPStatus | None] = set()
     for step in (len(data), 997):
         framing = Framing()
@@ -85,7 +83,6 @@ def refused(data: bytes, length: int | None = 0) -> HTTPStatus | None:
 
 
 def head(size: int) -> bytes:
-    """Return a head of ``size`` bytes."""
     begin, end = b"GET / HTTP/1.1\r\nCookie: ", b"\r\n\r\n"
     return begin + b"x" * (size - len(begin) - len(end)) + end
 

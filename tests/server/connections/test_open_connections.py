@@ -1,4 +1,4 @@
-"""Which connections are closed when there are too many, or when they hold too many bytes."""
+"""Test which connections are closed when there are too many."""
 
 import asyncio
 import resource

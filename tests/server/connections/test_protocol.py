@@ -1,4 +1,4 @@
-"""Raw connections to a real process: what it reads, how long it waits, what it answers."""
+"""Test raw connections to a real process."""
 
 import contextlib
 import socket

@@ -1,4 +1,4 @@
-"""How a real process shuts down, alone and with workers, and how it replaces a killed worker."""
+"""Test how a process shuts down and replaces killed workers."""
 
 import json
 import os
@@ -34,7 +34,7 @@ def refuses(running: Service) -> bool:
 
 
 def runs(process: int) -> bool:
-    """True if a process runs; False for a zombie, which has ended but still has an entry."""
+    """True if a process runs; False for a zombie."""
     try:
         state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
     except OSError:
@@ -43,7 +43,6 @@ def runs(process: int) -> bool:
 
 
 def check_end(running: Service) -> None:
-    """Terminate the service while one body and one head are incomplete, and one client is idle."""
     with (
         running.connect(preview()[:HALF]) as half,
         running.connect(b"GET /healthz HTT") as head,
@@ -164,7 +163,6 @@ def connections(process: int) -> int:
 
 
 def check_shares(running: Service, staff: set[int]) -> None:
-    """Open 40 connections, and check that each worker accepts at least ten of them."""
     before = {worker: connections(worker) for worker in staff}
     with ExitStack() as lines:
         for _ in range(40):
@@ -181,7 +179,6 @@ def request(method: str, path: str, body: object = None) -> bytes:
 
 
 def written_draft(running: Service) -> str:
-    """Preview a text in the editor, change its title, and return the id of the draft."""
     text = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
     draft = ""
     for title in ("Planar", "Flat"):
@@ -193,7 +190,6 @@ def written_draft(running: Service) -> str:
 
 
 def check_draft(running: Service, draft: str) -> None:
-    """Check over six connections, which the workers share, that each shows the changed draft."""
     with ExitStack() as lines:
         opened = [lines.enter_context(running.connect()) for _ in range(6)]
         for line in opened:
@@ -239,7 +235,7 @@ def test_workers_end_when_their_supervisor_is_killed(tmp_path: Path) -> None:
 
 @pytest.fixture(scope="session")
 def lasting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Service]:
-    """A process that several tests share; it writes no address into its log."""
+    # A process that several tests share; it writes no address into its log.
     folder = tmp_path_factory.mktemp("lasting")
     with service(folder, DH_GRADER_LOG_ADDRESSES="false") as running:
         yield running

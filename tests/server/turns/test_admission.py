@@ -1,4 +1,4 @@
-"""Clients take fair turns, and the queue of each client is bounded."""
+"""Clients take fair turns, and their queues are limited."""
 
 import asyncio
 import itertools
@@ -38,7 +38,6 @@ class Client:
         self.answer: Messages = []
 
     def reset(self) -> None:
-        """Let the connection send its request again."""
         self._body = list(self._sent)
 
     async def receive(self) -> dict[str, Any]:
@@ -57,7 +56,7 @@ class Client:
 
 
 class Application:
-    """An application that records the client and the body of each request that it answers."""
+    """A fake application that records the requests that it answers."""
 
     def __init__(self, work: Callable[[Any], None] = lambda _: None) -> None:
         self.served: list[str] = []
@@ -104,7 +103,6 @@ async def passes(number: int) -> None:
 
 @pytest.fixture
 def alike(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Let each request take the same time, which is one time slice."""
     clock = itertools.count()
     monkeypatch.setattr(admission, "thread_time", lambda: next(clock) * 1.01 * SLICE)
 
@@ -186,7 +184,7 @@ def test_a_request_keeps_the_moment_of_its_arrival_while_it_waits() -> None:
 
 
 class ManyGradings(Application):
-    """An application that lets other clients go first after each of an attacker's ten gradings."""
+    """A fake application that pauses between an attacker's ten gradings."""
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         if scope["client"][0] == "attacker":
@@ -264,7 +262,7 @@ def test_a_client_with_too_many_waiting_requests_is_refused() -> None:
 def test_retry_after_grows_with_the_work_that_waits(
     monkeypatch: pytest.MonkeyPatch, gradings: int, each: float, seconds: int
 ) -> None:
-    """A grading takes ``each`` seconds, and 512 requests wait."""
+    # A grading takes `each` seconds, and 512 requests wait.
     now = 0.0
     monkeypatch.setattr(admission, "thread_time", lambda: now)
 

@@ -1,4 +1,4 @@
-"""The order of waiting requests."""
+"""Test the order of waiting requests."""
 
 import math
 from collections import Counter
@@ -17,7 +17,6 @@ ORDINARY = 0.015
 def come(
     queue: FairQueue, client: str, connection: int = 1, size: int = 1, shares: float = SHARES
 ) -> Ticket:
-    """Add a waiting request to the queue; return the request."""
     ticket = Ticket(Client(client, shares), connection, size)
     queue.enter(ticket)
     queue.push(ticket)
@@ -25,7 +24,6 @@ def come(
 
 
 def serve(queue: FairQueue, costs: dict[str, float], turns: int) -> list[str]:
-    """Serve a number of turns; each served client waits again. Return the client of each turn."""
     served = []
     for _ in range(turns):
         ticket = queue.pop()

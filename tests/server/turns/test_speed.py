@@ -1,4 +1,4 @@
-"""The estimate of the time of an ordinary request."""
+"""Estimate the processing time of an ordinary request."""
 
 from collections.abc import Iterator
 
@@ -10,7 +10,6 @@ from service.server.turns.speed import Speed
 
 @pytest.fixture
 def measured(monkeypatch: pytest.MonkeyPatch) -> list[float]:
-    """The list of the next simulated measurements; the last measurement is repeated."""
     times = [1e-4]
 
     def ticks() -> Iterator[float]:

@@ -20,7 +20,6 @@ def post(path: str, body: bytes, *headers: bytes) -> bytes:
 
 
 def logged(folder: Path) -> tuple[list[dict[str, Any]], str]:
-    """Return the lines that a process logs for some requests, parsed and as text."""
     settings = {"DH_GRADER_LOG_FORMAT": "json", "DH_GRADER_DATABASE": new_file(folder)}
     with service(folder, **settings) as running:
         attempts = "/v1/exercises/scara/attempts"

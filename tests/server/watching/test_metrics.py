@@ -1,4 +1,4 @@
-"""The metrics of a real process, alone and with workers of which one is killed."""
+"""Test the metrics of a real process and its workers."""
 
 import asyncio
 import json
@@ -24,7 +24,6 @@ Samples = Mapping[tuple[str, frozenset[str]], float]
 
 
 def asked(running: Service) -> Samples:
-    """Return the metrics of a process, by name and the values of their labels."""
     (answer,) = running.ask(b"GET /metrics HTTP/1.1\r\nHost: localhost\r\n\r\n")
     assert answer.status == 200, answer.body
     assert answer.headers["content-type"].startswith("text/plain")
@@ -47,7 +46,6 @@ def attempt(running: Service, learner: str, table: str) -> None:
 
 
 def check_counts(samples: Samples, attempts: int) -> None:
-    """Check the metrics after a number of attempts, of which only the first was wrong."""
     assert value(samples, "requests_total", "POST", ROUTE, "201") == attempts
     assert value(samples, "requests_total", "GET", "other", "404") == 3
     assert value(samples, "request_seconds_count", ROUTE) == attempts
@@ -85,7 +83,6 @@ def test_each_worker_returns_the_metrics_of_all_workers(tmp_path: Path) -> None:
 
 
 def told(client: tuple[str, int], **settings: Any) -> httpx.Response:
-    """Return the response to `GET /metrics` from an address, after a request for an exercise."""
     app = installed_app(Settings(**settings))
 
     async def ask() -> httpx.Response:

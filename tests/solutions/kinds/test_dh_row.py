@@ -1,4 +1,4 @@
-"""Model answers: DH rows, screw axes, and poses that are too long."""
+"""Test model answers: DH rows, screw axes, and long poses."""
 
 from collections.abc import Callable, Mapping
 
@@ -48,7 +48,7 @@ transform = {LINKS[convention]}
 
 
 def test_screw_axes_of_a_table(make_exercise: Callable[[str], Exercise]) -> None:
-    """The expected axes of the arm follow from the definitions in Modern Robotics."""
+    # The expected axes of the arm follow from the definitions in Modern Robotics.
     exercise = make_exercise("""
 title = "Two joints"
 source = "made for this test"

@@ -1,8 +1,4 @@
-"""The campaign of generated robots: ``python -m tests.variants.robots --seeds 10000 --level 1``.
-
-Students never get a robot if a table of zeros and joint variables earns more than a quarter of its
-points. The campaign counts such robots.
-"""
+"""Check many generated robots: ``python -m tests.variants.robots --seeds 10000 --level 1``."""
 
 import argparse
 import sys
@@ -27,7 +23,6 @@ MOST_FOR_NOTHING = 0.25
 
 
 def main() -> int:
-    """Print the failed checks and the figures; return 1 if a check failed."""
     arguments = argparse.ArgumentParser(description=__doc__)
     arguments.add_argument("--level", type=int, default=1)
     arguments.add_argument("--first", type=int, default=0)

@@ -1,4 +1,4 @@
-"""Check that a generated robot is sound. Each robot is built again from its statement."""
+"""Check generated robots: build each robot again from its statement."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -33,7 +33,6 @@ def cells(exercise: Exercise) -> list[list[str]]:
 
 
 def asked(exercise: Exercise) -> Convention:
-    """Return the convention that the exercise asks for."""
     [convention] = exercise.conventions
     return convention
 
@@ -44,7 +43,6 @@ def symbol_values(exercise: Exercise, rng: np.random.Generator) -> dict[str, flo
 
 
 def tip(exercise: Exercise, values: dict[str, float]) -> np.ndarray:
-    """Return the tool pose from the table: the product of the link transforms, in plain sines."""
     reached = np.eye(4)
     for row in exercise.robot.tables[exercise.robot.convention].rows:
         a, alpha, d, theta = (
@@ -68,7 +66,7 @@ def tip(exercise: Exercise, values: dict[str, float]) -> np.ndarray:
 
 
 def is_the_robot_of_its_statement(exercise: Exercise, seed: int) -> bool:
-    """True if the statement and the table give the same tool poses at three random joint values."""
+    """True if the statement and the table describe the same robot."""
     rng = np.random.default_rng([seed, 11])
     for _ in range(3):
         values = symbol_values(exercise, rng)
@@ -85,10 +83,9 @@ def is_the_robot_of_its_statement(exercise: Exercise, seed: int) -> bool:
 
 
 def form(exercise: Exercise) -> tuple[object, ...]:
-    """Return axes and tool at home as numbers. They are equal if robots differ only in lengths.
-
-    For this, the n-th length that the statement names gets the value √(n + 1).
-    """
+    # Return axes and tool at home as numbers. They are equal if robots differ only in lengths.
+    #
+    # For this, the n-th length that the statement names gets the value √(n + 1).
     words = exercise.statement
     names = re.findall(r"(?<![\w.{])(?:[adh]\d+|\d+\.\d+|[1-9]\d*)(?![\w.}°])", words)
     sizes = {name: sqrt(i + 2) for i, name in enumerate(dict.fromkeys(names))}
@@ -112,7 +109,6 @@ def share(exercise: Exercise, answer: object) -> float:
 
 
 def model_share(exercise: Exercise, *, solved: bool) -> float:
-    """Return the share of points for the model solution if ``solved``, else for the known table."""
     if solved:
         return share(exercise, solve(exercise).parts[0].answer)
     rows = [dict(zip(("a", "alpha", "d", "theta"), row, strict=True)) for row in cells(exercise)]
@@ -120,12 +116,11 @@ def model_share(exercise: Exercise, *, solved: bool) -> float:
 
 
 def lazy_share(exercise: Exercise) -> float:
-    """Return the largest share of points for an answer of only zeros and joint variables."""
     return max(lazy_shares(exercise).values())
 
 
 def segments(exercise: Exercise) -> list[Segment]:
-    """Return the robot at home as line segments, with each length in the middle of its range."""
+    # Return the robot at home as line segments, with each length in the middle of its range.
     table = exercise.robot.tables[Convention.STANDARD]
     middle = {
         each.name: 0.0 if each.kind == "angle" else (each.low + each.high) / 2
@@ -152,7 +147,7 @@ def segments(exercise: Exercise) -> list[Segment]:
 
 
 def nearest_links(exercise: Exercise) -> float:
-    """Return the least distance (in m) between points of links that are not neighbours."""
+    """Return the least distance (m) between links that are not neighbours."""
     shares = np.linspace(0, 1, 41)[:, None]
     points = [start + shares * (end - start) for start, end in segments(exercise)]
     gaps = [
@@ -164,7 +159,7 @@ def nearest_links(exercise: Exercise) -> float:
 
 
 def overlapping_labels(exercise: Exercise) -> list[tuple[str, str]]:
-    """Return the labels of the figure that overlap, with letters half as wide as high."""
+    """Return the labels of the figure that overlap."""
     boxes = []
     for text in ET.fromstring(exercise_figure(exercise)).iter(f"{SVG}text"):
         size = 13 if "number" in text.attrib["class"] else 17

@@ -1,4 +1,4 @@
-"""Generated robots are sound: a sample of ``python -m tests.variants.robots``."""
+"""Check some generated robots."""
 
 import hashlib
 import json
@@ -35,7 +35,6 @@ DIGEST = "bb8280642a5d676c"
 
 
 def digest() -> str:
-    """Return one digest of what students see of the first robots, and of the robots' tables."""
     seen = [
         (each.id, each.version, each.statement, each.summary, str(each.view))
         for level in LEVELS
@@ -103,7 +102,7 @@ def test_a_statement_of_another_robot_is_noticed() -> None:
 
 
 def texts(exercise: Exercise) -> str:
-    """Return everything that students read, with each text on its own line."""
+    """Return everything that students read in an exercise."""
     return "\n".join([
         exercise.title, exercise.source, exercise.summary, exercise.statement,
         *(each.title for each in exercise.parts), *(each.prompt for each in exercise.parts),
@@ -112,12 +111,10 @@ def texts(exercise: Exercise) -> str:
 
 
 def words(text: str) -> set[str]:
-    """Return the words of a text, but not those of one or two letters, which are often names."""
     return set(re.findall(r"(?<!\w)[^\W\d_]{3,}(?!\w)", text))
 
 
 def values(text: str) -> Counter[str]:
-    """Count the numbers in a text, and the names of lengths, axes and frames."""
     return Counter(re.findall(r"-?(?<![A-Za-z])(?:[adhxyz]|theta)?\d+(?:\.\d+)?|\{\w\}", text))
 
 

@@ -1,4 +1,4 @@
-"""The help pages: examples are read as the pages say, and every page links to the help."""
+"""The program reads the examples on the help pages as the pages say."""
 
 import asyncio
 import html
@@ -37,7 +37,6 @@ def shown(topic: str, language: Language = ENGLISH) -> str:
 
 
 def examples(kind: str) -> list[list[str]]:
-    """Return the cells of each row in the tables of the help that show examples of a kind."""
     bodies = re.findall(
         rf'data-examples="{kind}">.*?<tbody>(.*?)</tbody>', shown("expressions"), re.DOTALL
     )

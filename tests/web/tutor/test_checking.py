@@ -1,4 +1,4 @@
-"""The editor checks exercises in a separate process, which has a time limit and is restarted."""
+"""The editor checks exercises in a separate process with a time limit."""
 
 import os
 import signal

@@ -1,4 +1,4 @@
-"""The tutor's pages: access, limits, and the same results as the command line."""
+"""Test the tutor's pages: access, limits and results."""
 
 import asyncio
 import gzip
@@ -45,7 +45,7 @@ RIGHT = "a\talpha\td\ttheta\na1\t0\t0\ttheta1\na2\t0\t0\ttheta2\n"
 
 
 class Tutor:
-    """Sends requests to an application in this process, by default from the same machine."""
+    """Sends requests to an application in this process."""
 
     def __init__(
         self,

@@ -1,4 +1,4 @@
-"""The editor's import writes the same text as the command line, and refuses hostile files."""
+"""The editor imports a URDF file as the command line does."""
 
 from collections.abc import Mapping
 from pathlib import Path
