@@ -1,7 +1,7 @@
-"""A long fuzz of texts, grids and whole requests: `python -m tests.fuzz --count 1000000`.
+"""Read many random texts, grids and requests: `python -m tests.fuzz --count 1000000`.
 
-Print the findings, and exit with 1 if there is one: an undocumented exception, a second reading
-that differs, or a case that costs more than the budget.
+Exit with 1 if the program raises an undocumented exception, reads a text differently a second time,
+or takes too long.
 """
 
 import argparse
@@ -34,7 +34,6 @@ def _numbered_group(each: tuple[int, str]) -> Found:
 
 
 def fuzz(count: int, seed: str, cores: int, minutes: float) -> Found:
-    """Read ``count`` cases on some cores, fewer if the time is over, and print the progress."""
     total = Found()
     began = told = time.monotonic()
     for found in _each(count, seed, cores):
@@ -62,7 +61,6 @@ def _each(count: int, seed: str, cores: int) -> Iterator[Found]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the fuzz; return the exit code."""
     parser = argparse.ArgumentParser(prog="python -m tests.fuzz", description=__doc__)
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", default="0")

@@ -255,7 +255,7 @@ def test_the_parallel_axes_of_the_lecture_notes_read_literally_are_left_handed(
 
 
 def test_the_task_space_vector(catalogue: Mapping[str, Exercise]) -> None:
-    """The lecture prints cos θ_12. The grader refuses it, because θ_12 could also mean joint 12."""
+    # The lecture prints cos θ_12. The grader refuses it, because θ_12 could also mean joint 12.
     printed = [
         r"l_1 \cos \theta_1 + l_2 \cos \theta_{12} + l_3 \cos \theta_{123}",
         r"l_1 \sin \theta_1 + l_2 \sin \theta_{12} + l_3 \sin \theta_{123}",

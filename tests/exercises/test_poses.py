@@ -1,9 +1,8 @@
-"""Poses of the lectures get full marks: products of their matrices, and closed forms.
+"""Poses that lectures print get full marks."""
 
-The matrices are copied from MEAM 520, *More Denavit-Hartenberg (DH)* (planar RR and Stanford arm)
-and from Robotic Fundamentals (UMFM4X-15-M), *Forward Kinematics* (planar RRR, RRRP); SymPy
-multiplies them.
-"""
+# The matrices are copied from MEAM 520, *More Denavit-Hartenberg (DH)* (planar RR and Stanford arm)
+# and from Robotic Fundamentals (UMFM4X-15-M), *Forward Kinematics* (planar RRR, RRRP); SymPy
+# multiplies them.
 
 from collections.abc import Mapping
 from functools import reduce
@@ -42,7 +41,7 @@ def product(*matrices: Any) -> Any:
 
 
 def planar_rrr() -> Any:
-    """Return the product 0T1 1T2 2T3 3Te of the printed matrices."""
+    # Return the product 0T1 1T2 2T3 3Te of the printed matrices.
     q1, q2, q3, l1, l2, l3 = sp.symbols("q1 q2 q3 l1 l2 l3")
 
     def link(q: Any, length: Any) -> Any:
@@ -54,7 +53,7 @@ def planar_rrr() -> Any:
 
 
 def rrrp() -> Any:
-    """Return the pose from the lecture's table and its general matrix (standard convention)."""
+    # Return the pose from the lecture's table and its general matrix (standard convention).
     q1, q2, q3, q4, l1, l2, l3, l4 = sp.symbols("q1 q2 q3 q4 l1 l2 l3 l4")
 
     def link(a: Any, alpha: Any, d: Any, theta: Any) -> Any:

@@ -1,4 +1,4 @@
-"""The textbooks' tables get full marks in every spelling that a student may choose."""
+"""The textbooks' tables get full marks, however a student writes them."""
 
 from collections.abc import Mapping
 
@@ -33,7 +33,7 @@ def test_numbers_need_not_be_text(robot: Robot, catalogue: Mapping[str, Exercise
 
 
 def test_the_stanford_table_as_the_lecture_prints_it(catalogue: Mapping[str, Exercise]) -> None:
-    """Source: MEAM 520, More Denavit-Hartenberg (DH); columns d, a, α, θ; joints as θ_1^*."""
+    # Source: MEAM 520, More Denavit-Hartenberg (DH); columns d, a, α, θ; joints as θ_1^*.
     printed = [
         ("0", "0", "-90", r"\theta_1^*"),
         ("d_2", "0", "+90", r"\theta_2^*"),

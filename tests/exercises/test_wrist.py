@@ -1,4 +1,4 @@
-"""The spherical wrist: its rotation is exactly ZYZ Euler (robots.md)."""
+"""The rotation of the spherical wrist is exactly ZYZ Euler."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Read the cases in corpus/; their formulas are about ``ROBOT``."""
+"""Read the test cases in the folder corpus/."""
 
 import ast
 import re
@@ -22,7 +22,7 @@ _NUMBER = re.compile(r"(\w+) = (-?[0-9.]+)")
 
 
 class Case(NamedTuple):
-    """One line of a file: the text, its expected results, and the file and line."""
+    """A test case: a text, its expected result, and its file and line."""
 
     text: str
     answers: tuple[str, ...]
@@ -30,7 +30,7 @@ class Case(NamedTuple):
 
 
 def cases(name: str) -> list[Case]:
-    """Return the cases of corpus/`name`.txt."""
+    """Return the test cases of corpus/`name`.txt."""
     found = []
     lines = (FOLDER / f"{name}.txt").read_text("utf-8").split("\n")
     for number, line in enumerate(lines, 1):
@@ -42,7 +42,7 @@ def cases(name: str) -> list[Case]:
 
 
 class SpellingCase(NamedTuple):
-    """A spelling and its meaning in plain arithmetic; ``refused`` if the reader refuses it."""
+    """A formula as people type it, and its meaning in plain arithmetic."""
 
     text: str
     meaning: str
@@ -51,7 +51,7 @@ class SpellingCase(NamedTuple):
 
 
 def spelling_cases() -> list[SpellingCase]:
-    """Return the cases of corpus/spellings/: ``text | meaning``, or ``| ! meaning`` if refused."""
+    # Return the cases of corpus/spellings/: `text | meaning`, or `| ! meaning` if refused.
     found = []
     for file in sorted((FOLDER / "spellings").glob("*.txt")):
         for number, line in enumerate(file.read_text("utf-8").split("\n"), 1):
@@ -64,13 +64,11 @@ def spelling_cases() -> list[SpellingCase]:
 
 
 class RepairCase(NamedTuple):
-    """A text that a rule refuses, or, without a ``code``, a similar text that is read.
+    """A text, and the correction that the reader should suggest for it."""
 
-    ``span`` is the place of the fault, from-to, and ``part`` the text at this place (empty for a
-    text written in Python). ``answer`` is the repaired text, or None if there is no repair. For a
-    text that is read, ``answer`` is the meaning of this text.
-    """
-
+    # `span` is the place of the fault, from-to, and `part` the text at this place (empty for a text
+    # written in Python). `answer` is the repaired text, or None if there is no repair. For a text
+    # that is read, `answer` is the meaning of this text.
     text: str | float
     code: str
     span: str
@@ -80,15 +78,12 @@ class RepairCase(NamedTuple):
 
 
 def repairs() -> list[str]:
-    """Return the names of the repairs that have cases."""
     return sorted(file.stem for file in (FOLDER / "repairs").glob("*.txt"))
 
 
 def repair_cases(repair: str) -> list[RepairCase]:
-    """Return the cases of corpus/repairs/``repair``.txt.
-
-    Invisible characters and JSON's numbers are written as Python literals after ``python:``.
-    """
+    """Return the test cases of corpus/repairs/``repair``.txt."""
+    # Invisible characters and JSON's numbers are written as Python literals after `python:`.
     found = []
     lines = (FOLDER / "repairs" / f"{repair}.txt").read_text("utf-8").split("\n")
     for number, line in enumerate(lines, 1):
@@ -110,7 +105,7 @@ def _typed(text: str) -> str | float:
 
 
 def python_text(line: str) -> str | float:
-    """Evaluate a Python literal, a repeated literal (``*``), or several joined by ``+``."""
+    # Evaluate a Python literal, a repeated literal (`*`), or several joined by `+`.
     value: str | float = _joined(ast.parse(line, mode="eval").body)
     return value
 
@@ -128,14 +123,12 @@ def _joined(node: ast.expr) -> Any:
 
 
 def numbers(name: str) -> dict[str, float]:
-    """Return the symbols' values in the head of corpus/`name`.txt."""
     text = (FOLDER / f"{name}.txt").read_text("utf-8")
     head = "\n".join(line for line in text.split("\n") if line.startswith("#"))
     return {match[1]: float(match[2]) for match in _NUMBER.finditer(head)}
 
 
 def names() -> list[str]:
-    """Return the names of the files in corpus/ whose cases have values."""
     return sorted(
         file.stem for file in FOLDER.glob("*.txt") if file.stem not in {"errors", "hostile"}
     )

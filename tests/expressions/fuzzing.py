@@ -1,4 +1,4 @@
-"""Generate random texts, and check the properties that every reading must have."""
+"""Generate random texts, and check how the program reads them."""
 
 import time
 import xml.etree.ElementTree as ET
@@ -122,7 +122,7 @@ PIECES: Final = (
 
 
 def seeds() -> list[str]:
-    """Return the texts of all cases in corpus/, except the hostile cases."""
+    """Return the texts of all test cases in corpus/, except the hostile ones."""
     return [case.text for name in (*names(), "errors") for case in cases(name)]
 
 
@@ -133,7 +133,7 @@ def hostile() -> list[str]:
 
 
 def texts(count: int, seed: int) -> Iterator[str]:
-    """Yield `count` texts: random formulas, random sequences of PIECES, mutated cases."""
+    """Yield random texts and changed test cases."""
     random = Random(seed)
     written = [*seeds(), *hostile()]
     for _ in range(count):
@@ -147,7 +147,6 @@ def texts(count: int, seed: int) -> Iterator[str]:
 
 
 def _formula(random: Random, depth: int) -> str:
-    """Return a formula in mixed spellings; most of these formulas can be read."""
     if not depth or random.random() < 0.15:
         return random.choice(PIECES[: PIECES.index("np.")])
     inner = _formula(random, depth - 1)
@@ -168,7 +167,6 @@ def _formula(random: Random, depth: int) -> str:
 
 
 def mutated(text: str, random: Random, written: list[str]) -> str:
-    """Return `text` with a few bytes changed, or with parts of other cases inserted."""
     data = bytearray(text.encode("utf-8", "surrogatepass"))
     for _ in range(random.randint(1, 4)):
         at = random.randint(0, len(data))
@@ -197,7 +195,6 @@ class Outcome(NamedTuple):
 
 
 def outcome(text: str, *, degrees: bool = False) -> Outcome:
-    """Read `text` with empty caches, evaluate and print it. May raise AssertionError."""
     for memoized in reader._memoized:
         memoized.cache_clear()
     reader._parsed.cache_clear()
@@ -206,7 +203,6 @@ def outcome(text: str, *, degrees: bool = False) -> Outcome:
 
 
 def next_outcome(text: str, *, degrees: bool = False) -> Outcome:
-    """Read `text` with the caches as they are, evaluate and print it. May raise AssertionError."""
     start = time.process_time()
     try:
         expression = _read(text, degrees)

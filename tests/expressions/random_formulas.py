@@ -15,7 +15,6 @@ NUMBERS: Final = {
 
 
 def entry(random: Random) -> sympy.Expr:
-    """Return an entry of a pose: a sum of lengths and numbers times sines and cosines."""
     terms = [_term(random) for _ in range(random.randint(1, 4))]
     total = sum(terms, sympy.Integer(0))
     wrap = random.randrange(8)
@@ -31,7 +30,6 @@ def entry(random: Random) -> sympy.Expr:
 
 
 def product(random: Random) -> sympy.Expr:
-    """Return a product that trigonometric identities can rewrite."""
     first, second = random.sample(ANGLES, 2)
     left, right = random.sample(LENGTHS, 2)
     along = random.choice([sympy.cos, sympy.sin])
@@ -52,6 +50,5 @@ def _term(random: Random) -> sympy.Expr:
 
 
 def value(expression: sympy.Expr) -> float:
-    """Return the value of an expression at NUMBERS."""
     at = {name: NUMBERS[name.name.replace("_", "")] for name in expression.free_symbols}
     return float(expression.evalf(20, subs=at))

@@ -1,7 +1,4 @@
-"""An independent evaluator of formulas, which Python itself parses.
-
-It shares no code with the program and evaluates only arithmetic.
-"""
+"""Evaluate formulas with Python's own parser, without the tested code."""
 
 import ast
 import math
@@ -23,7 +20,6 @@ _FUNCTIONS: Final[dict[str, Callable[..., float]]] = {
 
 
 def worth(text: str, numbers: Mapping[str, float]) -> float:
-    """Return the value of plain arithmetic with `numbers`, pi and functions of `math`."""
     return _value(ast.parse(text, mode="eval").body, {**numbers, "pi": math.pi})
 
 

@@ -1,4 +1,4 @@
-"""Test every line of corpus/*.txt: a typed text, and its value or its error."""
+"""Test each case in corpus/*.txt: a text, and its value or its error."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""Unreadable texts: the code, the place in the typed text, and the repair."""
+"""Unreadable texts get an error code, the place of the error, and a suggested correction."""
 
 from copy import deepcopy
 

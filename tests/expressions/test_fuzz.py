@@ -1,4 +1,4 @@
-"""Any typed text gives one result, quickly, and the same result again."""
+"""Any text is read quickly, and always with the same result."""
 
 import pytest
 from hypothesis import given

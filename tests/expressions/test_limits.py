@@ -1,4 +1,4 @@
-"""Limits on expressions."""
+"""Test the limits on expressions."""
 
 import contextlib
 import time
@@ -47,7 +47,7 @@ def test_a_text_beyond_a_limit_is_refused(
     ],
 )
 def test_a_text_within_the_limits_is_read(text: str, arm: Vocabulary) -> None:
-    """A long sum counts as one level of depth."""
+    # A long sum counts as one level of depth.
     expression = read(text, arm, quantity="angle", angle_unit="degrees")
     assert expression.mathml()
     assert expression.latex()
@@ -85,7 +85,6 @@ def test_short_texts_are_accepted_up_to_the_limit_of_depth(
 
 
 def _depth(node: Node) -> int:
-    """Return the depth of a tree, with a run of sums or of products as one level."""
     runs = {"+": "+-", "-": "+-", "*": "*/", "/": "*/", "^": "^"}
     depths = [_depth(child) for child in children(node)]
     if isinstance(node, Binary) and isinstance(node.left, Binary):
@@ -114,7 +113,7 @@ def test_the_limits_are_those_of_the_design() -> None:
     ["a" * 500, "θ" * 500, "sin" * 166, ")" * 500, "k1" * 250, "-(" * 250, "c1" * 250, "½" * 500],
 )
 def test_no_text_takes_quadratic_time(text: str, arm: Vocabulary) -> None:
-    """The bound on processor time is generous; quadratic growth would exceed it."""
+    # The bound on processor time is generous; quadratic growth would exceed it.
     start = time.process_time()
     with pytest.raises(ExpressionError):
         read(text, arm, angle_unit="degrees")

@@ -1,4 +1,4 @@
-"""The pose of a seven-joint arm as programs print it: expanded and not simplified."""
+"""Read the pose of a seven-joint arm as programs print it."""
 
 import inspect
 import sys
@@ -44,7 +44,6 @@ PRINTERS: dict[str, Callable[[sympy.Expr], str]] = {
 
 @cache
 def _pose() -> sympy.Matrix:
-    """Return the product of the standard DH transforms of an arm like Baxter's."""
     a0, a1, a2, a3, a4, a5, a6 = LENGTHS
     turn = sympy.pi / 2
     rows = [(a1, -turn, a0), (0, turn, 0), (a3, -turn, a2), (0, turn, 0), (a5, -turn, a4),
@@ -86,7 +85,6 @@ def test_a_long_entry_is_read(printer: str) -> None:
 
 
 def _longest_formulas() -> list[str]:
-    """Return formulas at the limits: long sums, long products, and nested formulas."""
     run = LIMITS.tree_depth - 1
     return [
         "+".join(["L1"] * (run + 1)),
@@ -99,7 +97,7 @@ def _longest_formulas() -> list[str]:
 
 @pytest.mark.parametrize("text", _longest_formulas(), ids=range(5))
 def test_functions_on_trees_stay_far_from_the_recursion_limit(text: str) -> None:
-    """Python allows 1,000 nested calls, of which a server's own calls take about a hundred."""
+    # Python allows 1,000 nested calls, of which a server's own calls take about a hundred.
     depth = len(inspect.stack(0))
     limit = sys.getrecursionlimit()
     sys.setrecursionlimit(depth + 800)

@@ -1,4 +1,4 @@
-"""No student's text is run as code: the source code contains no call of an evaluator."""
+"""The program never runs a student's text as code."""
 
 import ast
 from pathlib import Path

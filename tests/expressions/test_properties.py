@@ -1,4 +1,4 @@
-"""Properties that hold for every tree and every text."""
+"""Test properties that hold for every formula."""
 
 import xml.etree.ElementTree as ET
 from operator import add, mul, sub
@@ -37,7 +37,7 @@ units = st.builds(Unit, numbers | numbers.map(lambda n: Binary("/", n, Number(2.
 
 
 def _without_zero_power(tree: Binary) -> Binary:
-    """Replace x^0 by x*0, because 90^0 is refused (it may mean 90°)."""
+    # Replace x^0 by x*0, because 90^0 is refused (it may mean 90°).
     is_zero = isinstance(tree.right, Number) and tree.right.value == 0
     return Binary("*", tree.left, tree.right) if tree.operator == "^" and is_zero else tree
 
@@ -92,7 +92,6 @@ def test_latex_reads_back_to_the_same_values(tree: Node) -> None:
 
 
 def _oracle(node: Node, values: dict[str, float]) -> sympy.Expr:
-    """Build the formula of a tree in SymPy, with numbers of 40 digits."""
     match node:
         case Number(value):
             return sympy.Float(value, 40)

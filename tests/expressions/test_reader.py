@@ -1,4 +1,4 @@
-"""The values of texts, compared with Python's own arithmetic at the sample of conftest."""
+"""Compare the values of formulas with Python's own arithmetic."""
 
 from math import acos, asin, atan2, cos, exp, pi, sin, sqrt, tan
 

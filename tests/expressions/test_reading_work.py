@@ -1,4 +1,4 @@
-"""The cost of reading a text is estimated before it is read."""
+"""Estimate the cost of reading a text before it is read."""
 
 import time
 
@@ -47,7 +47,7 @@ def test_costly_symbols_of_long_texts_count_several_times(text: str, cost: int) 
 
 
 def test_a_repair_tries_at_most_1200_symbols() -> None:
-    """Without this limit, reading this text took 30 ms."""
+    # Without this limit, reading this text took 30 ms.
     with pytest.raises(ExpressionError) as caught:
         read("//".join(["½" * 78] * 6) + "1", ROBOT)
     assert 0 < caught.value.tried <= 1200
@@ -57,7 +57,7 @@ def test_a_repair_tries_at_most_1200_symbols() -> None:
 
 
 def test_a_run_of_letters_takes_linear_time() -> None:
-    """The time was quadratic when the reader copied all following pieces at each place."""
+    # The time was quadratic when the reader copied all following pieces at each place.
     start = time.process_time()
     for i in range(100):
         outcome("sin" * 26 + str(i))

@@ -1,4 +1,4 @@
-"""Memoized expressions: which objects are stored, and which are computed again."""
+"""Test which expressions are memoized."""
 
 import gc
 import threading
@@ -22,7 +22,6 @@ SAMPLES = {symbol.name: np.linspace(-2, 2, 16) for symbol in ROBOT.symbols}
 
 
 def _tracked() -> int:
-    """Return the number of objects that the garbage collector visits."""
     for _ in range(3):
         gc.collect()
     return len(gc.get_objects())
@@ -36,7 +35,7 @@ def _readable(text: str) -> Expression | None:
 
 
 def test_a_memoized_text_is_at_most_five_objects(arm: Vocabulary, values: Values) -> None:
-    """A formula with fifty nodes must cost the garbage collector no more than a name."""
+    # A formula with fifty nodes must cost the garbage collector no more than a name.
     before = _tracked()
     for number in range(100, 600):
         read(LONG.format(number), arm).evaluate(values)
@@ -96,7 +95,7 @@ def test_has_decimal_is_true_for_decimal_numbers(
 
 
 def test_a_shared_memo_changes_no_value() -> None:
-    """Values are equal to the last bit, with and without a memo, in any order."""
+    # Values are equal to the last bit, with and without a memo, in any order.
     expressions = [each for text in READABLE if (each := _readable(text)) is not None]
     assert len(expressions) > 100
     alone = [np.asarray(each.evaluate(SAMPLES)) for each in expressions]

@@ -1,9 +1,8 @@
-"""A thousand formulas as people type them, each with its meaning, written by hand.
+"""Read a thousand formulas as people type them, each with its meaning."""
 
-The meaning is plain arithmetic, evaluated by ``reference``, which shares no code with the program.
-``corpus/spellings`` has one file for each program or habit. ``test_corpus`` tests the other files
-of ``corpus``.
-"""
+# The meaning is plain arithmetic, evaluated by `reference`, which shares no code with the program.
+# `corpus/spellings` has one file for each program or habit. `test_corpus` tests the other files of
+# `corpus`.
 
 from collections.abc import Callable
 from random import Random
@@ -26,7 +25,6 @@ LEAST_SPELLINGS = 1000
 
 
 def _values(seed: int) -> dict[str, float]:
-    """Return a positive value for each symbol, by the names that meanings use."""
     random = Random(seed)
     return {
         alias: random.uniform(0.2, 0.9)

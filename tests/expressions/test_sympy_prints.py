@@ -1,4 +1,4 @@
-"""Formulas printed by SymPy are read with the value that SymPy computes."""
+"""Formulas printed by SymPy are read with the same value."""
 
 from collections.abc import Callable
 from random import Random
@@ -61,7 +61,7 @@ def test_a_printed_formula_has_its_value(printer: str) -> None:
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("rewriting", REWRITINGS)
 def test_a_rewritten_formula_has_the_same_value(rewriting: str) -> None:
-    """SymPy rewrites the formula; the reader must give both texts the same value."""
+    # SymPy rewrites the formula; the reader must give both texts the same value.
     random = Random(2)
     changed = 0
     for _ in range(10):

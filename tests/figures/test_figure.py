@@ -1,4 +1,4 @@
-"""The figures of all exercises are legible, show what is given, and contain no answer."""
+"""The figures of all exercises are legible and contain no answer."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -39,7 +39,6 @@ GREEK = str.maketrans({"θ": "theta", "α": "alpha"})
 
 @cache
 def drawn(name: str) -> str:
-    """Return the figure of a shipped exercise (memoized)."""
     return exercise_figure(SHIPPED[name])
 
 
@@ -50,7 +49,6 @@ def texts(svg: str) -> list[str]:
 
 
 def labels(svg: str) -> set[str]:
-    """Return the names in a figure; one text may contain several, as a sum or a list."""
     return {part for text in texts(svg) for part in re.split(r" \+ |, ", text)}
 
 
@@ -72,7 +70,7 @@ MISPLACED = """[...document.querySelectorAll('svg')].flatMap(svg => {
 
 @pytest.mark.long
 def test_no_labels_overlap_in_a_browser(visit: Callable[..., Visit], tmp_path: Path) -> None:
-    """A text's box is as high as the font; its upper and lower 4 pixels are empty."""
+    # A text's box is as high as the font; its upper and lower 4 pixels are empty.
     shown = [*map(drawn, SHIPPED), *(reference_figure(SHIPPED[name]) for name in FRAMED)]
     file = tmp_path / "figures.html"
     file.write_text("<!doctype html><meta charset=utf-8>" + "".join(shown), encoding="utf-8")
@@ -90,7 +88,7 @@ PHONE: Final = (340, 384)
 @pytest.mark.long
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_figure_is_legible_on_a_phone(name: str) -> None:
-    """All letters, indices included, are at least 12 CSS pixels high."""
+    # All letters, indices included, are at least 12 CSS pixels high.
     root = ET.fromstring(drawn(name))
     _, _, width, height = map(float, root.attrib["viewBox"].split())
     sizes = map(float, re.findall(r"font(?:-size)?:[a-z ]*([\d.]+)px", drawn(name)))
@@ -100,7 +98,7 @@ def test_a_figure_is_legible_on_a_phone(name: str) -> None:
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_no_labels_overlap(name: str) -> None:
-    """Letters are assumed to be half as wide as high, and lines 11 pixels high."""
+    # Letters are assumed to be half as wide as high, and lines 11 pixels high.
     boxes = []
     for text in ET.fromstring(drawn(name)).iter(f"{SVG}text"):
         size = 13 if "number" in text.attrib["class"] else 17
@@ -115,7 +113,7 @@ def test_no_labels_overlap(name: str) -> None:
 @pytest.mark.sampled(8)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_all_frames_and_lengths_of_the_statement_stand_in_its_figure(name: str) -> None:
-    """The figure names all frames, axes, lengths and joint variables of the statement."""
+    # The figure names all frames, axes, lengths and joint variables of the statement.
     exercise = SHIPPED[name]
     statement = exercise.statement
     told = labels(drawn(name))
@@ -138,7 +136,7 @@ def test_all_frames_and_lengths_of_the_statement_stand_in_its_figure(name: str) 
     ],
 )  # fmt: skip
 def test_a_figure_draws_the_given_frames_and_no_others(name: str, frames: str) -> None:
-    """The other frames are the student's to choose."""
+    # The other frames are the student's to choose.
     found = {each for each in labels(drawn(name)) if re.fullmatch(r"[xyz].|\{.\}", each)}
     axes = {f"{axis}{frame}" for axis in "xz" for frame in frames}
     assert found == {*axes, f"y{frames[0]}", *(f"{{{frame}}}" for frame in frames)}
@@ -208,7 +206,7 @@ def test_frames_that_are_free_are_not_drawn(free: str) -> None:
 
 @pytest.mark.parametrize("name", ["planar-rr", "planar-rrr", "scara", "stanford-arm"])
 def test_no_column_below_the_origin_suggests_a_length(name: str) -> None:
-    """The first joint stands on the ground, with its middle at the origin."""
+    # The first joint stands on the ground, with its middle at the origin.
     exercise = SHIPPED[name]
     assert exercise.reference is not None
     numbers = drawing_numbers(exercise.variables)
@@ -221,7 +219,7 @@ def test_no_column_below_the_origin_suggests_a_length(name: str) -> None:
 @pytest.mark.sampled(4)
 @pytest.mark.parametrize("name", SHIPPED)
 def test_a_figure_reveals_only_what_the_statement_says(name: str) -> None:
-    """All texts are joint variables, lengths and their sums, frames, and stated numbers."""
+    # All texts are joint variables, lengths and their sums, frames, and stated numbers.
     exercise = SHIPPED[name]
     known = {variable.name for variable in exercise.variables}
     told = {each for each in labels(drawn(name)) if not re.fullmatch(r"[xyz].|\{.\}", each)}
@@ -234,7 +232,6 @@ def test_a_figure_reveals_only_what_the_statement_says(name: str) -> None:
 
 
 def stated(exercise: Exercise) -> str:
-    """Return the text that students see: the statement and the descriptions of symbols."""
     described = (f"{variable.name}: {variable.description}" for variable in exercise.variables)
     return "\n".join([exercise.statement, *described])
 
@@ -263,7 +260,6 @@ def test_no_joint_axis_points_at_the_viewer(name: str) -> None:
 
 
 def sight(view: View) -> Numbers:
-    """Return the direction to the viewer by azimuth and elevation."""
     azimuth, elevation = np.radians([view.azimuth, view.elevation])
     level = np.cos(elevation)
     return np.array([level * np.cos(azimuth), level * np.sin(azimuth), np.sin(elevation)])
@@ -343,10 +339,9 @@ def test_an_exercise_without_a_robot_has_no_figure() -> None:
 
 
 def test_the_figure_of_the_readme_is_current() -> None:
-    """To update it: dh-grader exercises show stanford-arm --figure docs/stanford-arm.svg.
-
-    The last digits may differ between processors.
-    """
+    # To update it: dh-grader exercises show stanford-arm --figure docs/stanford-arm.svg.
+    #
+    # The last digits may differ between processors.
     number = re.compile(r"-?\d+(?:\.\d+)?")
     kept = (DOCS / "stanford-arm.svg").read_text(encoding="utf-8")
     assert number.sub("0", kept) == number.sub("0", drawn("stanford-arm"))

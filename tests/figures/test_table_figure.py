@@ -1,4 +1,4 @@
-"""The figure of a student's table shows its frames and no text of the student."""
+"""The figure of a student's table contains no text of the student."""
 
 import re
 import xml.etree.ElementTree as ET

@@ -14,12 +14,10 @@ _UNFINISHED = [*ROWS[:2], {**ROWS[2], "theta": "q3 +"}, *ROWS[3:], ROWS[1]]
 
 @cache
 def class_of_seven() -> tuple[GradedSubmission, ...]:
-    """Return seven submissions to an exercise with a table and a pose.
-
-    Anna's answers are correct. Ben and Cleo have the same wrong cell. Dana's table lacks the tool
-    row, and her pose is missing. Emre has an unreadable entry and one row too many. Fritz answers
-    nothing. Gina's file is empty.
-    """
+    """Return seven submissions to an exercise with a table and a pose."""
+    # Anna's answers are correct. Ben and Cleo have the same wrong cell. Dana's table lacks the tool
+    # row, and her pose is missing. Emre has an unreadable entry and one row too many. Fritz answers
+    # nothing. Gina's file is empty.
     answers: dict[str, dict[str, object]] = {
         "anna": {"table": {"rows": ROWS}, "pose": POSE},
         "ben": {"table": {"rows": _TURNED}, "pose": POSE},

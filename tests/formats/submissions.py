@@ -1,4 +1,4 @@
-"""Graded submissions for the tests of formats: right, wrong, unreadable, hostile and others."""
+"""Graded submissions for the tests of report formats."""
 
 import io
 import json
@@ -73,7 +73,6 @@ CLASSROOM = {
 
 @cache
 def planar() -> Exercise:
-    """Return the exercise of the submissions: a table and a pose, 8 points each."""
     return load_exercise(shipped_folder() / "planar-rrr.toml")
 
 
@@ -95,7 +94,6 @@ def graded(
 
 
 def _hostile_words() -> GradedSubmission:
-    """Return a submission whose report has hostile text in every field."""
     correction = Correction(WRITTEN, WRITTEN)
     told = [
         Feedback(
@@ -120,7 +118,6 @@ def _hostile_words() -> GradedSubmission:
 
 
 def _assignment() -> GradedSubmission:
-    """Return a submission to two exercises. One answer is correct; the other file is missing."""
     right = graded({"table": {"rows": ROWS}, "pose": POSE}).files[0].report
     exercise = answered(planar(), worth=3.0)
     missing = AnsweredExercise(
@@ -135,7 +132,7 @@ def _assignment() -> GradedSubmission:
 
 @cache
 def cases() -> Mapping[str, GradedSubmission]:
-    """Return graded submissions by names such as ``wrong``, ``hostile`` and ``empty``."""
+    """Return graded submissions by names such as ``wrong`` and ``empty``."""
     wrong = [ROWS[0], {**ROWS[1], "alpha": "pi/2"}, {**ROWS[2], "theta": "q2"}, ROWS[3]]
     hostile = [dict.fromkeys(row, WRITTEN) for row in ROWS]
     problem = GradedFile("folder/b.json", answered(planar()), None, f"is no JSON: {HOSTILE}")
@@ -158,13 +155,13 @@ def setting(**changes: Any) -> Setting:
 
 
 def document(name: str, *submissions: GradedSubmission, **changes: Any) -> str:
-    """Return the document that the format with this name writes about submissions."""
+    """Return the document that a report format writes about submissions."""
     pieces = report_format(name).pieces(submissions, setting(**changes))
     return b"".join(pieces).decode()
 
 
 def checked_json(name: str, only: GradedSubmission, **changes: Any) -> Any:
-    """Return a format's JSON document after checking it against the schema of the platform."""
+    """Return a format's JSON document after checking it against its schema."""
     file = Path(__file__).with_name("schemas") / f"{name}.json"
     schema = json.loads(file.read_text(encoding="utf-8"))
     text = document(name, only, **changes)

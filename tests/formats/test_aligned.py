@@ -1,4 +1,4 @@
-"""An AlignedTable looks exactly like Rich's own table."""
+"""An AlignedTable looks exactly like a table printed by Rich."""
 
 import io
 

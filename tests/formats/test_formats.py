@@ -1,4 +1,4 @@
-"""Tests of every format: its name finds it, and its output has no commands to build systems."""
+"""Test every report format: its name, and its output without build-system commands."""
 
 import re
 import unicodedata
@@ -43,7 +43,6 @@ def test_the_formats_for_students_are_known() -> None:
 
 
 def commands(line: str) -> Iterator[str]:
-    """Yield the parts of a line that the runners of GitHub, Azure and TeamCity read as commands."""
     if line.lstrip().startswith("::"):
         yield line
     yield from re.findall(r"##(?:vso|teamcity|\w*)\[", line)

@@ -1,4 +1,4 @@
-"""The report formats for students, in another language."""
+"""Test the report formats for students in another language."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""``python -m tests.frame_choice --tables 1000 --seed N``: run the campaign for all robots."""
+"""``python -m tests.frame_choice --tables 1000 --seed N``: grade random tables of all robots."""
 
 import argparse
 import sys
@@ -11,7 +11,6 @@ from tests.frame_choice.trials import Tally
 
 
 def main() -> int:
-    """Run the campaign and print its results; return 1 if a share is below its required minimum."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice", description=__doc__)
     parser.add_argument("--tables", type=int, default=TABLES, help="for each robot and convention")
     parser.add_argument("--free-tables", type=int, default=FREE_TABLES, help="with free base, …")

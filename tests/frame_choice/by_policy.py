@@ -1,10 +1,11 @@
-"""``python -m tests.frame_choice.by_policy --robots N``: random robots under the eight policies.
+"""``python -m tests.frame_choice.by_policy --robots N``: grade tables of random robots.
 
-A policy says which of base, end-effector frame and joint directions the student may choose. The
-campaign draws tables of random robots under each policy and in each convention. A valid table must
-get full marks, and a table with a wrong cell must not. No verdict may depend on the random numbers
-at which the grader compares poses.
+A policy says which frames and joint directions a student may choose. The program grades tables
+under all eight policies.
 """
+
+# A valid table must get full marks, and a table with a wrong cell must not. No verdict may depend on
+# the random numbers at which the grader compares poses.
 
 import argparse
 import os
@@ -31,7 +32,7 @@ MISJUDGED, EXACT, UNSTEADY = "misjudged", "blamed on its cell", "changed by the 
 
 @dataclass
 class Counts:
-    """Counts by policy, truth (valid or wrong) and judgement; ``misses`` are misjudged tables."""
+    """Counts of graded tables, and the misjudged tables."""
 
     counts: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -41,7 +42,6 @@ class Counts:
         self.misses += other.misses
 
     def of(self, truth: str, said: str = "", policy: str | None = None) -> int:
-        """Return the number of valid or wrong tables (``truth``) with a judgement (``said``)."""
         return sum(
             count
             for (name, its_truth, told), count in self.counts.items()
@@ -49,7 +49,6 @@ class Counts:
         )
 
     def judge(self, table: Table, edit: Edit | None, seeds: int) -> None:
-        """Grade a table and count the judgement; a table with an ``edit`` is wrong."""
         truth = WRONG if edit else VALID
 
         def count(said: str) -> None:
@@ -72,7 +71,7 @@ class Counts:
 
 
 def full_marks(table: Table, seed: int) -> bool:
-    """True if the table gets full marks; ``seed`` draws the values at which poses are compared."""
+    """True if the table gets full marks."""
     compiled = exercise(table.robot, table.policy)
     redrawn = replace(compiled, version=f"{compiled.version} {seed}")
     report = grade_rows(redrawn, table.texts, table.convention)
@@ -80,7 +79,6 @@ def full_marks(table: Table, seed: int) -> bool:
 
 
 def described(table: Table) -> str:
-    """Return robot, policy and table as text for a test."""
     robot = table.robot
     lines = [
         f"{robot.name} {robot.structure}, {robot.convention}; {table.policy.name}",
@@ -94,7 +92,6 @@ def described(table: Table) -> str:
 def run(
     numbers: Iterable[int], seed: int, seeds: int, policies: tuple[Policy, ...] = POLICIES
 ) -> Counts:
-    """Return the counts for random robots, with two tables for each policy and convention."""
     counts = Counts()
     for number in numbers:
         rng = np.random.default_rng([seed, number])
@@ -122,7 +119,7 @@ def _task(task: tuple[range, int, int]) -> Counts:
 
 
 def lines(found: Counts) -> list[str]:
-    """Return the figures of each policy, and of all policies together, as lines."""
+    """Return the results as lines of text."""
     said = [(VALID, ""), (VALID, MISJUDGED), (VALID, UNSTEADY)]
     said += [(WRONG, ""), (WRONG, MISJUDGED), (WRONG, UNSTEADY), (WRONG, EXACT)]
     head = "".join(f"{told or truth:>20}" for truth, told in said)
@@ -134,7 +131,6 @@ def lines(found: Counts) -> list[str]:
 
 
 def main() -> int:
-    """Run the campaign and print the figures; return 1 if a table was misjudged."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.by_policy")
     parser.add_argument("--robots", type=int, default=700)
     parser.add_argument("--seed", type=int, default=1)

@@ -1,8 +1,7 @@
-"""The campaign: grade many valid and wrong tables of every robot in random frames.
+"""Grade many valid and wrong tables of every robot, in random frames."""
 
-``python -m tests.frame_choice`` runs the campaign and prints its figures. ``pytest -m campaign``
-runs all of it, too; every run of pytest runs a sample (``test_properties``).
-"""
+# `python -m tests.frame_choice` runs the campaign and prints its figures. `pytest -m campaign` runs
+# all of it, too; every run of pytest runs a sample (`test_properties`).
 
 import os
 import sys
@@ -26,7 +25,7 @@ FREE_TABLES = 20
 
 @dataclass(frozen=True)
 class Task:
-    """A unit of work for one process: ``tables`` tables of a robot in one convention."""
+    """The tables of one robot that one process grades."""
 
     robot: Robot
     convention: str
@@ -55,7 +54,6 @@ def tasks(robots: Sequence[Robot], *, only_given: bool, tables: int, seed: int) 
 
 
 def tallies(todo: Sequence[Task], jobs: int) -> list[Tally]:
-    """Return the tally of each task, and print a line of progress to standard error."""
     if jobs == 1:
         return list(_with_progress(todo, map(Task.tally, todo)))
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
@@ -83,7 +81,7 @@ def total(found: Sequence[Tally]) -> Tally:
 
 @dataclass(frozen=True)
 class Figure:
-    """A share of tables, such as those graded correctly. Below ``least``, the campaign fails."""
+    """A share of tables, such as the correctly graded ones, and its lower limit."""
 
     name: str
     part: int
@@ -124,7 +122,7 @@ FREE_FIGURES = (
 
 
 def figures(given: Tally, free: Tally) -> Iterator[Figure]:
-    """Yield the results of the campaign as shares of tables."""
+    """Yield the results as shares of tables."""
     for tally, rows in ((given, GIVEN_FIGURES), (free, FREE_FIGURES)):
         for name, part, whole, least in rows:
             yield Figure(name, tally.counts[part], tally.counts[whole], least)
@@ -145,7 +143,6 @@ def whole_campaign(
     jobs: int | None = None,
     show: Callable[[Task, Tally], None] = lambda _task, _tally: None,
 ) -> tuple[Tally, Tally]:
-    """Return two tallies: with base, tool and directions given, and with some of them free."""
     found = []
     for only_given, count in ((True, tables), (False, free_tables)):
         todo = tasks(robots, only_given=only_given, tables=count, seed=seed)

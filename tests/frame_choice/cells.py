@@ -17,7 +17,7 @@ class NotExpressibleError(Exception):
 
 @dataclass(frozen=True)
 class Term:
-    """A formula that is no sum of letters (a root, an arc tangent), and its values."""
+    """A formula that is not a sum of letters, such as a root."""
 
     text: str
     values: Numbers
@@ -25,7 +25,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Cell:
-    """A cell: a constant, and the factors of joint variables, letters and other formulas."""
+    """A table cell: a constant plus multiples of joint variables and letters."""
 
     angle: bool
     constant: float = 0.0
@@ -70,12 +70,11 @@ def _angle(value: float) -> str:
 
 
 def _whole(value: float) -> float:
-    """Return the value without floating-point noise."""
     return float(np.round(value, 11)) + 0.0
 
 
 def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence[Term]) -> Cell:
-    """Return a sum of letters, or a root, that has these values at all K sets of lengths."""
+    # Return a sum of letters, or a root, that has these values at all K sets of lengths.
     basis = np.array([*letters.values(), np.ones(len(values))]).T
     solution = np.linalg.lstsq(basis, values, rcond=None)[0]
     if np.abs(basis @ solution - values).max() < SAME:
@@ -92,7 +91,7 @@ def length_cell(values: Numbers, letters: Mapping[str, Numbers], roots: Sequence
 
 
 def angle_cell(values: Numbers, arcs: Sequence[Term]) -> Cell:
-    """Return a constant plus at most two of the arcs that has these values modulo 2π."""
+    # Return a constant plus at most two of the arcs that has these values modulo 2π.
     for count in range(3):
         for chosen in combinations(arcs, count):
             for signs in product((1.0, -1.0), repeat=count):

@@ -1,4 +1,4 @@
-"""Slips in a single cell."""
+"""Generate slips in a single cell of a table."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -14,7 +14,7 @@ QUARTER = np.pi / 2
 
 @dataclass(frozen=True)
 class Edit:
-    """A slip: its kind, its row (from 0) and column, and the wrong cell."""
+    """A slip: its kind, its row and column, and the wrong cell."""
 
     kind: str
     row: int
@@ -59,7 +59,6 @@ def _slips(
 
 
 def _letters(robot: Robot, cell: Cell) -> Iterator[tuple[str, Cell]]:
-    """Yield cells with a letter replaced, removed or added."""
     for name in robot.lengths:
         if not cell.letters:
             yield "another letter too", replace(cell, letters={name: 1.0})

@@ -1,4 +1,4 @@
-"""Format the figures of the campaign as lines of a table."""
+"""Write the results of the campaign as lines of a table."""
 
 from statistics import median
 
@@ -23,7 +23,6 @@ HEAD = f"{'':31}" + "".join(f"{name:>{WIDTH}}" for name, _, _ in COLUMNS) + "   
 
 
 def by_policy(tally: Tally) -> str:
-    """Return, for each policy, the counts of accepted valid tables and of caught slips, as text."""
     lines = []
     for name in sorted({name for name, _ in tally.policies}):
         of = {key: count for (policy, key), count in tally.policies.items() if policy == name}
@@ -35,7 +34,6 @@ def by_policy(tally: Tally) -> str:
 
 
 def line(name: str, tally: Tally) -> str:
-    """Return counts and shares, and the median times of correct and wrong tables, as one line."""
     cells = []
     for _, part, whole in COLUMNS:
         counted = f"{tally.counts[part]}/{tally.counts[whole]}"

@@ -1,13 +1,13 @@
-"""Generate valid tables: the same mechanism with other frames, as a student might choose them.
+"""Generate valid tables of a robot, with frames as a student might choose them."""
 
-The generator starts at the base. At each joint it puts the student's frame on the joint's axis. The
-directions of z and x are random. If the next axis is parallel, the origin and x are random as well;
-the axis of a prismatic joint may be anywhere. Each row is computed from the common normal between
-two z axes, at K values of the lengths at once. In the end the numbers are written as formulas.
-
-``pose`` is always the transform ``(K, 4, 4)`` from the reference's frame to the student's frame at
-the same joint.
-"""
+# The generator starts at the base. At each joint it puts the student's frame on the joint's axis.
+# The directions of z and x are random. If the next axis is parallel, the origin and x are random as
+# well; the axis of a prismatic joint may be anywhere. Each row is computed from the common normal
+# between two z axes, at K values of the lengths at once. In the end the numbers are written as
+# formulas.
+#
+# `pose` is always the transform `(K, 4, 4)` from the reference's frame to the student's frame at
+# the same joint.
 
 from dataclasses import dataclass, replace
 
@@ -46,7 +46,7 @@ class Table:
 
 
 class _UnreachableError(Exception):
-    """No row leads from the last frame to the given end-effector frame."""
+    """No table row leads from the last frame to the end-effector frame."""
 
 
 def reassignment(
@@ -56,10 +56,8 @@ def reassignment(
     rng: np.random.Generator,
     boldness: float | None = None,
 ) -> tuple[Table, int]:
-    """Return a random valid table, and the number of failed attempts before it.
-
-    ``boldness`` is the share of choices that differ from the reference's frames, random if None.
-    """
+    """Return a random valid table, and the number of failed attempts before it."""
+    # `boldness` is the share of choices that differ from the reference's frames, random if None.
     for failed in range(200):
         try:
             return _Reassignment(robot, policy, convention, rng, boldness).table(), failed
@@ -88,11 +86,10 @@ class _Reassignment:
         self._read_reference()
 
     def _read_reference(self) -> None:
-        """Read the reference as a product X_0 (Z_1 X_1) … (Z_n X_n) Z_e of screw motions.
-
-        ``first`` is X_0, ``links`` are the products Z_i X_i without the last one, and ``tool`` is
-        Z_n X_n Z_e.
-        """
+        # Read the reference as a product X_0 (Z_1 X_1) … (Z_n X_n) Z_e of screw motions.
+        #
+        # `first` is X_0, `links` are the products Z_i X_i without the last one, and `tool` is Z_n
+        # X_n Z_e.
         home = {name: np.zeros(K) for name in self.robot.joints}
         cells = cell_values(self.robot.rows, home | self.letters)
         none = np.zeros((1, 2, K))
@@ -125,7 +122,6 @@ class _Reassignment:
         return -1 if self._bold() else 1
 
     def _length(self) -> Numbers:
-        """Return a random length: a number, a letter, or their sum."""
         number = np.full(K, round(self.rng.uniform(0.1, 0.8), 2) * self.rng.choice([-1, 1]))
         if not self.letters or self.rng.random() < 0.5:
             return number
@@ -145,7 +141,7 @@ class _Reassignment:
         return np.full(K, np.radians(degrees))
 
     def _sideways(self) -> Numbers:
-        """Return a random displacement for the axis of a prismatic joint, ``(K, 4, 4)``."""
+        # Return a random displacement for the axis of a prismatic joint, `(K, 4, 4)`.
         move = np.tile(np.eye(4), (K, 1, 1))
         move[:, 0, 3], move[:, 1, 3] = self._shift(), self._shift()
         return move
@@ -162,7 +158,7 @@ class _Reassignment:
     # Frames
 
     def _anywhere_on_axis(self, joint: int) -> Numbers:
-        """Return a random frame on the axis of a joint, for a free base or end effector."""
+        # Return a random frame on the axis of a joint, for a free base or end effector.
         on_axis = screw_x(0.0, 0.0 if self._sign() > 0 else np.pi)
         on_axis = screw_z(self._shift(), self._turn()) @ on_axis
         return self._sideways() @ on_axis if self._slides(joint) else on_axis
@@ -188,7 +184,6 @@ class _Reassignment:
         return pose
 
     def _next_frame(self, pose: Numbers, link: Numbers, joint: int) -> Numbers:
-        """Return the frame on the axis of ``joint``, and append its row."""
         moved = link @ self._sideways() if self._slides(joint) else link
         z, x = self._row_to_axis(pose, moved, self._sign())
         self.z.append(z)
@@ -210,7 +205,7 @@ class _Reassignment:
         self._end_directly(target)
 
     def _end_directly(self, target: Numbers) -> None:
-        """Append the last row, which ends in the tool frame; raise an error if no row does."""
+        # Append the last row, which ends in the tool frame; raise an error if no row does.
         theta = np.arctan2(target[:, 1, 0], target[:, 0, 0])
         alpha = np.arctan2(target[:, 2, 1], target[:, 2, 2])
         a = target[:, 0, 3] * np.cos(theta) + target[:, 1, 3] * np.sin(theta)
@@ -221,7 +216,7 @@ class _Reassignment:
         self.x.append(x)
 
     def _aligned_with_tool(self, pose: Numbers) -> None:
-        """Move the last (prismatic) axis until it meets the tool's x axis; append the last row."""
+        # Move the last (prismatic) axis until it meets the tool's x axis; append the last row.
         if not self.links:
             raise _UnreachableError
         link = self.links[-1]
@@ -236,7 +231,7 @@ class _Reassignment:
         self._end_directly(inverse(pose) @ self.tool)
 
     def _end_on_tool_axis(self, pose: Numbers) -> None:
-        """Append the row that leads to the end effector's z axis, and the fixed row e along it."""
+        # Append the row that leads to the end effector's z axis, and the fixed row e along it.
         z, x = self._row_to_axis(pose, self.tool, 1)
         rest = inverse(pose @ screw_z(*z) @ screw_x(*x)) @ self.tool
         self.z.append(z)
@@ -244,7 +239,7 @@ class _Reassignment:
         self.z.append((rest[:, 2, 3], np.arctan2(rest[:, 1, 0], rest[:, 0, 0])))
 
     def _open_end(self, target: Numbers) -> None:
-        """Append a random last row, for a free end effector."""
+        # Append a random last row, for a free end effector.
         angles = (target[:, 1, 0], target[:, 0, 0]), (target[:, 2, 1], target[:, 2, 2])
         theta, alpha = (
             np.arctan2(*angle) * self.rng.integers(2) + self._turn() for angle in angles
@@ -260,7 +255,7 @@ class _Reassignment:
     def _row_to_axis(
         self, pose: Numbers, link: Numbers, z_sign: int
     ) -> tuple[Constants, Constants]:
-        """Return (d, θ) and (a, α) of a row from frame ``pose`` to the z axis of frame ``link``."""
+        # Return (d, θ) and (a, α) of a row from frame `pose` to the z axis of frame `link`.
         target = inverse(pose) @ link
         axis, point = z_sign * target[:, :3, 2], target[:, :3, 3]
         if np.hypot(axis[:, 0], axis[:, 1]).max() > SMALL:
@@ -276,7 +271,7 @@ class _Reassignment:
     def _common_normal(
         self, target: Numbers, axis: Numbers, point: Numbers
     ) -> tuple[Constants, Constants]:
-        """Return (d, θ) and (a, α) of a row from z to the line ``axis`` through ``point``."""
+        # Return (d, θ) and (a, α) of a row from z to the line `axis` through `point`.
         z = np.tile([0.0, 0.0, 1.0], (K, 1))
         x = np.cross(z, axis)
         x /= np.linalg.norm(x, axis=1, keepdims=True)
@@ -287,7 +282,7 @@ class _Reassignment:
         return (d, np.arctan2(x[:, 1], x[:, 0])), (a, np.arctan2(sine, axis[:, 2]))
 
     def _across(self, pose: Numbers, link: Numbers, point: Numbers) -> Constants:
-        """Return a and θ of a row from the z axis to the parallel axis through ``point``."""
+        # Return a and θ of a row from the z axis to the parallel axis through `point`.
         sign = self._sign()
         across = point[:, :2]
         _, sizes, directions = np.linalg.svd(across, full_matrices=False)
@@ -306,7 +301,6 @@ class _Reassignment:
     # Writing down
 
     def _rows(self) -> tuple[CellRow, ...]:
-        """Return the constants as cells, grouped in the rows of the table's convention."""
         none = (np.zeros(K), np.zeros(K))
         if self.convention == STANDARD:
             pairs = list(zip(self.x[1:], self.z, strict=True))
@@ -335,5 +329,5 @@ class _Reassignment:
 
 
 def _read_x(screw: Numbers) -> Constants:
-    """Return a and α of the transforms X = Rot_x(α) Trans_x(a)."""
+    # Return a and α of the transforms X = Rot_x(α) Trans_x(a).
     return screw[:, 0, 3], np.arctan2(screw[:, 2, 1], screw[:, 2, 2])

@@ -1,8 +1,7 @@
-"""Forward kinematics from the two definitions, independent of the service.
+"""Compute forward kinematics without the tested code."""
 
-A table is a list of rows of formulas in the column order a, α, d, θ. Formulas are the arithmetic
-that Python and a student's cell have in common; they are read as syntax trees, never run.
-"""
+# A table is a list of rows of formulas in the column order a, α, d, θ. Formulas are the arithmetic
+# that Python and a student's cell have in common; they are read as syntax trees, never run.
 
 import ast
 import operator
@@ -27,7 +26,7 @@ _FUNCTIONS: dict[str, Callable[..., Numbers]] = {"sqrt": np.sqrt, "atan2": np.ar
 
 
 def evaluate(text: str, values: Mapping[str, Numbers]) -> Numbers:
-    """Return the value of a formula; its shape is that of ``values``, or ``()`` for a constant."""
+    """Return the value of a formula."""
     return _value(_tree(text), values)
 
 
@@ -54,7 +53,7 @@ def _value(node: ast.expr, values: Mapping[str, Numbers]) -> Numbers:
 
 
 def cell_values(rows: Sequence[Sequence[str]], values: Mapping[str, Numbers]) -> Numbers:
-    """Return the table in numbers: shape ``(rows, 4, ...)`` if the values have ``(...)``."""
+    """Return the cells of a table as numbers."""
     shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
     table = np.empty((len(rows), 4, *shape))
     for i, row in enumerate(rows):
@@ -86,10 +85,8 @@ def _screw(axis: int, shift: ArrayLike, angle: ArrayLike) -> Numbers:
 
 
 def factors(table: Numbers, convention: str) -> Numbers:
-    """Return the factors Z X Z X … (standard) or X Z X Z … (modified) of a table.
-
-    The table has the shape ``(rows, 4, ...)``, the factors ``(2 rows, ..., 4, 4)``.
-    """
+    """Return the factors whose product is the pose of a table."""
+    # The table has the shape `(rows, 4, ...)`, the factors `(2 rows, ..., 4, 4)`.
     x = screw_x(table[:, 0], table[:, 1])
     z = screw_z(table[:, 2], table[:, 3])
     pairs = (z, x) if convention == STANDARD else (x, z)

@@ -1,7 +1,6 @@
-"""Apply each misconception to the tables of all robots, and count how often reports name it.
+"""Count how often reports name each misconception, for all robots."""
 
-A table is left out if independent forward kinematics find it correct despite the misconception.
-"""
+# A table is left out if independent forward kinematics find it correct despite the misconception.
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
@@ -45,8 +44,9 @@ def codes(part: PartReport) -> set[str]:
 
 @dataclass(frozen=True)
 class Named:
-    """How often reports named a misconception. ``missed`` has the other tables and their codes."""
+    """Counts how often reports named a misconception."""
 
+    # `missed` has the other tables and their codes.
     named: int
     missed: list[tuple[str, Rows, list[str]]]
 
@@ -56,7 +56,6 @@ class Named:
 
 
 def named_in_all_robots(misconception: Misconception, names: set[str]) -> Named:
-    """Apply a misconception to every robot; ``names`` are the codes that name it."""
     named, missed = 0, []
     for robot in ROBOTS:
         for rows in misconception(robot, robot.rows):
@@ -78,7 +77,6 @@ def with_cell(rows: Rows, i: int, column: int, text: str) -> Rows:
 
 
 def joint_cells(robot: Robot, rows: Rows) -> Iterator[tuple[int, int, str]]:
-    """Yield row, column and variable of each joint."""
     for i, variable in enumerate(robot.joints):
         yield i, robot.column(i), variable
 
@@ -159,7 +157,6 @@ def degrees_everywhere(robot: Robot, rows: Rows) -> Iterator[Rows]:
 
 
 def columns_shifted(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """Yield the table with a and α moved down by one row: the conventions are mixed."""
     link = [("0", "0"), *((row[A], row[ALPHA]) for row in rows[:-1])]
     yield [(a, alpha, row[D], row[THETA]) for (a, alpha), row in zip(link, rows, strict=True)]
 
@@ -178,7 +175,6 @@ def rows_exchanged(robot: Robot, rows: Rows) -> Iterator[Rows]:
 
 
 def column_signs(robot: Robot, rows: Rows) -> Iterator[Rows]:
-    """Yield the table with the signs of all α reversed."""
     yield [(a, f"-({alpha})", d, theta) for a, alpha, d, theta in rows]
 
 

@@ -1,12 +1,11 @@
-"""Decide by the full pose at random values whether two tables describe one mechanism.
+"""Decide whether two tables describe the same robot, by comparing poses."""
 
-If the base or the end-effector frame is free, the tables may differ by a constant transform B or
-E: T_written(q) = B T_reference(σ q) E, with signs σ if the joints' directions are free. B and E may
-depend on the lengths. One free end is solved for at the first joint values and tested at the
-others. With two free ends, B must move the reference's joint screws onto the written ones, because
-in T(q) = exp(S_1 q_1) … exp(S_n q_n) M no S_i depends on E (Lynch and Park, Modern Robotics,
-section 4.1). With B known, E is solved for. The result is checked on the full pose.
-"""
+# If the base or the end-effector frame is free, the tables may differ by a constant transform B or
+# E: T_written(q) = B T_reference(σ q) E, with signs σ if the joints' directions are free. B and E
+# may depend on the lengths. One free end is solved for at the first joint values and tested at the
+# others. With two free ends, B must move the reference's joint screws onto the written ones,
+# because in T(q) = exp(S_1 q_1) … exp(S_n q_n) M no S_i depends on E (Lynch and Park, Modern
+# Robotics, section 4.1). With B known, E is solved for. The result is checked on the full pose.
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cache
@@ -31,7 +30,6 @@ Texts = Sequence[Sequence[str]]
 
 @cache
 def samples(robot: Robot) -> dict[str, Numbers]:
-    """Return values of all symbols ``(LENGTHS, JOINTS)``; lengths are constant in each row."""
     rng = np.random.default_rng(len(robot.name) + 1000 * len(robot.joints))
     values = {}
     for name in robot.lengths:
@@ -44,7 +42,6 @@ def samples(robot: Robot) -> dict[str, Numbers]:
 
 @cache
 def reference_poses(robot: Robot, signs: tuple[int, ...]) -> Numbers:
-    """Return the reference's poses, with each joint variable multiplied by its sign."""
     values = dict(samples(robot))
     for name, sign in zip(robot.joints, signs, strict=True):
         values[name] = sign * values[name]
@@ -52,18 +49,17 @@ def reference_poses(robot: Robot, signs: tuple[int, ...]) -> Numbers:
 
 
 def is_equivalent(robot: Robot, policy: Policy, texts: Texts, convention: str) -> bool:
-    """True if the table is valid for the robot under the policy."""
+    """True if the table is valid for the robot."""
     return mismatch(robot, policy, texts, convention) < TOLERANCE
 
 
 def mismatch(robot: Robot, policy: Policy, texts: Texts, convention: str) -> float:
-    """Return the largest difference between the table's pose and the nearest valid pose."""
+    """Return the largest difference between the table's pose and a valid pose."""
     error = difference(robot, policy, lambda values: cell_values(texts, values), convention)
     return float(np.abs(error).max())
 
 
 def difference(robot: Robot, policy: Policy, table: TableOf, convention: str) -> Numbers:
-    """Return the pose of the table minus the nearest valid pose, at all samples."""
     written = forward(table(samples(robot)), convention)
     needs_screws = policy.directions or (policy.base and policy.tool)
     own_screws = screws(robot, table, convention) if needs_screws else None
@@ -76,7 +72,7 @@ def difference(robot: Robot, policy: Policy, table: TableOf, convention: str) ->
 
 
 def _signs(robot: Robot, policy: Policy, written: Numbers | None) -> Iterator[tuple[int, ...]]:
-    """Yield the possible signs of the joints' directions; ``written`` are the table's screws."""
+    # Yield the possible signs of the joints' directions; `written` are the table's screws.
     n = len(robot.joints)
     if not policy.directions or written is None:
         yield (1,) * n
@@ -94,7 +90,7 @@ def _fitted(
     written: Numbers,
     own_screws: Numbers | None,
 ) -> Numbers:
-    """Return the reference's poses with the best transforms at the free ends."""
+    # Return the reference's poses with the best transforms at the free ends.
     reference = reference_poses(robot, signs)
     if policy.base and policy.tool and own_screws is not None:
         reference = _base_from_screws(robot, signs, own_screws)[:, None] @ reference
@@ -109,7 +105,7 @@ def _fitted(
 
 
 def screws(robot: Robot, table: TableOf, convention: str) -> Numbers:
-    """Return the joint screws (ω; v) in the base frame, all joints at 0, ``(LENGTHS, n, 6)``."""
+    # Return the joint screws (ω; v) in the base frame, all joints at 0, `(LENGTHS, n, 6)`.
     home = {name: value[:, 0] for name, value in samples(robot).items()}
     home |= {name: np.zeros(LENGTHS) for name in robot.joints}
     pose = forward(table(home), convention)
@@ -129,13 +125,13 @@ def _screws_of_reference(robot: Robot) -> Numbers:
 
 
 def _base_from_screws(robot: Robot, signs: tuple[int, ...], written: Numbers) -> Numbers:
-    """Return the motions ``(LENGTHS, 4, 4)`` that move the reference's screws to ``written``."""
+    # Return the motions `(LENGTHS, 4, 4)` that move the reference's screws to `written`.
     reference = _screws_of_reference(robot) * np.array(signs)[:, None]
     return np.array([_align(*pair) for pair in zip(reference, written, strict=True)])
 
 
 def _align(source: Numbers, target: Numbers) -> Numbers:
-    """Return the rigid motion that moves the screws ``source`` ``(n, 6)`` closest to ``target``."""
+    # Return the rigid motion that moves the screws `source` `(n, 6)` closest to `target`.
     turning = np.linalg.norm(source[:, :3], axis=1) > 0.5
     directions = [np.where(turning[:, None], s[:, :3], s[:, 3:]) for s in (source, target)]
     u, sizes, vt = np.linalg.svd(directions[1].T @ directions[0])
@@ -152,7 +148,7 @@ def _align(source: Numbers, target: Numbers) -> Numbers:
 
 
 def _turn_in_plane(source: Numbers, target: Numbers, rotation: Numbers) -> Numbers:
-    """Return the rotation about the parallel axes ``source`` that moves them to ``target``."""
+    # Return the rotation about the parallel axes `source` that moves them to `target`.
     axis = target[0, :3] / max(float(np.linalg.norm(target[0, :3])), 1e-12)
     moved = np.concatenate([source[:, :3] @ rotation.T, source[:, 3:] @ rotation.T], axis=1)
     points = [np.cross(s[:, :3], s[:, 3:]) for s in (moved, target)]
@@ -164,7 +160,7 @@ def _turn_in_plane(source: Numbers, target: Numbers, rotation: Numbers) -> Numbe
 
 
 def _translation(source: Numbers, target: Numbers) -> Numbers:
-    """Return the shortest t with v_target = v_source + t × ω."""
+    # Return the shortest t with v_target = v_source + t × ω.
     if not len(source):
         return np.zeros(3)
     # t × ω = −ω × t, row by row.

@@ -1,8 +1,7 @@
-"""Find the cells in which a wrong table can be repaired.
+"""Find the cells in which a wrong table can be repaired."""
 
-Next to parallel axes and prismatic joints, a change of another cell can often make the table
-correct, too. Then no grader can know which cell the student got wrong.
-"""
+# Next to parallel axes and prismatic joints, a change of another cell can often make the table
+# correct, too. Then no grader can know which cell the student got wrong.
 
 from collections.abc import Sequence
 from itertools import product
@@ -31,12 +30,10 @@ STARTS = 8
 def can_repair(
     robot: Robot, policy: Policy, texts: Texts, convention: str, cells: Sequence[Place]
 ) -> bool:
-    """True if other values of these cells make the table valid.
-
-    Each cell gets an unknown constant for each set of lengths. In the column of the row's joint
-    variable, the variable is added or subtracted. Least squares finds the constants from several
-    starts.
-    """
+    """True if other values of these cells make the table valid."""
+    # Each cell gets an unknown constant for each set of lengths. In the column of the row's joint
+    # variable, the variable is added or subtracted. Least squares finds the constants from several
+    # starts.
     values = samples(robot)
     holds_variable = [robot.column(r) == c if r < len(robot.joints) else False for r, c in cells]
     written = cell_values(texts, {name: value * 1.0 for name, value in values.items()})
@@ -74,13 +71,11 @@ def can_repair(
 
 
 def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[int, int]]:
-    """Return the cells that can each alone repair the table, if both ends are given.
-
-    A cell belongs to one factor of the pose. This factor must be F = A⁻¹ T_reference C⁻¹, where A
-    and C are the products of the factors before and after it. The cell repairs the table if some
-    value of the cell gives F at every sample. The value may contain the joint variable only in the
-    variable's own column.
-    """
+    """Return the cells that can each alone repair the table."""
+    # A cell belongs to one factor of the pose. This factor must be F = A⁻¹ T_reference C⁻¹, where A
+    # and C are the products of the factors before and after it. The cell repairs the table if some
+    # value of the cell gives F at every sample. The value may contain the joint variable only in
+    # the variable's own column.
     values = samples(robot)
     chain = factors(cell_values(texts, values), convention)
     target = reference_poses(robot, (1,) * len(robot.joints))
@@ -103,7 +98,7 @@ def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[in
 def _fills(
     robot: Robot, texts: Texts, row: int, column: int, wanted: Numbers, values: Values
 ) -> bool:
-    """True if the cell can have a value at which its screw motion is ``wanted`` at all samples."""
+    # True if the cell can have a value at which its screw motion is `wanted` at all samples.
     axis = 0 if column in (A, ALPHA) else 2
     first, second = (axis + 1) % 3, (axis + 2) % 3
     other = evaluate(texts[row][{A: ALPHA, ALPHA: A, D: THETA, THETA: D}[column]], values)

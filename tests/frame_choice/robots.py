@@ -1,12 +1,11 @@
-"""The robots of the campaign, and an exercise file for each.
+"""Robots with their correct tables, and an exercise file for each."""
 
-Sources: planar RRR, RRRP, spatial RRR from Robotic Fundamentals (UMFM4X-15-M), Forward Kinematics;
-planar RR, Stanford arm, SCARA, cylindrical arm, spherical wrist and Cartesian arm from Spong,
-Hutchinson, Vidyasagar, Robot Modeling and Control, chapter 3; Baxter's left arm with its published
-lengths; the PUMA 560 from Craig, Introduction to Robotics, section 3.7. The skew RPR, the PRRP and
-the tilted RP are invented: axes at angles that are no multiple of 90 degrees, prismatic joints at
-both ends, a base frame that is not on the first axis.
-"""
+# Sources: planar RRR, RRRP, spatial RRR from Robotic Fundamentals (UMFM4X-15-M), Forward
+# Kinematics; planar RR, Stanford arm, SCARA, cylindrical arm, spherical wrist and Cartesian arm
+# from Spong, Hutchinson, Vidyasagar, Robot Modeling and Control, chapter 3; Baxter's left arm with
+# its published lengths; the PUMA 560 from Craig, Introduction to Robotics, section 3.7. The skew
+# RPR, the PRRP and the tilted RP are invented: axes at angles that are no multiple of 90 degrees,
+# prismatic joints at both ends, a base frame that is not on the first axis.
 
 import tempfile
 from collections.abc import Mapping
@@ -27,7 +26,7 @@ A, ALPHA, D, THETA = range(4)
 
 @dataclass(frozen=True)
 class Policy:
-    """The choices that an exercise leaves to the student besides the frames on the joints."""
+    """What a student may choose: the base frame, the end-effector frame, and joint directions."""
 
     name: str
     base: bool = False
@@ -50,7 +49,7 @@ POLICIES = (
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot with its reference table as formulas; ``first`` is the number of its first joint."""
+    """A robot and its correct table, as formulas."""
 
     name: str
     structure: str
@@ -62,16 +61,15 @@ class Robot:
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
 
     def column(self, joint: int) -> int:
-        """Return the column of the variable of a joint, counted from 0."""
+        """Return the column of a joint's variable, counted from 0."""
         return D if self.structure[joint] == "P" else THETA
 
     def range(self, symbol: str) -> tuple[float, float]:
-        """Return the range for random values of a length; it depends on the robot."""
+        # Return the range for random values of a length; it depends on the robot.
         usual = ((0.2, 1.0), (0.1, 0.4), (0.5, 2.5))[len(self.name) % 3]
         return self.ranges.get(symbol, usual)
 
     def labels(self, rows: int) -> list[str]:
-        """Return the labels of ``rows`` rows, as in a report."""
         joints = len(self.joints)
         return [str(self.first + i) if i < joints else "e" for i in range(rows)]
 
@@ -260,7 +258,7 @@ ROBOTS = (
 
 
 def exercise_text(robot: Robot, policy: Policy) -> str:
-    """Return the exercise file of a robot, whose only part is a table under the policy."""
+    """Return an exercise file that asks for a robot's table."""
     rows = "\n".join(f"    {list(row)}," for row in robot.rows)
     lengths = "\n".join(
         f'{name} = {{ kind = "length", description = "length", range = {list(robot.range(name))}}}'
@@ -298,7 +296,7 @@ directions = "{word[policy.directions]}"
 
 @cache
 def exercise(robot: Robot, policy: Policy) -> Exercise:
-    """Return the compiled exercise of a robot under a policy."""
+    """Return the compiled exercise of a robot."""
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "frame-choice.toml"
         file.write_text(exercise_text(robot, policy), encoding="utf-8")
@@ -306,6 +304,6 @@ def exercise(robot: Robot, policy: Policy) -> Exercise:
 
 
 def conventions(robot: Robot, policy: Policy) -> tuple[str, ...]:
-    """Return the conventions of the robot's tables; a standard table needs z0 on axis 1."""
+    # Return the conventions of the robot's tables; a standard table needs z0 on axis 1.
     begins_elsewhere = robot.convention == MODIFIED and robot.rows[0][:2] != ("0", "0")
     return (MODIFIED,) if begins_elsewhere and not policy.base else CONVENTIONS

@@ -1,10 +1,9 @@
-"""``python -m tests.frame_choice.rounded --robots N``: grade tables with rounded numbers.
+"""``python -m tests.frame_choice.rounded --robots N``: grade tables with rounded numbers."""
 
-Write the tables of random robots in random frames with three to six digits. These tables must get
-full marks. A table with one changed digit must not get them. An exception is a digit that does not
-matter: there are exact numbers that make the table valid, and rounded or cut off they give all its
-decimals.
-"""
+# Write the tables of random robots in random frames with three to six digits. These tables must get
+# full marks. A table with one changed digit must not get them. An exception is a digit that does
+# not matter: there are exact numbers that make the table valid, and rounded or cut off they give
+# all its decimals.
 
 import argparse
 import sys
@@ -34,14 +33,14 @@ NO_EFFECT = 1e-3
 
 @dataclass(frozen=True)
 class RoundedCell(Cell):
-    """A cell whose constant is a decimal with ``figures`` significant digits."""
+    """A table cell whose constant is a rounded decimal."""
 
     figures: int = 3
     units: int = 0  # added in the last place
 
     @property
     def unit(self) -> float:
-        """The value of one unit in the last place, or 0 if the cell has no constant."""
+        # The value of one unit in the last place, or 0 if the cell has no constant.
         if not self.constant:
             return 0.0
         return float(10.0 ** (np.floor(np.log10(abs(self.constant))) + 1 - self.figures))
@@ -61,8 +60,6 @@ class RoundedCell(Cell):
 
 
 def with_odd_angles(robot: Robot, rng: np.random.Generator) -> Robot:
-    """Return the robot with most of the constant angles other than 0 replaced by random ones."""
-
     def odd(text: str, column: int) -> str:
         if column not in (ALPHA, THETA) or text == "0" or text in robot.joints:
             return text
@@ -85,10 +82,8 @@ def rounded(table: Table, figures: int) -> Table:
 
 
 def changed(table: Table, rng: np.random.Generator) -> tuple[Table, tuple[int, int]] | None:
-    """Return the table with the last digit of one constant changed, and the place of its cell.
-
-    Return None if the table has no constant, or if it contains a root or an arc tangent.
-    """
+    """Return the table with the last digit of one constant changed."""
+    # Return None if the table has no constant, or if it contains a root or an arc tangent.
     if any(cell.terms for row in table.rows for cell in row):
         return None
     places = [
@@ -104,16 +99,15 @@ def changed(table: Table, rng: np.random.Generator) -> tuple[Table, tuple[int, i
 
 
 def _matters(other: Table, printed: Table) -> bool:
-    """True if rounding explains the table ``printed``, but not ``other`` with a changed digit."""
+    # True if rounding explains the table `printed`, but not `other` with a changed digit.
     return least_error(other) > CLEARLY and least_error(printed) < CLEARLY / 10
 
 
 def least_error(table: Table) -> float:
-    """Return how far the pose is from a valid one if rounding explains as much as it can.
-
-    The table's decimals may come from any numbers that round to them; the closest are taken. An
-    error of 1 is the smallest effect of one unit in the last place of a decimal.
-    """
+    # Return how far the pose is from a valid one if rounding explains as much as it can.
+    #
+    # The table's decimals may come from any numbers that round to them; the closest are taken. An
+    # error of 1 is the smallest effect of one unit in the last place of a decimal.
     cells = [
         (i, j, cell)
         for i, row in enumerate(table.rows)
@@ -155,13 +149,12 @@ def least_error(table: Table) -> float:
 
 @dataclass
 class RoundedCounts:
-    """The number of tables of each kind, and the misjudged tables."""
+    """Counts of graded tables, and the misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
 
     def judge(self, table: Table, kind: str, *, right: bool, seeds: int) -> None:
-        """Grade a table and count the judgement."""
         self.counts[kind] += 1
         try:
             is_right = graded(table).full_marks
@@ -196,7 +189,6 @@ def tables(
 def run(
     numbers: Iterable[int], seed: int, seeds: int = 0, policies: tuple[Policy, ...] = POLICIES
 ) -> RoundedCounts:
-    """Return the counts for the random robots with these numbers."""
     found = RoundedCounts()
     for table, rng in tables(numbers, seed, policies):
         figures = int(rng.choice(FIGURES))
@@ -213,7 +205,6 @@ def run(
 
 
 def main() -> int:
-    """Run the campaign and print the figures; return 1 if a table was misjudged."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rounded")
     parser.add_argument("--robots", type=int, default=100)
     parser.add_argument("--first", type=int, default=0)

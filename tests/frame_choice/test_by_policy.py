@@ -1,4 +1,4 @@
-"""Random robots under the eight policies: a sample of ``by_policy``."""
+"""Grade tables of random robots under each policy (what a student may choose)."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The whole campaign (``pytest -m campaign``), and tests of its own code."""
+"""Run the whole campaign (``pytest -m campaign``), and test its own code."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Tables that were once misjudged, with the verdict of the oracle."""
+"""Tables that were once misjudged, with the correct verdict."""
 
 import pytest
 
@@ -117,7 +117,6 @@ Case = tuple[str, str, str, tuple[str, ...]]
 
 
 def judged(case: Case) -> tuple[bool, bool]:
-    """Return two verdicts, of the oracle and of the service: True if the table is valid."""
     name, convention, policy, lines = case
     robot = ROBOT[name]
     rows = [[cell.strip() for cell in text.split("|")] for text in lines]

@@ -1,4 +1,4 @@
-"""The oracle gives the correct verdict on known pairs of tables and on known identities."""
+"""Test the oracle, which decides whether two tables describe the same robot."""
 
 import math
 
@@ -101,7 +101,7 @@ def test_what_each_policy_frees() -> None:
 
 
 def test_a_mirrored_mechanism_is_another_one() -> None:
-    """Both ends are free; one mechanism is planar, the other is spatial."""
+    # Both ends are free; one mechanism is planar, the other is spatial.
     for name in ("skew RPR", "Baxter 7R"):
         robot = BY_NAME[name]
         mirrored = [
@@ -127,7 +127,7 @@ def test_drawn_tables_are_valid_and_differ(robot: Robot) -> None:
 
 @pytest.mark.long
 def test_the_cells_that_repair_a_table() -> None:
-    """The closed form and least squares find the same cells."""
+    # The closed form and least squares find the same cells.
     shared = with_cell(RRRP, 1, D, "0.3")  # d1, d2, d3 lie on parallel axes
     assert repairing_cells(RRRP, shared, STANDARD) == {(0, D), (1, D), (2, D), (3, D)}
     alone = with_cell(STANFORD, 1, A, "0.3")
@@ -145,7 +145,7 @@ def test_the_cells_that_repair_a_table() -> None:
 
 
 def test_forward_kinematics_of_the_planar_arm() -> None:
-    """x = a1 c1 + a2 c12, y = a1 s1 + a2 s12 (Spong, Hutchinson, Vidyasagar, eq. 3.11)."""
+    # x = a1 c1 + a2 c12, y = a1 s1 + a2 s12 (Spong, Hutchinson, Vidyasagar, eq. 3.11).
     from tests.frame_choice.kinematics import cell_values, forward
 
     values = {"a1": 0.5, "a2": 0.3, "theta1": 0.4, "theta2": 0.9}

@@ -1,8 +1,7 @@
-"""Properties of grading with the student's own frames: a sample of the campaign.
+"""Grade valid and wrong tables in frames of the student's choice."""
 
-Every valid table is accepted, no wrong one is, and the cell with the slip is blamed.
-``make campaign`` draws 1,000 tables of each robot and convention.
-"""
+# Every valid table is accepted, no wrong one is, and the cell with the slip is blamed. `make
+# campaign` draws 1,000 tables of each robot and convention.
 
 import sys
 import zlib
@@ -35,13 +34,11 @@ def tallied(only_given: bool) -> Tally:
 
 @pytest.fixture(scope="module")
 def given() -> Tally:
-    """Return the tally of tables with given base, end-effector frame and directions."""
     return tallied(only_given=True)
 
 
 @pytest.fixture(scope="module")
 def free() -> Tally:
-    """Return the tally of tables under each of the other policies in turn."""
     return tallied(only_given=False)
 
 
@@ -52,7 +49,6 @@ def either(request: pytest.FixtureRequest) -> Tally:
 
 
 def first_misses(tally: Tally, chosen: Callable[[str], bool]) -> str:
-    """Return the first misjudged tables as text."""
     return "\n\n".join(str(miss) for miss in tally.misses if chosen(miss.what))[:4000]
 
 
@@ -75,7 +71,7 @@ def test_nothing_raises(either: Tally) -> None:
 
 
 def test_a_slip_between_axes_that_are_not_parallel_is_blamed_on_its_cell(given: Tally) -> None:
-    """Slips that a change of another cell would repair as well are not counted."""
+    # Slips that a change of another cell would repair as well are not counted.
     assert given.counts["skew unshared"] >= 25
     assert given.share("skew unshared exact", "skew unshared") >= 0.99, first_misses(
         given, lambda what: what.startswith("one slip, skew")
@@ -97,7 +93,7 @@ def test_two_independent_slips_are_both_found(given: Tally) -> None:
 
 
 def test_of_slips_that_could_be_repaired_elsewhere_the_likeliest_is_blamed(given: Tally) -> None:
-    """The required shares are three standard deviations below those measured in 31,000 tables."""
+    # The required shares are three standard deviations below those measured in 31,000 tables.
     assert given.counts["skew"] >= 30
     assert given.share("skew exact", "skew") >= 0.95
     assert given.counts["two slips"] >= 80

@@ -1,4 +1,4 @@
-"""Rounded tables of random robots are correct; tables with a changed digit are not."""
+"""Rounded valid tables are right; tables with a changed digit are wrong."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Grade random tables (valid ones, and ones with one or two slips) and count the results."""
+"""Grade random tables, valid or with slips, and count the results."""
 
 import time
 from collections import Counter
@@ -33,7 +33,7 @@ DRAWS = 60
 
 @dataclass(frozen=True)
 class Grading:
-    """A graded table; ``blamed`` has row and column (from 0) of each cell that is marked wrong."""
+    """A graded table, and its cells that are marked wrong."""
 
     report: PartReport
     blamed: frozenset[Place]
@@ -75,7 +75,6 @@ def grade_rows(compiled: Exercise, rows: list[list[str]], convention: str) -> Pa
 
 
 def graded(table: Table) -> Grading:
-    """Grade a table. Raises CrashError if the service raises an exception."""
     compiled = exercise(table.robot, table.policy)
     rows = table.texts
     start = time.perf_counter()
@@ -98,16 +97,14 @@ def graded(table: Table) -> Grading:
 
 
 def equivalent(table: Table) -> bool:
-    """True if the oracle finds the table valid."""
+    """True if the table is valid."""
     return is_equivalent(table.robot, table.policy, table.texts, table.convention)
 
 
 def has_parallel_neighbour(table: Table, row: int, column: int) -> bool:
-    """True if the axes next to a cell are parallel.
-
-    a and α belong to the link between two axes: these two axes must be parallel. d and θ are
-    measured on one axis: the previous or the next axis must be parallel to this one.
-    """
+    """True if the axes next to a cell are parallel."""
+    # a and α belong to the link between two axes: these two axes must be parallel. d and θ are
+    # measured on one axis: the previous or the next axis must be parallel to this one.
     link = row if table.convention != MODIFIED or column in (A, ALPHA) else row + 1
     if column in (A, ALPHA):
         return _joins_parallel_axes(table, link)
@@ -115,10 +112,9 @@ def has_parallel_neighbour(table: Table, row: int, column: int) -> bool:
 
 
 def _joins_parallel_axes(table: Table, link: int) -> bool:
-    """True if the α of this row is 0 or 180°.
-
-    A row number beyond the table also counts as parallel.
-    """
+    # True if the α of this row is 0 or 180°.
+    #
+    # A row number beyond the table also counts as parallel.
     if link >= len(table.rows):
         return True
     if table.convention == MODIFIED and link == 0:
@@ -153,7 +149,7 @@ class Miss:
 
 @dataclass
 class Tally:
-    """Counts by name, times of grading, and misjudged tables."""
+    """Counts of graded tables, grading times, and misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     right_ms: list[float] = field(default_factory=list)
@@ -164,7 +160,6 @@ class Tally:
     explain: bool = True
 
     def add(self, other: "Tally") -> None:
-        """Add another tally."""
         self.counts += other.counts
         self.right_ms += other.right_ms
         self.wrong_ms += other.wrong_ms
@@ -173,12 +168,10 @@ class Tally:
         self.policies += other.policies
 
     def share(self, name: str, of: str) -> float:
-        """Return the count ``name`` divided by the count ``of``, or 1 if the count ``of`` is 0."""
         return self.counts[name] / self.counts[of] if self.counts[of] else 1.0
 
 
 def policies(only_given: bool) -> Iterator[Policy]:
-    """Yield the policies in turn, without end."""
     return cycle([GIVEN] if only_given else POLICIES[1:])
 
 
@@ -192,12 +185,10 @@ def run(
     slips: int | None = None,
     explain: bool = True,
 ) -> Tally:
-    """Grade random valid tables of a robot; grade some of them again with one and with two slips.
-
-    ``slips`` is the number of tables that are also graded with slips; None means all. If
-    ``explain`` is True, check whether new values in the cells that are marked wrong could repair
-    the table. This takes long.
-    """
+    """Grade random valid tables of a robot, some of them again with slips."""
+    # `slips` is the number of tables that are also graded with slips; None means all. If `explain`
+    # is True, check whether new values in the cells that are marked wrong could repair the table.
+    # This takes long.
     tally = Tally(explain=explain)
     in_turn = policies(only_given)
     for i in range(tables):
@@ -232,7 +223,7 @@ def _try_whole(table: Table, tally: Tally, _: np.random.Generator) -> None:
 
 
 def one_slip(table: Table, rng: np.random.Generator, not_in_row: int | None = None) -> Edit | None:
-    """Return a random slip that makes the table wrong, or None if none is found."""
+    """Return a random slip that makes the table wrong, or None."""
     for _ in range(DRAWS):
         edit = random_edit(table, rng, not_in_row)
         if not equivalent(table.edited(edit.row, edit.column, edit.cell)):
@@ -276,7 +267,7 @@ def _try_one_slip(table: Table, tally: Tally, rng: np.random.Generator) -> None:
 
 
 def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
-    """True if at most ``at_most`` cells are marked wrong, and new values there repair the table."""
+    # True if at most `at_most` cells are marked wrong, and new values there repair the table.
     if not 0 < len(blamed) <= at_most or any(
         row < 0 or row >= len(table.rows) for row, _ in blamed
     ):
@@ -285,7 +276,7 @@ def is_repaired(table: Table, blamed: frozenset[Place], at_most: int) -> bool:
 
 
 def _is_unshared(table: Table, edit: Edit) -> bool:
-    """True if no change of another single cell would make the table valid."""
+    # True if no change of another single cell would make the table valid.
     wrong = table.edited(edit.row, edit.column, edit.cell)
     return len(repairing_cells(table.robot, wrong.texts, table.convention)) == 1
 

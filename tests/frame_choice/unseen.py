@@ -1,7 +1,6 @@
-"""Random robots of one to seven joints.
+"""Draw random robots with one to seven joints."""
 
-Neighbouring axes are skew, parallel, intersecting or equal. Lengths are letters or decimals.
-"""
+# Neighbouring axes are skew, parallel, intersecting or equal. Lengths are letters or decimals.
 
 import numpy as np
 
@@ -15,7 +14,7 @@ _ODD = ("pi/3", "-pi/4", "pi/6", "-40*pi/180", "0.3", "2*pi/3")
 
 
 def random_robot(number: int, rng: np.random.Generator) -> Robot:
-    """Return a random robot in a random convention; ``number`` is part of its name."""
+    """Return a random robot in a random convention."""
     return _Draft(number, rng).robot()
 
 

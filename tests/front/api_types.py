@@ -1,6 +1,6 @@
-"""Write the types of the HTTP interface for the scripts of the pages, from the OpenAPI document.
+"""Write the TypeScript types of the HTTP interface from the OpenAPI document.
 
-``python -m tests.front.api_types > service/web/types/api.d.ts`` writes them.
+Run ``python -m tests.front.api_types > service/web/types/api.d.ts``.
 """
 
 import json
@@ -21,14 +21,13 @@ _LINE: Final = 100
 
 
 def api_types(document: Schema) -> str:
-    """Return the schemas of an OpenAPI document as types of the namespace ``Api``."""
+    """Return the schemas of an OpenAPI document as TypeScript types."""
     schemas = document["components"]["schemas"]
     types = [f"  type {name} = {_type(schema)};\n" for name, schema in sorted(schemas.items())]
     return f"{_HEAD}declare namespace Api {{\n{''.join(types)}}}\n"
 
 
 def _type(schema: Schema) -> str:
-    """Return a schema as a type. Raises KeyError for an unknown type."""
     if "$ref" in schema:
         return str(schema["$ref"].rpartition("/")[2])
     if "const" in schema or "enum" in schema:

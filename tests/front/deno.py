@@ -33,7 +33,7 @@ def scripts() -> list[Path]:
 
 
 def deno(*arguments: str, written: str = "") -> subprocess.CompletedProcess[str]:
-    """Run Deno in the project's root folder, offline, with the text ``written`` as its input."""
+    """Run Deno offline in the project's root folder."""
     return subprocess.run(
         [find_deno_bin(), *arguments], cwd=ROOT, env=os.environ | _VARIABLES, check=False,
         input=written, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, encoding="utf-8",
@@ -41,7 +41,7 @@ def deno(*arguments: str, written: str = "") -> subprocess.CompletedProcess[str]
 
 
 def types() -> subprocess.CompletedProcess[str]:
-    """Check the types of all scripts, as ``tsc --noEmit`` does."""
+    """Check the types of all scripts."""
     files = [*scripts(), *sorted(TYPES.glob("*.d.ts"))]
     return deno("check", "--quiet", "--no-lock", "--no-remote", *_CONFIG, *map(str, files))
 
@@ -52,17 +52,16 @@ def linter() -> subprocess.CompletedProcess[str]:
 
 
 def formatter(*options: str) -> subprocess.CompletedProcess[str]:
-    """Format the scripts and their tests; with ``--check``, only list the changes."""
+    """Format the scripts and their tests."""
     return deno("fmt", "--quiet", *options, *_CONFIG)
 
 
 def units() -> subprocess.CompletedProcess[str]:
-    """Run the unit tests without the right to write files; ``node --test`` runs them, too."""
+    """Run the unit tests of the scripts."""
     return deno("test", "--no-lock", "--no-remote", "--no-check", *_CONFIG, "tests/front/units")
 
 
 def main() -> None:
-    """Run all checks, and print their errors."""
     if "--fix" in sys.argv[1:]:
         formatter()
     results = [formatter("--check"), linter(), types(), units()]

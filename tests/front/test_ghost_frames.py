@@ -1,4 +1,4 @@
-"""Compare the ghost frame, which shows the moves of a row in 3D, with numpy's matrix products."""
+"""The animated frame in the 3D view moves as numpy's matrix products do."""
 
 import json
 from collections.abc import Sequence
@@ -28,7 +28,7 @@ MOVES: Final = {
 
 
 def matrix(axis: int, turns: bool, amount: float) -> np.ndarray:
-    """Return the matrix of a rotation about an axis (by Rodrigues' formula) or a shift along it."""
+    """Return the matrix of a rotation about an axis, or of a shift along it."""
     made = np.eye(4)
     direction = np.eye(3)[axis]
     if not turns:
@@ -56,7 +56,6 @@ def ghosts(rows: Sequence[object]) -> Any:
 
 
 def rows_of(client: httpx.Client, exercise: Exercise) -> list[dict[str, Any]]:
-    """Return the rows of the reference's tables, with the frames that the service draws."""
     assert isinstance(exercise.reference, Robot)
     rows = []
     values = [[0.4 * (i + 1) - 1 for i in range(len(exercise.joints))]]

@@ -1,4 +1,4 @@
-"""The scripts of the pages: types, linter, formatter, unit tests, and allowed imports."""
+"""Check the scripts of the pages: types, style, unit tests and imports."""
 
 import re
 from subprocess import CompletedProcess
@@ -84,7 +84,7 @@ def test_scripts_and_rooms_stay_easy_to_survey() -> None:
 
 
 def test_no_comment_names_another_script() -> None:
-    """The service takes a quoted script name for an import, even in a comment, and loads it."""
+    # The service takes a quoted script name for an import, even in a comment, and loads it.
     comments = re.compile(r"/\*.*?\*/|^\s*//[^\n]*", re.DOTALL | re.MULTILINE)
     naming = [
         script.name

@@ -1,4 +1,4 @@
-"""Degrees and radians."""
+"""Test answers in degrees and in radians."""
 
 from collections.abc import Mapping
 

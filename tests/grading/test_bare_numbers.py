@@ -1,4 +1,4 @@
-"""Exercises without a robot and without symbols are graded and explained like all others."""
+"""Grade exercises that have only numbers, without a robot."""
 
 from collections.abc import Callable, Iterator
 
@@ -18,7 +18,6 @@ ODD: list[object] = ["", None, [], {}, "0.5", 3, "[1 2; 3 4]", [[]], {"rows": []
 
 
 def spoilt(answer: object) -> Iterator[object]:
-    """Yield the answer with one of its entries spoilt or removed."""
     if isinstance(answer, dict):
         for key in answer:
             yield from ({**answer, key: each} for each in SPOILT)
@@ -59,7 +58,7 @@ def test_unreadable_numbers_get_a_report(bare: BareExercise, make_exercise: Make
 
 
 def test_a_wrong_number_is_explained(make_exercise: Make) -> None:
-    """Slips in bare numbers get the same codes as those in formulas, but no counterexample."""
+    # Slips in bare numbers get the same codes as those in formulas, but no counterexample.
     vector, position = (make_exercise(BARE[i].text) for i in (0, 2))
     report = part(handed_in(vector, {"it": ["0.7", "30deg", "-3"]}), "it")
     found = [message for row in report.rows for each in row.cells for message in each.feedback]

@@ -1,4 +1,4 @@
-"""Marks for answers that follow from an earlier answer."""
+"""Test marks for answers that are consistent with an earlier wrong answer."""
 
 from collections.abc import Callable
 from functools import reduce
@@ -97,7 +97,7 @@ def test_a_trivial_table_earns_no_later_marks(scara: Exercise) -> None:
 
 
 def test_no_part_follows_from_a_poor_table(scara: Exercise) -> None:
-    """Only the joint variables of this table are correct, so no later part follows from it."""
+    # Only the joint variables of this table are correct, so no later part follows from it.
     poor = table(
         [("0", "1", "1", "q1"), ("0", "1", "1", "q2"), ("1", "1", "d3", "1"), ("1", "1", "1", "q4")]
     )
@@ -107,7 +107,7 @@ def test_no_part_follows_from_a_poor_table(scara: Exercise) -> None:
 
 
 def test_a_variable_without_effect_earns_no_later_marks(scara: Exercise) -> None:
-    """The term 0·q does not move the joint."""
+    # The term 0·q does not move the joint.
     idle = "0*(q1 + q2 + d3 + q4)"
     still = [[f"1 + {idle}", "0", "0", "0"], *IDENTITY[1:]]
     parts = graded(scara, table=table([("0", "0", "0", idle)] * 4), links=[still] * 4, pose=still)
@@ -115,7 +115,7 @@ def test_a_variable_without_effect_earns_no_later_marks(scara: Exercise) -> None
 
 
 def test_no_part_follows_from_a_chain_with_lost_freedom(scara: Exercise) -> None:
-    """Without twists and lengths, all four joint axes are on one line, and the pose is trivial."""
+    # Without twists and lengths, all four joint axes are on one line, and the pose is trivial.
     bare = table(
         [("0", "0", "0", "q1"), ("0", "0", "0", "q2"), ("0", "0", "d3", "0"), ("0", "0", "0", "q4")]
     )
@@ -147,7 +147,7 @@ SLIPS: dict[str, tuple[int, tuple[Any, ...], bool]] = {
 
 
 def link(a: Any, alpha: Any, d: Any, theta: Any) -> sympy.Matrix:
-    """Return the link transform of a row, from the textbook (SHV, eq. 3.10)."""
+    """Return the standard link transform (SHV, eq. 3.10)."""
     c, s, ca, sa = sympy.cos(theta), sympy.sin(theta), sympy.cos(alpha), sympy.sin(alpha)
     return sympy.Matrix(
         [
@@ -292,7 +292,7 @@ follows = "table"
 
 
 def modified_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
-    """Return the link transform of a row, from the textbook (Craig, eq. 3.6)."""
+    """Return the modified link transform (Craig, eq. 3.6)."""
     c, s, ca, sa = f"cos({theta})", f"sin({theta})", f"cos({alpha})", f"sin({alpha})"
     return [
         [c, f"-{s}", "0", a],
@@ -303,7 +303,7 @@ def modified_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
 
 
 def test_blanks_do_not_decide_if_a_part_follows(make_exercise: Callable[[str], Exercise]) -> None:
-    """Blanks draw other samples, and some samples are nearer to a lost freedom."""
+    # Blanks draw other samples, and some samples are nearer to a lost freedom.
     exercise = make_exercise(NEARLY_LOST)
     rows = [
         ("0", "0", "d1", "0"), ("1.1", "0", "0.25", "theta2"), ("0", "90deg", "0.125", "theta3"),

@@ -104,7 +104,6 @@ EXTREME: dict[str, Any] = {
 
 
 def place_everywhere(value: Any) -> dict[str, object]:
-    """Return a table and a pose with ``value`` in one cell of each row."""
     rows: list[list[Any]] = [list(row) for row in EXACT.rows(STANFORD)]
     for i, row in enumerate(rows):
         row[i % 4] = value
@@ -150,7 +149,7 @@ def test_an_empty_cell_is_missing(name: str, given_frames: Mapping[str, Exercise
 def test_extreme_values_are_wrong_without_warnings(
     name: str, given_frames: Mapping[str, Exercise]
 ) -> None:
-    """Extreme values raise no warnings, which are errors in tests."""
+    # Extreme values raise no warnings, which are errors in tests.
     answers = place_everywhere(EXTREME[name])
     report, spent = timed(lambda: handed_in(given_frames[STANFORD.exercise], answers))
     check_cost(spent)
@@ -208,7 +207,7 @@ def test_a_table_of_thousands_of_brackets_raises_no_error(
 def test_a_row_that_is_not_an_object_earns_nothing(
     row: object, given_frames: Mapping[str, Exercise]
 ) -> None:
-    """A single "0" instead of a row is not a row of zeros."""
+    # A single "0" instead of a row is not a row of zeros.
     answer = table(EXACT.rows(STANFORD))
     answer["rows"][2] = row
     found = part(handed_in(given_frames[STANFORD.exercise], {"table": answer}), "table")
@@ -245,7 +244,7 @@ def test_an_answer_without_a_matrix_is_unreadable(
 def test_the_costliest_submission_is_graded_soon(
     given_frames: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
-    """Every cell has a different long wrong expression, so that no expression is memoized."""
+    # Every cell has a different long wrong expression, so that no expression is memoized.
     exercise = given_frames[STANFORD.exercise]
     letters = ("q1", "q2", "q4", "q5", "q6", "d2", "d3", "d6")
 

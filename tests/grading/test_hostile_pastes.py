@@ -1,4 +1,4 @@
-"""Every pasted text gets a report, whose spans lie inside the text."""
+"""Every pasted text gets a report."""
 
 import json
 from collections.abc import Mapping

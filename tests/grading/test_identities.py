@@ -1,8 +1,7 @@
-"""An answer that equals the expected one is always right, and any other answer is always wrong.
+"""An answer that equals the expected one is right, and any other answer is wrong."""
 
-Each test grades an answer many times. Each time, another cell is written differently with the same
-value, so that the grading draws new samples.
-"""
+# Each test grades an answer many times. Each time, another cell is written differently with the
+# same value, so that the grading draws new samples.
 
 from collections.abc import Callable, Mapping
 
@@ -49,7 +48,6 @@ ZEROS = {
 
 
 def pose_with(exercise: str, text: str, time: int) -> list[list[object]]:
-    """Return the pose with ``text`` for each 0, and with its last 1 in another spelling."""
     matrix: list[list[object]] = [list(line) for line in POSES[exercise]]
     for i, j in ZEROS[exercise]:
         matrix[i][j] = text
@@ -113,7 +111,7 @@ def test_a_small_number_for_a_zero_is_always_wrong_in_a_pose(
 def test_a_small_number_beside_large_entries_is_always_wrong(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Other entries that are a thousand times the robot's size do not widen the tolerance."""
+    # Other entries that are a thousand times the robot's size do not widen the tolerance.
     exercise = catalogue[RRRP.exercise]
     for time in range(40):
         matrix = pose_with(RRRP.exercise, "0.05", time)
@@ -155,7 +153,7 @@ def test_identities_that_equal_zero_are_right(text: str, catalogue: Mapping[str,
 def test_a_huge_number_of_turns_is_wrong(
     text: str, column: int, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """A number beyond 1e16 rad has no figures left for its direction, so it is wrong."""
+    # A number beyond 1e16 rad has no figures left for its direction, so it is wrong.
     rows = [list(row) for row in EXACT.rows(STANFORD)]
     for row in rows:
         row[column] = text

@@ -26,7 +26,7 @@ HARMLESS = {("re", "compile")}
 
 
 def offences(source: str) -> Iterator[str]:
-    """Yield the places in a program text where input might be executed."""
+    """Yield the places in source code where input might be executed."""
     for node in ast.walk(ast.parse(source)):
         match node:
             case ast.Name(id=name) | ast.alias(name=name) if name.split(".")[-1] in RUNNERS:

@@ -1,4 +1,4 @@
-"""Feedback levels of reports: full, hints, verdicts, score."""
+"""Test the feedback levels of reports: full, hints, verdicts, score."""
 
 import json
 from collections.abc import Mapping
@@ -143,7 +143,7 @@ def test_a_report_names_its_level_and_the_program(reports: dict[FeedbackLevel, R
 def test_the_reference_is_never_shown_below_full(
     level: FeedbackLevel, given_frames: Mapping[str, Exercise]
 ) -> None:
-    """The message on a wrong length does not contain the correct length."""
+    # The message on a wrong length does not contain the correct length.
     rows = [list(cells) for cells in EXACT.rows(STANFORD)]
     rows[1][2] = "0"
     rows[5][2] = "0"

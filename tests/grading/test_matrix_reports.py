@@ -1,7 +1,6 @@
-"""Reports on wrong poses: the message on the whole pose, and the entries that it explains.
+"""Test the reports on wrong poses."""
 
-SymPy multiplies out the poses from elementary turns and shifts.
-"""
+# SymPy multiplies out the poses from elementary turns and shifts.
 
 from collections.abc import Mapping, Sequence
 
@@ -37,7 +36,7 @@ def shift(x: sp.Expr, z: sp.Expr) -> Matrix:
 
 
 def factors(robot: Robot) -> list[tuple[Matrix, Matrix]]:
-    """Return two transforms for each row: one about and along z, one about and along x."""
+    # Return two transforms for each row: one about and along z, one about and along x.
     rows = []
     for a, alpha, d, theta in robot.rows:
         length, offset, angle = (
@@ -61,7 +60,7 @@ def product(matrices: Sequence[Matrix]) -> Matrix:
 
 
 def without_squares(entry: sp.Expr) -> sp.Expr:
-    """Return the entry with 1 - cos² for each sin²; trigsimp would take seconds."""
+    # Return the entry with 1 - cos² for each sin²; trigsimp would take seconds.
     expanded = sp.expand(entry)
     sines = {sine**2: 1 - sp.cos(sine.args[0]) ** 2 for sine in expanded.atoms(sp.sin)}
     return sp.expand(expanded.subs(sines))
@@ -274,7 +273,7 @@ def wrong_entries(report: PartReport) -> set[tuple[int, int]]:
 
 @pytest.mark.parametrize("slip", SLIPS.values(), ids=SLIPS.keys())
 def test_a_misconception_explains_its_matrix(slip: Slip, catalogue: Mapping[str, Exercise]) -> None:
-    """There is one message on the part, and none on the entries that it explains."""
+    # There is one message on the part, and none on the entries that it explains.
     robot, matrix, expected, words, explained = slip
     report = graded_pose(catalogue[robot.exercise], text(matrix))
     assert [message.code for message in report.feedback] == expected
@@ -311,7 +310,7 @@ def test_the_correction_is_not_shown_below_full(catalogue: Mapping[str, Exercise
 
 
 def test_no_frame_of_another_convention_is_named(catalogue: Mapping[str, Exercise]) -> None:
-    """Messages on a standard table do not mention the modified frame {2} of the SCARA arm."""
+    # Messages on a standard table do not mention the modified frame {2} of the SCARA arm.
     z1, x1 = factors(SCARA)[0]
     z2, _ = factors(SCARA)[1]
     report = graded_pose(catalogue[SCARA.exercise], text(product([z1, x1, z2])))
@@ -392,7 +391,7 @@ def test_a_rotation_says_which_column_to_check(catalogue: Mapping[str, Exercise]
 
 
 def test_misconceptions_without_effect_are_not_named(catalogue: Mapping[str, Exercise]) -> None:
-    """All links of a planar arm turn about one direction, so their order does not matter."""
+    # All links of a planar arm turn about one direction, so their order does not matter.
     pose = product([x * z for z, x in factors(PLANAR_RRR)])
     slightly_off = changed(pose, {(0, 0): "cos(q1 + q2 + q3) + 0*q1 + c1/5000"})
     report = graded_pose(catalogue[PLANAR_RRR.exercise], slightly_off)
@@ -401,7 +400,7 @@ def test_misconceptions_without_effect_are_not_named(catalogue: Mapping[str, Exe
 
 
 def test_the_work_budget_limits_explanations(catalogue: Mapping[str, Exercise]) -> None:
-    """If early entries use up the budget, later entries are only compared and not explained."""
+    # If early entries use up the budget, later entries are only compared and not explained.
     exercise = catalogue[SCARA.exercise]
     late = {(2, 2): "cos(0)*cos(pi/2)*c1", (2, 3): "-d3 + d4"}
     nonsense = "c1*s1*c2*s2*c4*s4*a1*a2*d3*d4*c1*s1*c2*s2*c4"

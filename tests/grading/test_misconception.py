@@ -1,4 +1,4 @@
-"""The engine that finds which misconception explains a wrong answer."""
+"""Find the misconception that explains a wrong answer."""
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
@@ -23,7 +23,7 @@ from service.grading.misconception import (
 
 @dataclass
 class WrongNumber:
-    """A wrong number; ``tried`` collects the answers of all hypotheses compared with it."""
+    """A wrong number that records the hypotheses compared with it."""
 
     actual: int
     tried: list[int] = field(default_factory=list)
@@ -36,12 +36,11 @@ class WrongNumber:
 
 
 class Text(str):
-    """A text that a misconception gets as its argument instead of the wrong number."""
+    """A text for a misconception to explain."""
 
 
 @pytest.fixture(autouse=True)
 def records(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Register only a few records for a test, not in the order of their ranks."""
     monkeypatch.setattr(engine, "_RECORDS", [])
     engine.records_of.cache_clear()
 

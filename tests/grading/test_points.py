@@ -145,7 +145,7 @@ expected = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos
 def test_a_wrong_entry_costs_one_content_cell(
     make_exercise: Callable[[str], Exercise],
 ) -> None:
-    """Four entries of a turn about x are content cells: they differ from the identity."""
+    # Four entries of a turn about x are content cells: they differ from the identity.
     exercise = make_exercise(ROTATION)
     right = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos(q1)"]]
     for wrong, expected in (([(0, 0)], 2.25), ([(1, 2)], 2.25), ([(0, 1), (2, 2)], 1.5)):
@@ -156,7 +156,7 @@ def test_a_wrong_entry_costs_one_content_cell(
 
 
 def test_the_name_of_another_convention_costs_nothing(given_frames: Mapping[str, Exercise]) -> None:
-    """The table is right in the expected convention; only the convention that it names is wrong."""
+    # The table is right in the expected convention; only the convention that it names is wrong.
     answer = table(EXACT.rows(STANFORD)) | {"convention": "modified"}
     report = part(handed_in(given_frames[STANFORD.exercise], {"table": answer}), "table")
     assert report.points == report.max_points

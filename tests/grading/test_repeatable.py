@@ -26,7 +26,6 @@ print(json.dumps(asdict(grade(exercise, Submission(json.load(sys.stdin))))))
 
 
 def wrong_answers() -> dict[str, Any]:
-    """Return a submission whose report has counterexamples, misreadings and rounding."""
     rows: list[list[Any]] = [list(row) for row in EXACT.rows(STANFORD)]
     rows[0][1] = "-1.5708"
     rows[1][3] = "q2 + d2*d6 + q5"

@@ -1,4 +1,4 @@
-"""A decimal with three figures is right if it is the true number, rounded or cut off."""
+"""A decimal is right if it is the true number, rounded or cut off."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -172,7 +172,7 @@ def test_no_verdict_depends_on_the_draw(
 
 @pytest.mark.parametrize("blanks", range(20))
 def test_no_verdict_depends_on_blanks(blanks: int, arm: Exercise) -> None:
-    """0.051 is wrong for 0, and stays wrong if blanks are added to another cell."""
+    # 0.051 is wrong for 0, and stays wrong if blanks are added to another cell.
     rows = [*ROWS[:1], ["0", "pi", "1000" + " " * blanks, "q2 + 0.051"]]
     assert list(not_correct(graded_table(arm, rows))) == [("2", "theta")]
 
@@ -233,7 +233,7 @@ def test_a_wrong_short_length_is_found_beside_a_long_one(
 def test_decimals_beyond_the_limit_count_as_written(
     behind: bool, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """Two correct rows and ten rows of random decimals are graded, and do not get full marks."""
+    # Two correct rows and ten rows of random decimals are graded, and do not get full marks.
     garbage = [("0.371", "0.613", "0.829", "1.273")] * 10
     right = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2")]
     rows = [*right, *garbage] if behind else [*garbage, *right]
@@ -245,7 +245,7 @@ def test_decimals_beyond_the_limit_count_as_written(
 def test_decimals_beside_an_absent_variable_are_graded(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Joint 3 of the Stanford arm slides, so that theta3 is absent from the samples."""
+    # Joint 3 of the Stanford arm slides, so that theta3 is absent from the samples.
     rows = [list(row) for row in EXACT.rows(STANFORD)]
     rows[2][3] = "theta3 + 0.127"
     report = graded_table(catalogue["stanford-arm"], rows)

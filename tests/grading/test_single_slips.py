@@ -1,4 +1,4 @@
-"""One slip in a table costs one cell, and is named."""
+"""One slip in a table costs one cell, and the report names the slip."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""Corrections use the spelling of the student."""
+"""Corrections use the student's notation."""
 
 from collections.abc import Mapping
 

@@ -1,7 +1,6 @@
-"""Copying values from a report below the level ``full`` into the wrong cells earns nothing.
+"""Below the level ``full``, a report reveals no correct values."""
 
-No message at the lower levels contains the correct value of a cell.
-"""
+# No message at the lower levels contains the correct value of a cell.
 
 from collections.abc import Callable, Iterator, Mapping
 from typing import NamedTuple
@@ -30,7 +29,6 @@ FIRST: Mapping[str, Callable[[Exercise, PartSpec], Grid]] = {
 
 
 def thieves(exercise: Exercise, level: FeedbackLevel, first: str) -> Iterator[Thief]:
-    """Yield a thief for each part; the first answer has ``first`` in every cell."""
     for spec in exercise.parts:
         grid = FIRST[first](exercise, spec)
         known = known_before(sheet_of(spec, exercise), grid)
@@ -55,7 +53,7 @@ def test_a_thief_gains_nothing(
 def test_a_thief_with_all_hints_gains_nothing(
     first: str, exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The thief asks for all steps of each hint in ten rounds, and tries what is in them."""
+    # The thief asks for all steps of each hint in ten rounds, and tries what is in them.
     had = 0
     for thief in thieves(catalogue[exercise_id], HINTS, first):
         thief.with_hints = True
@@ -67,7 +65,7 @@ def test_a_thief_with_all_hints_gains_nothing(
 
 @pytest.mark.long
 def test_a_thief_gets_the_table_at_full(catalogue: Mapping[str, Exercise]) -> None:
-    """At the level ``full``, a thief succeeds; this shows that the test above can fail."""
+    # At the level `full`, a thief succeeds; this shows that the test above can fail.
     table, *_ = thieves(catalogue["planar-rr"], FULL, "seven")
     before, after = table.steal()
     assert before == 0
@@ -89,7 +87,7 @@ EVERY = 17
 
 
 class Slip(NamedTuple):
-    """A wrong text in one cell of a right answer."""
+    """A wrong text in one cell of a correct answer."""
 
     grid: Grid
     row: int
@@ -101,7 +99,6 @@ class Slip(NamedTuple):
 
 
 def slips(right: Grid, every: int) -> Iterator[Slip]:
-    """Yield every n-th of the slips in the cells of a right answer, with n = ``every``."""
     count = 0
     for i, row in enumerate(right):
         for j, text in enumerate(row):
@@ -115,7 +112,6 @@ def slips(right: Grid, every: int) -> Iterator[Slip]:
 
 
 def leaks(exercise: Exercise, spec: PartSpec, slip: Slip) -> list[str]:
-    """Return the expressions in a report with hints that equal the correct value of the cell."""
     sheet = sheet_of(spec, exercise)
     answers = {spec.id: sheet.posted(slip.grid)}
     corrected = _correction(part(handed_in(exercise, answers, feedback=FULL), spec.id), sheet, slip)
@@ -134,7 +130,6 @@ def leaks(exercise: Exercise, spec: PartSpec, slip: Slip) -> list[str]:
 
 
 def _correction(report: PartReport, sheet: Sheet, slip: Slip) -> str | None:
-    """Return the correct formula that a report at the level ``full`` gives for the slip's cell."""
     at = sheet.rows[slip.row], sheet.columns[slip.column]
     for message, places, _ in messages_of(report):
         for place in places:

@@ -24,7 +24,6 @@ def report(exercise: Exercise, part: str, answer: str, degrees: bool = False) ->
 
 
 def told(part: PartReport) -> list[str]:
-    """Return the codes of all messages except the message on the order of columns."""
     found = [*part.feedback, *(m for row in part.rows for m in row.feedback)]
     found += [m for row in part.rows for cell in row.cells for m in cell.feedback]
     return [m.code for m in found if m.code != "column_order"]

@@ -37,7 +37,6 @@ BLAME = {Severity.ERROR, Severity.WARNING}
 
 
 def places(answer: object, place: Place = ()) -> Iterator[Place]:
-    """Yield the places of the cells of an answer."""
     if isinstance(answer, dict):
         for key, inside in answer.items():
             if key not in ("convention", "none", "frame"):
@@ -60,7 +59,6 @@ def changed(answer: Any, cells: list[Place], text: str) -> Any:
 
 
 def blamed(report: PartReport, unread: Verdict) -> list[tuple[object, ...]]:
-    """Return all verdicts and messages against the whole answer or against cells that were read."""
     verdicts = {(row.label, cell.label): cell.verdict for row in report.rows for cell in row.cells}
     messages = [
         message
@@ -78,7 +76,6 @@ def blamed(report: PartReport, unread: Verdict) -> list[tuple[object, ...]]:
 
 
 def subsets(cells: list[Place], rng: random.Random) -> Iterator[list[Place]]:
-    """Yield every second cell alone, then random sets of two, four, six … cells."""
     yield from ([cell] for cell in cells[::2])
     for count in range(2, len(cells) + 1, 2):
         yield rng.sample(cells, count)
@@ -111,7 +108,7 @@ TRIES = [(robot, name) for robot in ROBOTS for name in conventions(robot, GIVEN)
     ("robot", "name"), one_in(4, TRIES), ids=lambda each: getattr(each, "name", each)
 )
 def test_an_unread_cell_in_other_frames_affects_only_itself(robot: Robot, name: str) -> None:
-    """All drawn valid tables stay right with up to four unread cells, or an unread row."""
+    # All drawn valid tables stay right with up to four unread cells, or an unread row.
     rng = np.random.default_rng(5)
     for policy in POLICIES[:3]:
         rows = reassignment(robot, policy, name, rng)[0].texts
@@ -128,7 +125,7 @@ def test_an_unread_cell_in_other_frames_affects_only_itself(robot: Robot, name: 
 def test_a_slip_beside_an_unread_cell_is_found(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """No offset of joint 2 compensates for a wrong twist between the first two axes."""
+    # No offset of joint 2 compensates for a wrong twist between the first two axes.
     rows = [list(row) for row in STANFORD.rows]
     rows[0][1], rows[1][2] = "-60", "thetta?"
     report = support.graded_table(catalogue["stanford-arm"], rows, "degrees")
@@ -139,7 +136,7 @@ def test_a_slip_beside_an_unread_cell_is_found(
 
 
 def scara_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
-    """Return the standard link transform for a twist of 0 or 180° (Spong et al., eq. 3.10)."""
+    """Return the standard link transform for a twist of 0 or 180°."""
     cos = {"0": "1", "180": "-1"}[alpha]
     c, s = f"cos({theta})", f"sin({theta})"
     return [
@@ -154,7 +151,7 @@ def scara_link(a: str, alpha: str, d: str, theta: str) -> list[list[str]]:
 def test_unread_entries_of_a_link_in_other_frames_affect_no_other(
     i: int, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The answer is valid: x1 is reversed, and origins are moved along the parallel axes."""
+    # The answer is valid: x1 is reversed, and origins are moved along the parallel axes.
     right = [
         scara_link("-a1", "0", "0.3", "theta1 + pi"),
         scara_link("a2", "180", "-0.1", "theta2 - pi"),

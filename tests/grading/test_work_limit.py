@@ -1,4 +1,4 @@
-"""The budget for explanations: one message if it is used up; no verdict depends on the budget."""
+"""Test the limit on the work for explanations."""
 
 from collections.abc import Iterator, Mapping
 
@@ -17,7 +17,6 @@ SHIPPED = ["stanford-arm", "scara", "spatial-rrr", "planar-rpr-poe", "simple-twi
 
 
 def spoilt(answer: object, every: int) -> object:
-    """Return the answer with every n-th cell wrong, n = ``every``."""
     count = 0
 
     def changed(inside: object) -> object:
@@ -49,7 +48,6 @@ def marks(report: Report) -> list[tuple[object, ...]]:
 
 
 def told(report: Report) -> list[str]:
-    """Return the ids of the parts with the message that explanations were left out."""
     return [part.part for part in report.parts for m in part.feedback if m.code == "work_limit"]
 
 
@@ -78,7 +76,7 @@ def everything_wrong(exercise: Exercise) -> dict[str, object]:
 
 
 def test_an_omission_gets_one_message(catalogue: Mapping[str, Exercise]) -> None:
-    """The 24 wrong cells of the table are explained before the seven wrong matrices."""
+    # The 24 wrong cells of the table are explained before the seven wrong matrices.
     exercise = catalogue["stanford-arm"]
     report = grade(exercise, Submission(everything_wrong(exercise)))
     assert len(told(report)) == 1

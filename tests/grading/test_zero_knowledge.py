@@ -1,7 +1,6 @@
-"""Answers without knowledge of geometry earn little, in any disguise.
+"""Answers without knowledge of geometry earn little."""
 
-Every answer here can be written without looking at the robot, except the names of its joints.
-"""
+# Every answer here can be written without looking at the robot, except the names of its joints.
 
 from collections.abc import Callable, Iterator, Mapping
 from itertools import chain
@@ -30,7 +29,6 @@ Rows = list[dict[str, str]]
 
 
 def padded(rows: Rows) -> Iterator[Rows]:
-    """Yield the rows with as many fixed rows as allowed before, between and after them."""
     room = MOST_ROWS - len(rows)
     for row in (ZERO_ROW, GARBAGE):
         yield [row] * room + rows
@@ -44,7 +42,6 @@ def padded(rows: Rows) -> Iterator[Rows]:
 
 
 def dressed_up(rows: Rows) -> Iterator[Rows]:
-    """Yield the rows with d or θ raised and lowered in turn, or with all signs changed."""
     for column in ("d", "theta"):
         for first in range(len(rows) - 1):
             changed = [dict(row) for row in rows]
@@ -59,7 +56,6 @@ def dressed_up(rows: Rows) -> Iterator[Rows]:
 
 
 def standing_still(rows: Rows) -> Iterator[Rows]:
-    """Yield tables in which no joint variable has an effect, or only a negligible one."""
     yield [ZERO_ROW] * len(rows)
     yield [{"a": "1", "alpha": "1", "d": "1", "theta": "1"}] * len(rows)
     first = next(cell for cell in rows[0].values() if cell != "0")
@@ -75,7 +71,6 @@ def of_a_table(lazy: Mapping[str, Any]) -> Iterator[object]:
 
 
 def without_knowledge(part: PartSpec, exercise: Exercise) -> list[object]:
-    """Return answers to one part that need no knowledge."""
     answers = LAZY[part.kind](part, exercise)
     if part.kind == "dh_table":
         tables: list[Any] = [*answers]
@@ -106,13 +101,11 @@ def without_knowledge(part: PartSpec, exercise: Exercise) -> list[object]:
 
 
 def sliding(exercise: Exercise) -> list[list[str]]:
-    """Return the pose of an arm whose first joints slide along x, y and z, unlike the robot."""
     names = [*(joint.variable for joint in exercise.joints), "0", "0", "0"]
     return [[*row[:3], name] for row, name in zip(IDENTITY[:3], names, strict=False)] + IDENTITY[3:]
 
 
 def best_of(part: PartSpec, exercise: Exercise) -> float:
-    """Return the largest share of a part's points that an answer without knowledge earns."""
     graded = (
         grade(exercise, Submission({part.id: answer}))
         for answer in without_knowledge(part, exercise)
@@ -126,7 +119,6 @@ def best_of(part: PartSpec, exercise: Exercise) -> float:
 
 
 def best_together(exercise: Exercise) -> dict[str, float]:
-    """Answer all parts without knowledge; return the largest share of points for each part."""
     best = dict.fromkeys((part.id for part in exercise.parts), 0.0)
     answers = {part.id: without_knowledge(part, exercise) for part in exercise.parts}
     for k in range(0, max(map(len, answers.values())), 2):
@@ -172,7 +164,6 @@ def test_the_given_transform_is_not_its_own_inverse(catalogue: Mapping[str, Exer
 
 
 def slips(exercise: Exercise, part: PartSpec) -> Iterator[tuple[float, float]]:
-    """For each cell, yield the points that a slip costs and those of its row, as shares."""
     right: Any = solve(exercise).answers[part.id]
     for i, row in enumerate(right["rows"]):
         for column in ZERO_ROW:
@@ -258,7 +249,7 @@ def test_no_change_increases_the_points_of_a_lazy_table(
 
 
 def test_no_position_follows_from_a_rotation_alone(catalogue: Mapping[str, Exercise]) -> None:
-    """Invented lengths would make the position easy."""
+    # Invented lengths would make the position easy.
     pose = [["c12", "-s12", "0", "c1 + c12"], ["s12", "c12", "0", "s1 + s12"], *IDENTITY[2:]]
     answers = {"pose": pose, "position": ["c1 + c12", "s1 + s12"]}
     reports = {each.part: each for each in grade(catalogue["planar-rr"], Submission(answers)).parts}

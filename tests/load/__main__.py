@@ -4,7 +4,7 @@ Print throughput and waiting times. Exit with 1 if a request fails, or if an att
 recorded twice.
 """
 
-# It also prints the throughput as a share of that of trivial POSTs. It also exits with 1 if an attack
+# It also prints the throughput as a share of that of trivial POSTs, and exits with 1 if an attack
 # with the costliest bodies makes the p99 more than five times as long.
 
 import argparse

@@ -1,4 +1,4 @@
-"""Greek letters and their names."""
+"""Read Greek letters and their names."""
 
 from service.expressions import Symbol, Vocabulary, read
 

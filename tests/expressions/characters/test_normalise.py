@@ -1,4 +1,4 @@
-"""LaTeX commands next to letters and digits."""
+"""Read LaTeX commands next to letters and digits."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The rounded decimals of a formula: numbers with a point and three or more significant digits."""
+"""Find the rounded decimals in a formula."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The value of a tree at one point, compared with the compiled program."""
+"""Compute the value of a formula at one point."""
 
 import math
 

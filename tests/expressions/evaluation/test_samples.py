@@ -1,4 +1,4 @@
-"""Formulas at all samples at once: undefined values, and results that formulas share."""
+"""Evaluate formulas at all samples at once."""
 
 from math import cos, isinf, isnan
 
@@ -37,7 +37,7 @@ UNDEFINED_WITHIN = [
 def test_a_formula_with_an_undefined_part_is_undefined(
     text: str, arm: Vocabulary, values: Values
 ) -> None:
-    """1/(1/0) is not 0; Python raises an error there, too."""
+    # 1/(1/0) is not 0; Python raises an error there, too.
     assert all(map(isnan, np.ravel(read(text, arm).evaluate(values))))
 
 

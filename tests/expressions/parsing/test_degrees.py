@@ -1,4 +1,4 @@
-"""Bare numbers of a student who works in degrees."""
+"""Numbers without a unit are degrees if the student works in degrees."""
 
 from math import cos, pi, sin
 

@@ -1,4 +1,4 @@
-"""The parser accepts exactly its grammar, and no text brings it near Python's recursion limit."""
+"""The parser accepts exactly its documented grammar."""
 
 import re
 import sys
@@ -25,7 +25,7 @@ CLOSING = {"{": "}", "[": "]", "(": ")"}
 
 
 def grammar() -> dict[str, list[list[Part]]]:
-    """Return the rules in the docstring of the parser module."""
+    """Return the grammar rules in the docstring of the parser module."""
     text = str(parser.__doc__).split("\n\n")[2]
     rules = re.split(r"^ +(\w+) +=", text, flags=re.MULTILINE)[1:]
     return {
@@ -35,7 +35,6 @@ def grammar() -> dict[str, list[list[Part]]]:
 
 
 def alternatives(words: list[str], closing: str = "") -> list[list[Part]]:
-    """Parse alternatives up to ``closing``; remove the parsed words from the front of ``words``."""
     found: list[list[Part]] = [[]]
     while words:
         word = words.pop(0)
@@ -92,7 +91,7 @@ def is_sentence(terminals: list[str]) -> bool:
 
 
 def sentence(random: Random, name: str = "sum", depth: int = 7) -> list[str]:
-    """Return random terminals that the grammar derives from ``name``, nested at most ``depth``."""
+    # Return random terminals that the grammar derives from `name`, nested at most `depth`.
     if name.isupper():
         return [name]
     return expansion(random, GRAMMAR[name], depth - 1)

@@ -1,4 +1,4 @@
-"""Formulas as typed, as normal text and as LaTeX."""
+"""Formulas in three forms: as typed, as plain text and as LaTeX."""
 
 FORMULAS = [
     ("2q1", "2*theta1", r"2 \theta_{1}"),

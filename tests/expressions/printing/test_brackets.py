@@ -1,4 +1,4 @@
-"""Brackets of the three printers; LaTeX and MathML need fewer of them for fractions."""
+"""Test where the three printers of formulas write brackets."""
 
 import re
 import xml.etree.ElementTree as ET

@@ -1,4 +1,4 @@
-"""Formulas printed as LaTeX."""
+"""Print formulas as LaTeX."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Formulas printed as MathML."""
+"""Print formulas as MathML."""
 
 import xml.etree.ElementTree as ET
 
@@ -51,7 +51,7 @@ def test_mathml_is_as_typed(source: str, characters: str, arm: Vocabulary) -> No
 def test_mathml_shows_a_symbol_as_its_latex_does(
     latex: str | None, characters: str, elements: str
 ) -> None:
-    """If the LaTeX has more than letters, indices and stars, MathML uses the symbol's name."""
+    # If the LaTeX has more than letters, indices and stars, MathML uses the symbol's name.
     symbol = Symbol("d3", "length", latex=latex)
     element = ET.fromstring(read("d3", Vocabulary([symbol])).mathml())
     assert "".join(element.itertext()) == characters

@@ -1,4 +1,4 @@
-"""Formulas printed in the student's spelling."""
+"""Print formulas in the student's notation."""
 
 import pytest
 
@@ -24,7 +24,6 @@ def spelling(*typed: str, unit: AngleUnit = "radians") -> Spelling:
 
 
 def printed(formula: str, *typed: str, unit: AngleUnit = "radians") -> str:
-    """Return ``formula`` in the spelling that the ``typed`` formulas use."""
     return to_text(read(formula, ARM).tree, spelling(*typed, unit=unit))
 
 

@@ -1,4 +1,4 @@
-"""Formulas printed as normal text."""
+"""Print formulas as plain text."""
 
 import pytest
 

@@ -1,11 +1,10 @@
-"""Test each repair with its cases: texts that it refuses, and similar texts that are read.
+"""Test the corrections that the reader suggests for unreadable texts."""
 
-The cases of ``service/expressions/repairs/<name>.py`` are in ``corpus/repairs/<name>.txt``, one on
-each line, with the names of ``ROBOT``:
-
-    text that is refused | code | from-to and the text there | repaired text, or -
-    text that is read | its meaning as normal text
-"""
+# The cases of `service/expressions/repairs/<name>.py` are in `corpus/repairs/<name>.txt`, one on
+# each line, with the names of `ROBOT`:
+#
+#     text that is refused | code | from-to and the text there | repaired text, or -
+#     text that is read | its meaning as normal text
 
 import re
 from functools import partial
@@ -63,7 +62,7 @@ def test_a_slip_is_refused_with_its_repair(repair: str, case: RepairCase) -> Non
 @pytest.mark.long
 @together("repair", NAMES)
 def test_a_message_never_contains_a_record_separator(repair: str) -> None:
-    """The record separator counts as a blank, so a quotation in a message might contain it."""
+    # The record separator counts as a blank, so a quotation in a message might contain it.
     texts = {str(case.text) for case in repair_cases(repair) if len(str(case.text)) < 30}
     split = [f"{text[:i]}\x1e{text[i:]}" for text in texts for i in range(len(text) + 1)]
     messages = [error.message for error in map(partial(_error, vocabulary(repair)), split) if error]

@@ -1,4 +1,4 @@
-"""Vocabularies of declared symbols."""
+"""Test vocabularies of declared symbols."""
 
 import pytest
 

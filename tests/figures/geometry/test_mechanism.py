@@ -1,8 +1,7 @@
-"""Drawn points move with the robot. The expected values use other formulas than the drawing.
+"""Drawn points move with the robot."""
 
-The drawing uses screw axes; the tests use the link transforms of the table, or SciPy's matrix
-exponential if a robot has no table.
-"""
+# The drawing uses screw axes; the tests use the link transforms of the table, or SciPy's matrix
+# exponential if a robot has no table.
 
 from collections.abc import Mapping
 
@@ -36,7 +35,6 @@ def link_transform(row: Numbers, convention: Convention) -> Numbers:
 
 
 def bodies(exercise: Exercise, values: Mapping[str, float]) -> tuple[list[Numbers], list[Numbers]]:
-    """Return a frame on each body, the base first, and frames whose z axes are the joint axes."""
     reference = exercise.reference
     each = {name: np.array([value]) for name, value in values.items()}
     if isinstance(reference, Robot):
@@ -116,7 +114,7 @@ def test_links_lead_from_joint_to_joint_without_a_gap(name: str) -> None:
 
 
 def test_joints_whose_axes_meet_are_drawn_apart() -> None:
-    """The axes meet in the wrist and in the shoulder of the Stanford arm."""
+    # The axes meet in the wrist and in the shoulder of the Stanford arm.
     exercise = SHIPPED["stanford-arm"]
     numbers = drawing_numbers(exercise.variables)
     assert exercise.reference is not None

@@ -1,4 +1,4 @@
-"""The formulas of a table have the same values as the table itself."""
+"""The formulas of a table have the same values as a numeric computation."""
 
 from collections.abc import Iterable
 

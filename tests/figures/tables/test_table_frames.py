@@ -1,4 +1,4 @@
-"""The frames of students' tables, correct or wrong."""
+"""Test the frames that follow from students' tables."""
 
 import numpy as np
 import pytest
@@ -28,7 +28,7 @@ ELBOW = [["0", "90deg", "d1", "theta1"], ["a2", "0", "0", "q2"]]
 
 
 def test_the_frames_of_an_elbow_are_those_computed_by_hand() -> None:
-    """θ1 = 90° turns the arm to y, and θ2 = 30° raises it."""
+    # θ1 = 90° turns the arm to y, and θ2 = 30° raises it.
     found = framed(ELBOW, "RR", [[0, 0], [np.pi / 2, np.pi / 6]], d1=0.5, a2=2)
     assert found.complete
     assert found.frames.shape == (2, 3, 4, 4)
@@ -41,7 +41,7 @@ def test_the_frames_of_an_elbow_are_those_computed_by_hand() -> None:
 
 
 def test_frames_follow_the_convention_and_the_angle_unit() -> None:
-    """In the modified convention, a and α come before d and θ, which gives another arm."""
+    # In the modified convention, a and α come before d and θ, which gives another arm.
     found = framed(ELBOW, "RR", [[0, 0]], MODIFIED, d1=0.5, a2=2)
     assert found.frames[0, 2, :3, 3] == pytest.approx([2, -0.5, 0])
     scope = free_scope("R")

@@ -1,4 +1,4 @@
-"""The report on a class as web pages: an index with counts, and a page for each submission."""
+"""Test the report on a class as web pages."""
 
 import re
 import unicodedata
@@ -32,7 +32,7 @@ ALLOWED_IN_INDEX = {
 
 
 def folder(*submissions: GradedSubmission) -> dict[str, str]:
-    """Return the pages of the report on a class: paths and texts."""
+    """Return the web pages of the report on a class, by path."""
     writes = report_format("html").folder
     assert writes is not None
     documents = writes(submissions, setting())

@@ -34,7 +34,7 @@ def test_each_cell_shows_its_entry_and_its_sign() -> None:
 
 
 class Prose(PageReader):
-    """Collects a page's texts outside of formulas and code."""
+    """Collects the texts of a page outside of formulas and code."""
 
     def handle_data(self, data: str) -> None:
         if not {"math", "code", "style", "title"} & set(self.open):

@@ -1,4 +1,6 @@
-"""Reports in Markdown, which the tests parse as CommonMark with GitHub's extensions."""
+"""Test reports in Markdown."""
+
+# They are parsed as CommonMark with the extensions of GitHub.
 
 import re
 from collections.abc import Iterator

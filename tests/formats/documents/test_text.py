@@ -1,4 +1,6 @@
-"""The report for a terminal. The tests build reports by hand, without grading."""
+"""Test the report for a terminal."""
+
+# The tests build reports by hand, without grading.
 
 import io
 
@@ -110,7 +112,6 @@ def test_a_message_has_the_mark_and_the_names_of_its_places() -> None:
 
 
 def said(*places: Place, correction: Correction | None = None) -> str:
-    """Return the report's line about an error in these cells of a matrix with three rows."""
     cells = tuple(CellReport(str(j), V.INCORRECT) for j in (1, 2, 3))
     rows = [RowReport(label, V.INCORRECT, 0, 1, cells) for label in ("1", "2", "3")]
     message = Feedback("x", Severity.ERROR, "Bad.", places, correction=correction)

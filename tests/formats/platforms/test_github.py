@@ -1,4 +1,6 @@
-"""Annotations for GitHub, parsed as in its runner's src/Runner.Common/ActionCommand.cs."""
+"""Test annotations for GitHub."""
+
+# They are parsed as in the runner of GitHub (src/Runner.Common/ActionCommand.cs).
 
 from dataclasses import dataclass
 
@@ -23,7 +25,7 @@ def unescaped(text: str, *, is_property: bool) -> str:
 
 
 def parsed(line: str) -> Command:
-    """Return the command (name, properties, message) that GitHub's runner reads from a line."""
+    """Return the GitHub command in a line: its name, properties and message."""
     assert line.lstrip().startswith("::")
     head, _, data = line.lstrip()[2:].partition("::")
     name, _, properties = head.partition(" ")

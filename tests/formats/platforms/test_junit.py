@@ -1,5 +1,7 @@
-"""JUnit XML follows junit-10.xsd (https://github.com/jenkinsci/xunit-plugin) and GitLab's rules
-(https://docs.gitlab.com/ci/testing/unit_test_reports/, lib/gitlab/ci/parsers/test/junit.rb)."""
+"""JUnit XML follows its schema and GitLab's rules."""
+
+# Schema: junit-10.xsd (https://github.com/jenkinsci/xunit-plugin). Rules of GitLab:
+# https://docs.gitlab.com/ci/testing/unit_test_reports/, lib/gitlab/ci/parsers/test/junit.rb.
 
 from collections.abc import Mapping
 from xml.etree.ElementTree import Element, fromstring

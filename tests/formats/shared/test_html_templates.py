@@ -1,4 +1,4 @@
-"""Templates escape every text; only listed functions may pass unescaped HTML."""
+"""HTML templates escape every text."""
 
 import ast
 import re

@@ -1,4 +1,4 @@
-"""Messages of a report as plain text, in English and in another language."""
+"""Test messages of a report as plain text, in two languages."""
 
 from gettext import NullTranslations
 from typing import Any
@@ -27,14 +27,12 @@ GERMAN = {
 
 
 class German(NullTranslations):
-    """A language for tests: German translations of a few sentence templates."""
+    """Translates a few sentences into German."""
 
     def gettext(self, message: str) -> str:
-        """Return the German template, or the English one if there is no translation."""
         return GERMAN.get(message, message)
 
     def ngettext(self, one: str, many: str, count: int) -> str:
-        """Return the German template for a count."""
         return self.gettext(one if count == 1 else many)
 
 

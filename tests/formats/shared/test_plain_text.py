@@ -1,4 +1,4 @@
-"""Shares and scores are written in per cent."""
+"""Write shares and scores in per cent."""
 
 import pytest
 

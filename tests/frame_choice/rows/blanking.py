@@ -1,9 +1,10 @@
 """``python -m tests.frame_choice.rows.blanking --tries 20000``: empty cells must not earn more.
 
-Empty a row or a cell in wrong tables of all kinds, under each policy. This should never raise the
-points, but it does in a few tables with several wrong rows. In these tables, the empty cell leads
-the grader to another interpretation of the other rows, which earns more.
+Empty a row or a cell in wrong tables. This should not raise the points.
 """
+
+# An empty cell does raise the points in a few tables with several wrong rows. In these tables, it
+# leads the grader to another interpretation of the other rows, which earns more.
 
 import argparse
 import os
@@ -43,7 +44,7 @@ SYSTEMATIC = (
 
 @dataclass
 class Found:
-    """How often cells of each kind of table were emptied, and how often this raised the points."""
+    """Counts how often emptying cells raised the points."""
 
     tries: Counter[str] = field(default_factory=Counter)
     gains: Counter[str] = field(default_factory=Counter)
@@ -56,7 +57,7 @@ class Found:
 
 
 def spoiled(robot: Robot, texts: Texts, rng: np.random.Generator) -> Iterator[tuple[str, Texts]]:
-    """Yield wrong tables, each with the name of its kind of mistake."""
+    """Yield wrong tables, each with the name of its mistake."""
     rows = len(texts)
     for count in (1, 2, 3, 4):
         one = wrong_row(robot, texts, int(rng.integers(rows)), count, rng)
@@ -96,7 +97,6 @@ def judge(
     texts: Texts,
     rng: np.random.Generator,
 ) -> None:
-    """Grade a table; then grade it again with one of its rows or cells empty, several times."""
     compiled = exercise(robot, policy)
     written = grade_rows(compiled, texts, name)
     for row, columns in places(written, len(texts), rng):
@@ -115,10 +115,6 @@ def judge(
 def places(
     report: PartReport, rows: int, rng: np.random.Generator
 ) -> Iterator[tuple[int, Sequence[int]]]:
-    """Yield random places to empty: the index of a row, and the indices of its columns.
-
-    Half of the places are chosen among the wrong cells.
-    """
     blamed = [
         (i, j)
         for i, row in enumerate(report.rows)
@@ -143,7 +139,6 @@ def described(
     report: PartReport,
     written: PartReport,
 ) -> str:
-    """Return the table as text, with its points before and after cells were emptied."""
     pairs = zip(texts, empty, strict=True)
     return "\n".join(
         [
@@ -166,7 +161,6 @@ def run(
     unseen: int = UNSEEN,
     policies: Sequence[Policy] = POLICIES,
 ) -> Found:
-    """Return the results of ``tries`` tries with each of the robots."""
     found = Found()
     for number in numbers:
         robot, rng = all_robots(unseen, seed)[number], np.random.default_rng([seed, number, 2])
@@ -193,10 +187,6 @@ def _task(task: tuple[Sequence[int], int, int, int]) -> Found:
 
 
 def main() -> int:
-    """Run the campaign and print the figures.
-
-    Return 1 if emptying a row or a cell raised the points too often, else 0.
-    """
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.blanking")
     parser.add_argument("--tries", type=int, default=20_000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")

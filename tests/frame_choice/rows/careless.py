@@ -1,10 +1,9 @@
-"""``python -m tests.frame_choice.rows.careless``: ``blanking`` with other robots and slips.
+"""``python -m tests.frame_choice.rows.careless``: like ``blanking``, but whole rows are wrong."""
 
-The robots are put together from the rows of textbook arms. Their tables have the reference's frames
-or reversed x axes. Whole rows are wrong: rows are exchanged, in degrees, extra, missing or copied,
-or from some row on, a and α follow the other convention. As in ``blanking``, an empty row or cell
-must not raise the points.
-"""
+# The robots are put together from the rows of textbook arms. Their tables have the reference's
+# frames or reversed x axes. Whole rows are wrong: rows are exchanged, in degrees, extra, missing or
+# copied, or from some row on, a and α follow the other convention. As in `blanking`, an empty row
+# or cell must not raise the points.
 
 import argparse
 import sys
@@ -23,7 +22,7 @@ TABLES_OF_EACH = 4
 
 
 def robot_of(number: int, seed: int) -> Robot:
-    """Return a robot of textbook rows, with 2 to 6 joints."""
+    """Return a robot that is made of textbook rows."""
     rng = np.random.default_rng([seed, number, 77])
     count = int(rng.integers(2, MOST_JOINTS + 1))
     structure = "".join("P" if rng.random() < 0.25 else "R" for _ in range(count))
@@ -45,7 +44,6 @@ def robot_of(number: int, seed: int) -> Robot:
 
 
 def with_reversed_x(robot: Robot, rng: np.random.Generator) -> Texts:
-    """Return the robot's table with some x axes reversed, but not that of the last row."""
     texts = [list(row) for row in robot.rows]
     for i in range(len(texts) - 1):
         if rng.random() < 0.25:
@@ -68,7 +66,6 @@ def _turned(text: str, sign: str) -> str:
 
 
 def careless(texts: Texts, robot: Robot, rng: np.random.Generator) -> Iterator[tuple[str, Texts]]:
-    """Yield the table with one slip of whole rows, and with two such slips at once."""
     first = list(_slips(texts, robot, rng))
     yield from first
     name, slipped = first[int(rng.integers(len(first)))]
@@ -101,7 +98,6 @@ def _slips(texts: Texts, robot: Robot, rng: np.random.Generator) -> Iterator[tup
 
 
 def run(robots: range, tries: int, seed: int) -> Found:
-    """Return the results of about ``tries`` tries with each of the robots."""
     found = Found()
     for number in robots:
         robot, rng = robot_of(number, seed), np.random.default_rng([seed, number, 78])
@@ -115,7 +111,6 @@ def run(robots: range, tries: int, seed: int) -> Found:
 
 
 def main() -> int:
-    """Run the campaign and print the figures; return 1 if empty cells raised points too often."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.careless")
     parser.add_argument("--robots", type=int, default=40)
     parser.add_argument("--tries", type=int, default=50, help="tries with each robot")

@@ -1,11 +1,10 @@
-"""``python -m tests.frame_choice.rows.one_row --tables 5000``: grade tables with one wrong row.
+"""``python -m tests.frame_choice.rows.one_row --tables 5000``: grade tables with one wrong row."""
 
-One row of a valid table is wrong in one to four cells, as students write them. The correct cells of
-the other rows must stay correct, and the report must not praise frames that only the wrong row
-implies. The grader may mark other cells as wrong if these are fewer, or equally many in another
-row, and if other values in them make the table valid. A table gets full marks only if it is valid,
-or if its decimals may be rounded from the numbers of a valid table (see ``true_numbers``).
-"""
+# One row of a valid table is wrong in one to four cells, as students write them. The correct cells
+# of the other rows must stay correct, and the report must not praise frames that only the wrong row
+# implies. The grader may mark other cells as wrong if these are fewer, or equally many in another
+# row, and if other values in them make the table valid. A table gets full marks only if it is
+# valid, or if its decimals may be rounded from the numbers of a valid table (see `true_numbers`).
 
 import argparse
 import os
@@ -45,11 +44,9 @@ PRAISE = "own_frame_choice"
 
 @dataclass(frozen=True)
 class WrongRow:
-    """A table with ``count`` wrong cells in one row.
+    """A table with ``count`` wrong cells in one row."""
 
-    ``valid`` is the correct table; ``usual`` is True if it has the same frames as the reference.
-    """
-
+    # `valid` is the correct table; `usual` is True if it has the same frames as the reference.
     robot: Robot
     policy: Policy
     convention: str
@@ -73,7 +70,7 @@ class WrongRow:
 
 @dataclass
 class Found:
-    """Counts how many tables were judged correctly or not, and keeps the misjudged tables."""
+    """Counts of correctly and wrongly judged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
@@ -83,7 +80,6 @@ class Found:
         self.misses += other.misses
 
     def judge(self, table: WrongRow) -> None:
-        """Grade a table and count the judgement."""
         compiled = exercise(table.robot, table.policy)
         report = grade_rows(compiled, table.texts, table.convention)
         name = f"{'usual' if table.usual else 'own'} frames, {table.count} wrong"
@@ -110,12 +106,11 @@ class Found:
 
 
 def praises(report: PartReport) -> set[str]:
-    """Return the remarks on the student's own choice of frames."""
     return {message.message for message in report.feedback if message.code == PRAISE}
 
 
 def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
-    """Return the cells that are marked as wrong, or {(-1, -1)} if the grader reordered rows."""
+    # Return the cells that are marked as wrong, or {(-1, -1)} if the grader reordered rows.
     labels = [row.label for row in report.rows]
     if table.robot.labels(len(labels)) != labels:
         return {(-1, -1)}
@@ -128,11 +123,10 @@ def blamed_cells(report: PartReport, table: WrongRow) -> set[Place]:
 
 
 def is_as_good(table: WrongRow, blamed: set[Place]) -> bool:
-    """True if the report marks few enough cells as wrong, and new values in them repair the table.
-
-    ``blamed`` are these cells. They must be fewer than the cells that are really wrong. An equal
-    number is allowed if they are all in one row, or if the table has the student's own frames.
-    """
+    # True if the report marks few enough cells as wrong, and new values in them repair the table.
+    #
+    # `blamed` are these cells. They must be fewer than the cells that are really wrong. An equal
+    # number is allowed if they are all in one row, or if the table has the student's own frames.
     rows = {row for row, _ in blamed}
     most = table.count - (len(rows) > 1 and table.usual)
     if not 0 < len(blamed) <= most or min(rows) < 0 or max(rows) >= len(table.texts):
@@ -143,7 +137,6 @@ def is_as_good(table: WrongRow, blamed: set[Place]) -> bool:
 def tables(
     robot: Robot, policies: Sequence[Policy], rng: np.random.Generator
 ) -> Iterator[WrongRow]:
-    """Yield tables of a robot without end, alternately in the reference's frames and in others."""
     kinds = [
         (policy, convention, boldness)
         for policy in policies
@@ -178,7 +171,6 @@ def run(
     unseen: int = UNSEEN,
     policies: Sequence[Policy] = (GIVEN,),
 ) -> Found:
-    """Return the results of ``count`` tables of each of the robots."""
     found = Found()
     for number in numbers:
         robot = all_robots(unseen, seed)[number]
@@ -193,7 +185,6 @@ def _task(task: tuple[Sequence[int], int, int, int, Sequence[Policy]]) -> Found:
 
 
 def total(found: Found, said: str) -> int:
-    """Return the number of tables judged ``said``. An empty ``said`` counts all tables."""
     return sum(
         count
         for name, count in found.counts.items()
@@ -213,7 +204,6 @@ def lines(found: Found) -> list[str]:
 
 
 def main() -> int:
-    """Run the campaign and print the figures; return 1 if a figure is beyond its limit."""
     parser = argparse.ArgumentParser(prog="python -m tests.frame_choice.rows.one_row")
     parser.add_argument("--tables", type=int, default=5000)
     parser.add_argument("--unseen", type=int, default=UNSEEN, help="random robots")

@@ -1,4 +1,4 @@
-"""Tables that once earned more with an empty cell or row, which led to another reading."""
+"""Wrong tables that once earned more points with an empty cell."""
 
 from typing import NamedTuple
 
@@ -10,7 +10,7 @@ _FREE_DIRECTIONS = next(policy for policy in POLICIES if policy.name == "free di
 
 
 class OtherReading(NamedTuple):
-    """A wrong table, and the row and the columns of the cells that a test leaves empty."""
+    """A wrong table, and the cells that a test leaves empty."""
 
     robot: Robot
     policy: Policy
@@ -21,7 +21,6 @@ class OtherReading(NamedTuple):
 
     @property
     def empty(self) -> Texts:
-        """The table with these cells empty."""
         return [
             ["" if i == self.row and j in self.columns else text for j, text in enumerate(cells)]
             for i, cells in enumerate(self.texts)

@@ -1,4 +1,4 @@
-"""The robots of the shipped exercises that ask for a table, converted to ``Robot``."""
+"""Convert the robots of shipped exercises to ``Robot``."""
 
 import re
 from functools import cache
@@ -12,10 +12,8 @@ _DEGREES = re.compile(r"(\d+(?:\.\d+)?)\s*deg")
 
 @cache
 def shipped_robots() -> tuple[Robot, ...]:
-    """Return each robot once, because several exercises may ask for the same one.
-
-    Most real robots are left out: they have a campaign of their own (``tests.exercises.real``).
-    """
+    """Return the robots of the shipped exercises, each once."""
+    # Most real robots are left out: they have a campaign of their own (`tests.exercises.real`).
     found: dict[tuple[str, tuple[TextRow, ...]], Robot] = {}
     shipped = shipped_exercises()
     for name in without_most_real_robots(shipped):

@@ -1,7 +1,6 @@
-"""Generate wrong rows as students write them: entries of another row, zeros, wrong signs, ….
+"""Generate wrong table rows as students write them."""
 
-This generator is independent of ``edits``.
-"""
+# This generator is independent of `edits`.
 
 from collections.abc import Iterator, Sequence
 
@@ -46,7 +45,7 @@ def entries(robot: Robot, texts: Texts, row: int, column: int) -> Iterator[str]:
 def wrong_row(
     robot: Robot, texts: Texts, row: int, count: int, rng: np.random.Generator
 ) -> Texts | None:
-    """Return the table with ``count`` wrong entries in a row, or None if all attempts fail."""
+    """Return the table with ``count`` wrong entries in a row, or None."""
     columns = rng.permutation(4)[:count].tolist()
     for _ in range(DRAWS):
         spoiled = [list(each) for each in texts]

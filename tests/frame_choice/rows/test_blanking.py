@@ -1,4 +1,4 @@
-"""An empty cell earns no more than a wrong one: a sample of ``blanking``, and known tables."""
+"""An empty cell earns no more points than a wrong one."""
 
 from dataclasses import replace
 
@@ -254,7 +254,6 @@ def test_an_empty_place_leads_to_no_better_reading(table: OtherReading) -> None:
 
 
 def _holds(robot: Robot, policy: Policy, convention: str, texts: Texts, empty: Texts) -> None:
-    """Assert that the table earns no more with empty cells, and that the points add up."""
     compiled = exercise(robot, policy)
     written, blank = (grade_rows(compiled, each, convention) for each in (texts, empty))
     assert 0 < blank.points <= written.points < written.max_points

@@ -1,4 +1,4 @@
-"""A wrong row does not make other rows wrong: a sample of ``one_row``, and known tables."""
+"""A wrong row does not make other rows wrong."""
 
 from collections.abc import Mapping
 

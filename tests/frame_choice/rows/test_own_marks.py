@@ -1,4 +1,4 @@
-"""A table of zeros and joint variables earns little, and a single wrong cell costs little."""
+"""A table of zeros and joint variables earns little."""
 
 import pytest
 

@@ -1,9 +1,8 @@
-"""Decide whether the decimals of a table can be rounded from numbers that make the table valid.
+"""Decide whether a table's decimals may be rounded values of a valid table."""
 
-This oracle is independent of the service. Each decimal of three or more figures becomes an unknown
-in the range of the numbers that are rounded or cut off to the decimal. The pose depends on the
-unknowns almost linearly, so that a few steps of linear least squares find them.
-"""
+# This oracle is independent of the service. Each decimal of three or more figures becomes an
+# unknown in the range of the numbers that are rounded or cut off to the decimal. The pose depends
+# on the unknowns almost linearly, so that a few steps of linear least squares find them.
 
 import re
 from decimal import Decimal
@@ -24,7 +23,7 @@ STEPS, STEP = 3, 0.1
 
 
 def is_valid_when_rounded(robot: Robot, policy: Policy, texts: Texts, convention: str) -> bool:
-    """True if the decimals can be rounded from numbers with which the table is valid."""
+    """True if the decimals may be rounded values of a valid table."""
     numbers: list[Decimal] = []
 
     def named(match: re.Match[str]) -> str:

@@ -1,4 +1,4 @@
-"""An arm of four links in numbers, its pose, and wrong answers to it for tests."""
+"""An arm of four links in numbers, and wrong answers about it."""
 
 from functools import reduce
 
@@ -30,15 +30,10 @@ POSE = product(A1, A2, A3, A4)
 
 
 def wrong_pose(matrix: Numbers, chain: Chain | None = CHAIN) -> MatrixCase:
-    """Return the test case of a student who wrote the pose ``matrix`` instead of ``POSE``."""
     return wrong_matrix(matrix, POSE, chain)
 
 
 def wrong_matrix(matrix: Numbers, right: Numbers, chain: Chain | None = None) -> MatrixCase:
-    """Return the test case of a student who wrote ``matrix`` instead of ``right``.
-
-    Both have the shape ``(COUNT, rows, columns)``.
-    """
     actual, expected = (np.moveaxis(each, 0, -1) for each in (matrix, right))
     return MatrixCase(
         actual=actual,

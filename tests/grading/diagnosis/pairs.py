@@ -1,4 +1,4 @@
-"""Pairs of wrong answers in numbers: a misconception explains the first, but not the second."""
+"""Pairs of wrong answers: a misconception explains only the first of them."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -11,12 +11,10 @@ from service.grading.misconception import Explained, Record, all_records, explai
 
 
 class Pair(NamedTuple):
-    """A misconception or check, a wrong answer that it explains, and one that it does not explain.
+    """A misconception, an answer that it explains, and one that it does not explain."""
 
-    ``code`` is the expected code, by default the name of ``function``. ``source`` computes the
-    argument of ``function`` from the answer; by default, the argument is the answer itself.
-    """
-
+    # `code` is the expected code, by default the name of `function`. `source` computes the argument
+    # of `function` from the answer; by default, the argument is the answer itself.
     function: Callable[[Any], Any]
     explained: Any
     unexplained: Any
@@ -30,16 +28,13 @@ def each_pair(pairs: Sequence[Pair]) -> pytest.MarkDecorator:
 
 
 def record_of(function: Callable[[Any], Any]) -> Record:
-    """Return the registered misconception or check that uses this function."""
     [record] = (record for record in all_records() if record.function is function)
     return record
 
 
 def explained(case: Any, function: Callable[[Any], Any], source: Any = None) -> Explained | None:
-    """Return how one misconception or check explains a wrong answer, or None if it does not.
-
-    The misconception's condition for being tried, ``when``, is ignored.
-    """
+    """Return how a misconception explains a wrong answer, or None."""
+    # The misconception's condition for being tried, `when`, is ignored.
     record = replace(record_of(function), when=None)
     return explained_by_one(record, case, case if source is None else source)
 
@@ -50,7 +45,7 @@ def _finding(pair: Pair, case: Any) -> Finding | None:
 
 
 def assert_explains_only_the_first(pair: Pair) -> Finding:
-    """Assert that the misconception explains only the first answer; return its finding."""
+    """Assert that the misconception explains only the first answer."""
     finding = _finding(pair, pair.explained)
     assert finding is not None
     assert finding.code == (pair.code or pair.function.__name__)

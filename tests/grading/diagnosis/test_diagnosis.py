@@ -1,7 +1,4 @@
-"""Each registered misconception or check is used, and its examples are correct.
-
-A misconception explains its example, and it does not explain its counterexample.
-"""
+"""Every misconception is used, and its examples are correct."""
 
 import subprocess
 import sys
@@ -24,7 +21,6 @@ WITHOUT_CODE = [record for record in all_records() if record.function and not re
 
 
 def complaint_about(record: Record) -> str:
-    """Return an error message if an example of this misconception is wrong, else ""."""
     if record.example is None or not record.means:
         return f"{record.name}: give it an example, and say what its code means"
     exercise, part, answer, *unit = record.example
@@ -63,7 +59,6 @@ def test_a_record_explains_only_its_example(record: Record) -> None:
 
 @cache
 def traces() -> list[Trace]:
-    """Grade the example of each misconception; return which misconceptions were tried each time."""
     return [trace_of(*record.example) for record in all_records() if record.example]
 
 
@@ -111,15 +106,12 @@ EXCHANGED = "[a1 s1 + a2 s12, a1 c1 + a2 c12]"
 
 @pytest.fixture
 def known(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
-    """Let a test register misconceptions; remove them afterwards."""
     monkeypatch.setattr(engine, "_RECORDS", list(all_records()))
     yield
     engine.records_of.cache_clear()
 
 
 def complaint_about_signs(of: type, rank: int, *signs: int, example: str = REVERSED) -> str:
-    """Register a misconception that multiplies by ``signs``; return the error message on it."""
-
     def signed(case: WrongPosition) -> Iterator[Written[Numbers]]:
         for sign in signs:
             yield Written(sign * case.expected, "Look at the signs.")

@@ -1,4 +1,4 @@
-"""Words that several messages share."""
+"""Test words that several messages share."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Wrong numbers are explained only by hypotheses that fit them and make a difference."""
+"""Explain wrong numbers only by hypotheses that fit them."""
 
 import numpy as np
 
@@ -68,7 +68,6 @@ def test_a_hypothesis_may_explain_some_entries() -> None:
 
 
 def counterexample(text: str, *, degrees: bool = False, corrects: bool = False) -> Finding:
-    """Return the finding on a wrong length that no misconception explains."""
     words = Vocabulary([Symbol("q1", "angle", joint=1), Symbol("l1", "length")])
     rng = np.random.default_rng(3)
     values = {"q1": rng.uniform(-3, 3, SAMPLES), "l1": rng.uniform(0.3, 0.9, SAMPLES)}
@@ -86,7 +85,7 @@ def counterexample(text: str, *, degrees: bool = False, corrects: bool = False) 
 
 
 def test_a_counterexample_can_be_checked_with_a_pocket_calculator() -> None:
-    """Near 180°, an angle of four figures gives a sine of only two figures."""
+    # Near 180°, an angle of four figures gives a sine of only two figures.
     for degrees in (True, False):
         found = counterexample("1000 l1 sin(q1)", degrees=degrees).values
         assert found is not None

@@ -1,4 +1,4 @@
-"""Traces of a grading: the misconceptions that were tried, and those that explained an answer."""
+"""Record which misconceptions a grading tries."""
 
 import json
 import tomllib
@@ -25,7 +25,7 @@ MADE = Path(__file__).parents[2] / "docs" / "sentence_examples.toml"
 
 @dataclass
 class Trace:
-    """The misconceptions that were tried, those that explained the answer, and the codes."""
+    """The misconceptions that a grading tried, and those that explained the answer."""
 
     asked: set[Record] = field(default_factory=set)
     explaining: set[Record] = field(default_factory=set)
@@ -35,7 +35,7 @@ class Trace:
 
 @contextmanager
 def traced() -> Iterator[Trace]:
-    """Yield a trace; all gradings in the ``with`` block are recorded in it."""
+    """Yield a trace that records all gradings in the ``with`` block."""
     trace = Trace()
     findings = Hypothesis.findings.fget  # type: ignore[attr-defined]
     hypotheses, verdict = Record.hypotheses, Record.verdict
@@ -69,7 +69,7 @@ def model_answers(exercise_id: str) -> Mapping[str, Any]:
 
 @cache
 def exercises() -> Mapping[str, Exercise]:
-    """Return the shipped exercises, and those made only for the examples of misconceptions."""
+    """Return the shipped exercises, and exercises made for the tests of misconceptions."""
     made = tomllib.loads(MADE.read_text(encoding="utf-8"))["made"]
     with TemporaryDirectory() as folder:
         for name, text in made.items():
@@ -79,7 +79,6 @@ def exercises() -> Mapping[str, Exercise]:
 
 
 def answered(exercise_id: str, part_id: str, answer: Any) -> Any:
-    """Return the example answer of a misconception as a student would send it."""
     if isinstance(answer, str):
         return answer.replace(END, "\n")
     if not (isinstance(answer, dict) and any("/" in place for place in answer)):
@@ -111,7 +110,6 @@ def _write(rows: Any, row: str, cell: str, written: str) -> None:
 
 
 def trace_of(exercise_id: str, part_id: str, answer: Any, unit: str = "radians") -> Trace:
-    """Grade the example answer of a misconception and return the trace."""
     exercise = exercises()[exercise_id]
     sent = {part_id: answered(exercise_id, part_id, answer)}
     with traced() as trace:

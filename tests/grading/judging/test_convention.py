@@ -1,4 +1,4 @@
-"""The convention in which a table is judged if the exercise allows both."""
+"""Choose the convention of a table if the exercise allows both."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""The message that says with which joints the rows of an answer were compared."""
+"""Test the message that says with which joints the rows were compared."""
 
 from collections.abc import Mapping
 
@@ -45,10 +45,9 @@ def test_equal_rows_are_told_apart(catalogue: Mapping[str, Exercise]) -> None:
 
 
 def test_a_length_put_in_twice_is_an_extra_row(catalogue: Mapping[str, Exercise]) -> None:
-    """Without row 5 the table is right, so no cell is wrong, and the row costs a unit of 2 points.
-
-    The four rows have 3 units, 2 points each, and half a point for each row (docs/marks.md).
-    """
+    # Without row 5 the table is right, so no cell is wrong, and the row costs a unit of 2 points.
+    #
+    # The four rows have 3 units, 2 points each, and half a point for each row (docs/marks.md).
     exercise = catalogue["planar-rrr"]
     reference = exercise.robot.tables[exercise.robot.convention]
     rows = [[formula.source for formula in row] for row in reference.rows]
@@ -69,7 +68,7 @@ def test_rows_in_their_places_get_no_message(rows: list[Row], scara: Exercise) -
 def test_an_end_row_in_its_place_gets_no_message(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The modified table of the planar arm has a row "e" in its expected place."""
+    # The modified table of the planar arm has a row "e" in its expected place.
     exercise = catalogue["planar-rrr"]
     reference = exercise.robot.tables[exercise.robot.convention]
     assert reference.labels[-1] == "e"

@@ -1,4 +1,4 @@
-"""Tables with missing, extra or exchanged rows, and the tolerance of a cell."""
+"""Grade tables with missing, extra or exchanged rows."""
 
 from collections.abc import Mapping
 
@@ -21,7 +21,6 @@ NOTHING: Row = ("0", "0", "0", "0")
 
 
 def codes(report: PartReport) -> list[str]:
-    """Return the codes of the part's messages, except infos."""
     return [each.code for each in report.feedback if each.severity is not Severity.INFO]
 
 
@@ -132,7 +131,7 @@ def test_a_table_without_rows_is_missing(given_frames: Mapping[str, Exercise]) -
 def test_a_missing_and_an_extra_row_are_judged_in_place(
     given_frames: Mapping[str, Exercise],
 ) -> None:
-    """There are as many rows as joints, so that each row is judged in its place."""
+    # There are as many rows as joints, so that each row is judged in its place.
     rows = [*EXACT.rows(STANFORD)[:5], ("1", "1", "1", "1")]
     report = graded_table(given_frames[STANFORD.exercise], rows)
     assert {label for label, _ in not_correct(report)} == {"6"}
@@ -161,7 +160,7 @@ def test_an_unknown_convention_is_ignored_with_a_message(
 def test_a_large_offset_does_not_widen_the_tolerance(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Along parallel axes any offset is valid, but a huge one must not hide a wrong cell."""
+    # Along parallel axes any offset is valid, but a huge one must not hide a wrong cell.
     for first, second in (("1000.0", "-999.5"), ("5.0", "-4.996"), ("5000.0", "-5000.0 + a1")):
         rows = [["a1", "0", first, "theta1"], ["a2", "0", second, "theta2"]]
         report = graded_table(catalogue["planar-rr"], rows)

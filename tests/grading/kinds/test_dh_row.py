@@ -1,4 +1,4 @@
-"""Answers that give the DH row of a transform, or say "none"."""
+"""Grade answers that give the DH row of a transform."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -158,7 +158,7 @@ transform = [
 
 
 def test_a_modified_row_is_right(make_exercise: Make) -> None:
-    """The transform is Rot_x(−90°) Trans_x(l) Rot_z(φ) Trans_z(k), multiplied out by hand."""
+    # The transform is Rot_x(−90°) Trans_x(l) Rot_z(φ) Trans_z(k), multiplied out by hand.
     exercise = make_exercise(MODIFIED)
     row = {"a": "l", "alpha": "-pi/2", "d": "k", "theta": "phi"}
     assert full_marks(graded(exercise, row))
@@ -166,7 +166,7 @@ def test_a_modified_row_is_right(make_exercise: Make) -> None:
 
 
 def test_a_row_of_the_other_convention_is_named(make_exercise: Make) -> None:
-    """A turn about z and a shift along x form a DH row in both conventions."""
+    # A turn about z and a shift along x form a DH row in both conventions.
     exercise = make_exercise(
         one_part(
             "dh_row",

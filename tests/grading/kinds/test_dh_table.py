@@ -1,4 +1,4 @@
-"""Tables that were once judged wrongly, found by attempts to break the grader."""
+"""Tables that were once graded wrongly."""
 
 from collections.abc import Mapping
 
@@ -65,14 +65,14 @@ def test_only_these_cells_are_wrong(
 def test_a_millimetre_beside_a_thousand_kilometres_is_wrong(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """Only the sum of the two offsets counts, so either row may be the wrong one."""
+    # Only the sum of the two offsets counts, so either row may be the wrong one.
     rows = [("a1", "0", "1e6", "theta1"), ("a2", "0", "-1e6 + 0.0009", "theta2")]
     wrong = list(not_correct(graded_table(catalogue["planar-rr"], rows)))
     assert wrong in ([("1", "d")], [("2", "d")])
 
 
 def test_an_unread_cell_makes_no_other_wrong(catalogue: Mapping[str, Exercise]) -> None:
-    """If the unread cell in row 3 is d3 + 0.5, then row 4 is correct."""
+    # If the unread cell in row 3 is d3 + 0.5, then row 4 is correct.
     rows = [
         ("a1", "0", "0", "theta1"),
         ("a2", "pi", "0", "theta2"),
@@ -128,7 +128,7 @@ SIGNS_TURNED = [
 
 
 def test_the_cells_agree_with_a_slip_of_the_whole_table(catalogue: Mapping[str, Exercise]) -> None:
-    """Two half turns of θ would also repair the table, but the slip is in the signs of α."""
+    # Two half turns of θ would also repair the table, but the slip is in the signs of α.
     report = graded_table(catalogue["stanford-arm"], SIGNS_TURNED)
     assert codes(report) == ["column_sign"]
     assert set(not_correct(report)) == {(row, "alpha") for row in "1245"}
@@ -164,7 +164,7 @@ def test_the_number_of_repaired_cells_is_bounded(
 
 
 def test_rounded_angles_and_a_fixed_row_raise_no_error(catalogue: Mapping[str, Exercise]) -> None:
-    """Rows are compared as objects, because comparing the arrays in them would raise an error."""
+    # Rows are compared as objects, because comparing the arrays in them would raise an error.
     rows = [
         ("0", "0", "l1", "q1"),
         ("l2", "3.14", "0", "-q2"),

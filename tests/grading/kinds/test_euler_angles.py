@@ -1,7 +1,6 @@
-"""Three angles: all triples that give the rotation are correct.
+"""Grade three Euler angles: all triples that give the rotation are correct."""
 
-A slip costs as few of the angles as possible.
-"""
+# A slip costs as few of the angles as possible.
 
 from collections.abc import Mapping
 from typing import Any
@@ -62,7 +61,7 @@ def test_angles_may_be_in_degrees(spatial: Exercise) -> None:
 
 
 def test_the_erratum_of_the_lecture(spatial: Exercise) -> None:
-    """The lecture prints β = θ2 + θ3, but its own formula gives β = −(θ2 + θ3)."""
+    # The lecture prints β = θ2 + θ3, but its own formula gives β = −(θ2 + θ3).
     report = graded(spatial, ["theta1", "theta2 + theta3", "90deg"])
     assert not_correct(report) == {("2", "1"): Verdict.INCORRECT}
     assert report.points == pytest.approx(4)
@@ -147,7 +146,7 @@ def test_only_the_sum_counts_in_a_singular_configuration(
 def test_a_wrong_sum_in_a_singular_configuration_is_wrong(
     answer: object, make_exercise: Make
 ) -> None:
-    """Only the sum of the angles needs knowledge: if it is wrong, the answer earns nothing."""
+    # Only the sum of the angles needs knowledge: if it is wrong, the answer earns nothing.
     report = graded(make_exercise(SINGULAR), answer)
     assert (report.verdict, report.points) == (Verdict.INCORRECT, 0)
     assert len(not_correct(report)) == 1
@@ -165,7 +164,7 @@ def test_every_sequence_of_axes_is_graded(sequence: str, axes: str, make_exercis
 
 
 def test_the_angles_of_another_sequence_are_named(make_exercise: Make) -> None:
-    """The answer describes the same rotation by angles of another sequence."""
+    # The answer describes the same rotation by angles of another sequence.
     fields = 'sequence = "XYZ"\naxes = "moving"\nexpected = ["0.3", "0.5", "0.7"]'
     exercise = make_exercise(one_part("euler_angles", fields))
     turns = Rotation.from_euler("XYZ", [0.3, 0.5, 0.7])
@@ -189,7 +188,7 @@ def test_the_angles_of_another_sequence_are_named(make_exercise: Make) -> None:
 def test_the_nearest_triple_keeps_two_of_three_angles(
     sequence: str, fixed: bool, angles: tuple[float, float, float], slipped: int
 ) -> None:
-    """If one of three angles is wrong, the nearest correct triple keeps the other two angles."""
+    # If one of three angles is wrong, the nearest correct triple keeps the other two angles.
     name = sequence.lower() if fixed else sequence
     rotation = Rotation.from_euler(name, angles).as_matrix()[None]
     written = np.array(angles)[:, None].copy()

@@ -1,4 +1,4 @@
-"""Marking the place of a slip earns half of the points, correcting the table the other half."""
+"""Marking the place of a slip earns half of the points, correcting it the other half."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -156,7 +156,7 @@ def test_rows_are_marked_whole_or_by_their_cells(
 
 
 def test_an_offset_that_neighbours_share_may_be_marked_in_each(make_exercise: Make) -> None:
-    """The three axes of a planar arm are parallel: only the sum of d1, d2 and d3 counts."""
+    # The three axes of a planar arm are parallel: only the sum of d1, d2 and d3 counts.
     setting = """
 [robot]
 structure = "RR"

@@ -1,4 +1,4 @@
-"""Frames on joint axes: the rules, all valid choices, slips, reading, and their DH table."""
+"""Grade frames that a student places on joint axes."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping

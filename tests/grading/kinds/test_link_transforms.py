@@ -1,4 +1,4 @@
-"""Link transforms in the frames of the reference, and in those of the student's table."""
+"""Grade link transforms, also in the frames of the student's own table."""
 
 from collections.abc import Callable, Mapping
 from typing import Any
@@ -42,7 +42,7 @@ def test_the_printed_link_transforms_are_right(scara: Exercise) -> None:
 
 
 def test_links_are_graded_in_the_frames_of_the_table(scara: Exercise) -> None:
-    """The student's z2 points up, so that α2 is 0, α3 is 180°, and row 3 has −d3."""
+    # The student's z2 points up, so that α2 is 0, α3 is 180°, and row 3 has −d3.
     own = [TABLE[0], ("a2", "0", "0", "q2"), ("0", "pi", "-d3", "0"), TABLE[3]]
     own_links = [
         A1,

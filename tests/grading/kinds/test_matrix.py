@@ -1,4 +1,4 @@
-"""Matrices of any size and meaning."""
+"""Grade matrices of any size."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -30,7 +30,7 @@ def test_a_matrix_of_the_wrong_size_is_unreadable(answer: object, make_exercise:
 
 
 def test_the_chain_of_rigid_motions(catalogue: Mapping[str, Exercise]) -> None:
-    """Source: Robot kinematics lecture notes, equations 2.13 to 2.15, multiplied out by hand."""
+    # Source: Robot kinematics lecture notes, equations 2.13 to 2.15, multiplied out by hand.
     c, s, ct, st = "cos(phi)", "sin(phi)", "cos(theta)", "sin(theta)"
     rotation: list[list[Any]] = [
         [c, f"-{s}*{ct}", f"{s}*{st}"],

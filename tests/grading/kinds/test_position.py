@@ -1,4 +1,4 @@
-"""The coordinates of a point: shapes of answers, the choice of coordinates, and slips."""
+"""Grade the coordinates of a point."""
 
 import pytest
 
@@ -92,7 +92,7 @@ def test_these_values_may_follow_two_coordinates(
 
 @pytest.mark.parametrize("coordinates", ["xz", "yz"])
 def test_an_ambiguous_zero_is_refused(coordinates: str, make_exercise: Make) -> None:
-    """If x and z are asked for, [x, y, 0] must not be read with y as the value of z."""
+    # If x and z are asked for, [x, y, 0] must not be read with y as the value of z.
     text = one_part("position", f'coordinates = "{coordinates}"', SPATIAL_RRR)
     assert all_codes(graded(make_exercise(text), ["0", "0", 0])) == {"wrong_shape"}
 

@@ -1,4 +1,4 @@
-"""Rotation matrices of turns about fixed and moving axes, and of robots."""
+"""Grade rotation matrices."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -15,7 +15,8 @@ phi, theta, psi = sp.symbols("phi theta psi")
 
 
 def turn(axis: str, angle: Any) -> Any:
-    """Return the fundamental rotation about an axis, as in *Direct Kinematics (Part 2)*, §1.4."""
+    """Return the elementary rotation about an axis."""
+    # Source: *Direct Kinematics (Part 2)*, §1.4.
     c, s = sp.cos(angle), sp.sin(angle)
     return {
         "x": sp.Matrix([[1, 0, 0], [0, c, -s], [0, s, c]]),

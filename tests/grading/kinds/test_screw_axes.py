@@ -1,4 +1,4 @@
-"""Screw axes: space and body frame, prismatic joints, signs, and the points of a row."""
+"""Grade screw axes."""
 
 import json
 from collections.abc import Mapping
@@ -94,7 +94,7 @@ def test_a_wrong_number_costs_a_unit(rpr: Exercise) -> None:
 
 
 def test_zeros_earn_little(rpr: Exercise) -> None:
-    """Fifteen of the eighteen numbers are 0, and two of the others are the same for all joints."""
+    # Fifteen of the eighteen numbers are 0, and two of the others are the same for all joints.
     report = part(handed_in(rpr, {"space-screws": [[0] * 6] * 3}), "space-screws")
     assert len(not_correct(report)) == 4
     assert report.points <= report.max_points / 6
@@ -166,7 +166,7 @@ def test_one_axis_needs_no_list_around_it(make_exercise: Make) -> None:
 
 
 def test_the_axes_of_a_robot_with_a_table_are_right(make_exercise: Make) -> None:
-    """At home, axis 1 is z0; axes 2 and 3 are along −y through x = R and x = R + L1."""
+    # At home, axis 1 is z0; axes 2 and 3 are along −y through x = R and x = R + L1.
     space = make_exercise(one_part("screw_axes", 'frame = "space"', SPATIAL_RRR))
     answer: Screws = [
         [0, 0, 1, 0, 0, 0],

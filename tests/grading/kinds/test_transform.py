@@ -1,4 +1,4 @@
-"""Given transforms, inverse poses, home poses, and poses as products of exponentials."""
+"""Grade transforms, inverse poses and home poses."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -43,7 +43,7 @@ def planar(angle: Any, x: Any, y: Any) -> Any:
 
 
 def about(angle: Any, x: Any) -> Any:
-    """Return the turn about the axis along z through (x, 0, 0)."""
+    # Return the turn about the axis along z through (x, 0, 0).
     return planar(angle, x - x * sp.cos(angle), -x * sp.sin(angle))
 
 

@@ -1,4 +1,4 @@
-"""Lists of lengths, angles and numbers: whole turns, and slips."""
+"""Grade lists of lengths, angles and numbers."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -48,7 +48,7 @@ def test_a_length_is_not_an_angle(catalogue: Mapping[str, Exercise]) -> None:
 
 
 def test_the_twists_of_the_lecture_are_right(catalogue: Mapping[str, Exercise]) -> None:
-    """Source: Screw Theory, Example: Simple Twist, with S_ω = (0, 0, 1) and S_v = (0, −2, 0)."""
+    # Source: Screw Theory, Example: Simple Twist, with S_ω = (0, 0, 1) and S_v = (0, −2, 0).
     answers: dict[str, Any] = {
         "zero-pitch": [[0, 0, 1, 0, -2, 0]],
         "twist": [0, 0, "w", 0, "-2 w", 0],

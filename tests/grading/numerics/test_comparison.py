@@ -1,4 +1,4 @@
-"""Comparison of values with expected values."""
+"""Compare values with expected values."""
 
 from collections.abc import Mapping
 
@@ -24,7 +24,7 @@ def test_whole_turns_do_not_count(angle: float, turns: int) -> None:
 
 @given(ANGLES, ANGLES)
 def test_the_difference_of_angles_is_the_shorter_way(one: float, other: float) -> None:
-    """The difference has the sine and cosine of ``one - other``, and is at most half a turn."""
+    # The difference has the sine and cosine of `one - other`, and is at most half a turn.
     shorter = difference(np.array([one]), np.array([other]), True)[0]
     assert abs(shorter) <= np.pi + 1e-9
     assert np.cos(shorter) == pytest.approx(np.cos(one - other), abs=1e-9)
@@ -78,7 +78,7 @@ def test_the_tolerance_follows_the_scale() -> None:
 def test_a_single_decimal_is_rounded_like_a_decimal_in_a_sum(
     catalogue: Mapping[str, Exercise], text: str, units: float, turns: int
 ) -> None:
-    """For one decimal, the closed form and the general fit give the same result."""
+    # For one decimal, the closed form and the general fit give the same result.
     exercise = catalogue["stanford-arm"]
     samples = draw(exercise, None)
     alone, in_sum = (read(each, exercise.vocabulary) for each in (text, f"0 + {text}"))

@@ -1,4 +1,4 @@
-"""The random values at which answers are compared."""
+"""Draw the random values at which answers are compared."""
 
 import tomllib
 from collections.abc import Mapping
@@ -94,7 +94,7 @@ def test_cyclic_answers_have_a_draw(catalogue: Mapping[str, Exercise]) -> None:
 
 
 def test_the_values_fill_their_range(catalogue: Mapping[str, Exercise]) -> None:
-    """Mean and variance of 32,000 values are those of the uniform distribution."""
+    # Mean and variance of 32,000 values are those of the uniform distribution.
     exercise = catalogue["stanford-arm"]
     [joint] = [variable for variable in exercise.variables if variable.name == "theta1"]
     values = np.concatenate([draw(exercise, i).values["theta1"] for i in range(1000)])

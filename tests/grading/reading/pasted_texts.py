@@ -1,11 +1,10 @@
-"""Pasted texts of students in five languages, each with the meaning that a person gives it.
+"""Pasted texts of students in five languages, each with its meaning."""
 
-``pasted_texts/*.txt`` and ``pasted_texts/more/*.txt`` have one file for each language. A text
-begins with a line such as ``=== title | table elbow``. The words after the bar are the name of a
-meaning in ``meanings.toml``, or ``refused`` (a table that must be refused), or ``refused matrix``.
-⇥ is a tab, ⍽ a no-break space, ⎵ a narrow no-break space. The meanings are plain arithmetic. The
-module ``reference`` evaluates them; it shares no code with the program.
-"""
+# `pasted_texts/*.txt` and `pasted_texts/more/*.txt` have one file for each language. A text begins
+# with a line such as `=== title | table elbow`. The words after the bar are the name of a meaning
+# in `meanings.toml`, or `refused` (a table that must be refused), or `refused matrix`. ⇥ is a tab,
+# ⍽ a no-break space, ⎵ a narrow no-break space. The meanings are plain arithmetic. The module
+# `reference` evaluates them; it shares no code with the program.
 
 import re
 import tomllib
@@ -49,7 +48,7 @@ Outcome = Literal["read", "repaired", "advised", "refused", "misread"]
 
 
 class PastedText(NamedTuple):
-    """One text of the corpus; ``rows`` are the cells that it means, () if it must be refused."""
+    """A pasted text, and the cells that it means."""
 
     title: str
     text: str
@@ -59,20 +58,18 @@ class PastedText(NamedTuple):
 
 
 class Reading(NamedTuple):
-    """How a text was read, and the codes and messages of everything that could not be read."""
+    """How the program read a text, and the messages about it."""
 
     outcome: Outcome
     advice: tuple[str, ...] = ()
 
 
 def languages() -> list[str]:
-    """Return the names of the files with pasted texts, without ``.txt``."""
     files = sorted(FOLDER.rglob("*.txt"))
     return [file.relative_to(FOLDER).with_suffix("").as_posix() for file in files]
 
 
 def texts(language: str) -> list[PastedText]:
-    """Return the pasted texts in a file."""
     found = []
     for piece in _TITLE.split((FOLDER / f"{language}.txt").read_text("utf-8"))[1:]:
         head, _, text = piece.partition("\n")
@@ -88,7 +85,7 @@ def texts(language: str) -> list[PastedText]:
 
 
 def reading_of(case: PastedText) -> Reading:
-    """Read a pasted text with the program, and compare the result with the text's meaning."""
+    """Read a pasted text, and compare the result with its meaning."""
     reader = Reader(
         _vocabulary(case.kind, _joints(case)), Samples(_samples(case, 0)), case.angle_unit, "m"
     )
@@ -153,7 +150,6 @@ _READERS: Final = {"matrix": _matrix, "position": _position}
 
 
 def _repaired(entry: Entry, cell: str, kind: Kind, case: PastedText) -> bool | None:
-    """True if the suggested repair has the meaning of the cell; None if there is no suggestion."""
     suggestion = next((each.suggestion for each in entry.findings if each.suggestion), None)
     if suggestion is None:
         return None
@@ -191,7 +187,6 @@ def _values(seed: int) -> dict[str, float]:
 
 
 def _joints(case: PastedText) -> int:
-    """Return the number of joints: the rows of a table, and 4 for other texts."""
     return len(case.rows) if case.rows and case.kind.startswith("table") else 4
 
 

@@ -4,7 +4,6 @@ from tests.grading.support.robots import COLUMNS, Robot, in_pi
 
 
 def cells(robot: Robot) -> list[dict[str, str]]:
-    """Return the cells of each row without the joint variable, which the toolbox adds."""
     found = []
     for row in robot.rows:
         named = dict(zip(COLUMNS, row, strict=True))
@@ -24,7 +23,6 @@ def in_matlab(robot: Robot) -> str:
 
 
 def by_name(robot: Robot) -> str:
-    """Return a script with links by named parameters, all in one call of MATLAB's toolbox."""
     lines = []
     for row in cells(robot):
         given = ", ".join(f"'{name}', {cell}" for name, cell in row.items() if cell)
@@ -33,7 +31,7 @@ def by_name(robot: Robot) -> str:
 
 
 def in_python(robot: Robot) -> str:
-    """Return a script with the classes of the toolbox for Python."""
+    """Return a script for the Robotics Toolbox for Python."""
     lines = []
     for row in cells(robot):
         kind = "Revolute" if row["d"] else "Prismatic"
@@ -43,7 +41,7 @@ def in_python(robot: Robot) -> str:
 
 
 def of_bodies(robot: Robot) -> str:
-    """Return a script with the joints of MATLAB's Robotics System Toolbox."""
+    """Return a script for MATLAB's Robotics System Toolbox."""
     lines = []
     for i, row in enumerate(cells(robot), 1):
         kind = "revolute" if row["d"] else "prismatic"
@@ -54,7 +52,6 @@ def of_bodies(robot: Robot) -> str:
 
 
 def by_column(robot: Robot) -> str:
-    """Return a dictionary of columns that contains the joint variables."""
     columns = ((name, i) for i, name in enumerate(COLUMNS))
     lists = ", ".join(
         f"'{name}': [{', '.join(_value(name, row[i]) for row in robot.rows)}]"

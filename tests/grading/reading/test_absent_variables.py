@@ -1,4 +1,4 @@
-"""Joint variables that a robot does not have."""
+"""Test joint variables that a robot does not have."""
 
 import pytest
 

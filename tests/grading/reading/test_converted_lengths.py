@@ -1,4 +1,4 @@
-"""A length with a unit is refused; the repair is the number in the unit of the exercise."""
+"""Refuse a length with a unit, and suggest the number in the exercise's unit."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""A star after a joint variable gets no message in a table, but a message in other answers."""
+"""Read joint variables with a star, such as θ1*."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Numbers that a script gives to letters are put in if the exercise has no lengths as letters."""
+"""Numbers that a script gives to letters replace the letters."""
 
 from collections.abc import Mapping
 

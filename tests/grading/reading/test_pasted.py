@@ -1,4 +1,4 @@
-"""Indices in square brackets have only one reading; decimal commas are read where allowed."""
+"""Read square brackets and decimal commas in pasted texts."""
 
 from collections.abc import Callable
 from typing import Any
@@ -52,8 +52,6 @@ COLUMNS = ("a", "alpha", "d", "theta")
 
 @pytest.fixture
 def arm(make_exercise: Callable[[str], Exercise]) -> Callable[[bool], Exercise]:
-    """A function that returns the UR5e, with decimal commas allowed or not."""
-
     def made(allowed: bool) -> Exercise:
         text = (shipped_folder() / "ur5e.toml").read_text(encoding="utf-8")
         return make_exercise(f"decimal_comma = {str(allowed).lower()}\n{text}")

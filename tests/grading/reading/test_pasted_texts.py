@@ -1,4 +1,4 @@
-"""Pasted texts of students in five languages are read as meant, or refused with advice."""
+"""Pasted texts in five languages are read as meant, or refused with advice."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""The preview of a pasted table or matrix, cell by cell, before it is graded."""
+"""Preview a pasted table or matrix cell by cell."""
 
 from collections.abc import Mapping
 
@@ -136,7 +136,7 @@ def test_the_messages_can_be_translated(part: str, text: str, arm: Exercise) -> 
 def test_an_unreadable_number_keeps_the_unit_of_its_header(
     unit: str, typed: str, entry: str, repaired: str, arm: Exercise
 ) -> None:
-    """An entry with its unit gets the correct repair even without the header."""
+    # An entry with its unit gets the correct repair even without the header.
     headers = [unit, *(name for name in ("a", "alpha", "d", "theta") if name not in unit.split())]
     text = f"{';'.join(headers)}\n{typed};0;0;q1"
     [cell] = [cell for cell in preview_pasted(text, arm, "table").rows[0] if cell.typed == typed]

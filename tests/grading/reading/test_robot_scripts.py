@@ -1,4 +1,4 @@
-"""A script for a robotics toolbox is graded as the table of its links."""
+"""Grade a script for a robotics toolbox as the table of its links."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""Comments and captions that name a unit of length, above matrices and lists."""
+"""Read comments that name a unit of length."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Named values are put in order; contradicting names make them unreadable."""
+"""Put values with names, such as ``y = 2, x = 1``, in order."""
 
 import time
 from collections.abc import Mapping
@@ -144,7 +144,7 @@ def test_other_names_are_read_with_one_note(answer: object, make_exercise: Make)
 
 @pytest.mark.parametrize("phi", ["φ", r"\phi", "phi", r"\varphi", "Phi"])
 def test_components_are_ordered_by_the_names_in_the_exercise(phi: str, make_exercise: Make) -> None:
-    """The bare 30 is read as an angle in degrees, although it is in the place of a length."""
+    # The bare 30 is read as an angle in degrees, although it is in the place of a length.
     answer = [f"{phi} = phi + 30", "p_y = k l", "px = l"]
     report = graded(make_exercise(POSTURE), answer, "degrees")
     assert full_marks(report), report
@@ -154,7 +154,7 @@ def test_components_are_ordered_by_the_names_in_the_exercise(phi: str, make_exer
 def test_a_bare_coordinate_of_two_vectors_is_ambiguous(
     make_exercise: Make,
 ) -> None:
-    """In (v_x, v_y, ω_x, ω_y) the full names are known, but a bare x is ambiguous."""
+    # In (v_x, v_y, ω_x, ω_y) the full names are known, but a bare x is ambiguous.
     exercise = make_exercise(TWIST)
     full = ["omega_x = 3", "ω_y = 4", "vx = 1", "v_{y} = 2"]
     assert full_marks(graded(exercise, full))
@@ -307,7 +307,7 @@ def test_other_names_in_a_table_are_read_with_one_note(answer: object, make_exer
 
 
 def test_a_wrong_variable_keeps_its_own_message(make_exercise: Make) -> None:
-    """In row 1, the slip in θ2 = θ2 is the variable, not the name before the equals sign."""
+    # In row 1, the slip in θ2 = θ2 is the variable, not the name before the equals sign.
     report = graded(make_exercise(TABLE), with_row(1, "R", "90deg", "0", "theta2 = theta2"))
     assert cell(report, "1", "theta").verdict is Verdict.INCORRECT
 
@@ -320,7 +320,6 @@ MATRIX = one_part(
 
 
 def matrix_with(first: str) -> list[list[str]]:
-    """Return the correct matrix with this text as the entry in row 1, column 2."""
     return [["1", first, "3"], ["4", "5", "6"], ["7", "8", "9"]]
 
 
@@ -362,7 +361,7 @@ def test_a_declared_name_is_not_an_index(make_exercise: Make) -> None:
 
 @pytest.mark.parametrize("gap", [" " * 7900, "\n" * 7900, " \t" * 3950])
 def test_a_name_with_many_blanks_is_read_in_linear_time(gap: str, make_exercise: Make) -> None:
-    """A pattern that backtracks over the blanks would take seconds."""
+    # A pattern that backtracks over the blanks would take seconds.
     answer = matrix_with(f"r_1{gap}_2 = 2")
     start = time.thread_time()
     graded(make_exercise(MATRIX), answer)

@@ -1,4 +1,4 @@
-"""Exercises without a robot and without symbols: only numbers, one part of each kind."""
+"""Exercises without a robot and without symbols."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -23,7 +23,7 @@ COMPONENTS = """components = [
 
 @dataclass(frozen=True)
 class BareExercise:
-    """An exercise file with one part, the correct answer to the part, and wrong answers."""
+    """An exercise file with one part, and correct and wrong answers to the part."""
 
     kind: str
     fields: str
@@ -32,7 +32,6 @@ class BareExercise:
 
     @property
     def text(self) -> str:
-        """The text of the exercise file."""
         return one_part(self.kind, self.fields, setting="")
 
 

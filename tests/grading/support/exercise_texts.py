@@ -40,18 +40,17 @@ k = { kind = "number", description = "a number" }
 
 
 def one_part(kind: str, fields: str, setting: str = ANGLES) -> str:
-    """Return the text of an exercise with one part "it" of this kind, worth 6 points."""
+    """Return the text of an exercise with one part of this kind."""
     part_text = f'[[parts]]\nid = "it"\nkind = "{kind}"\ntitle = "It"\npoints = 6\n{fields}\n'
     return HEAD + setting + part_text
 
 
 def graded(exercise: Exercise, answer: object, angle_unit: AngleUnit = "radians") -> PartReport:
-    """Grade an answer to the part "it" and return the report on it."""
+    """Grade an answer to the part "it" and return the report on the part."""
     return part(handed_in(exercise, {"it": answer}, angle_unit), "it")
 
 
 def all_codes(report: PartReport) -> set[str]:
-    """Return all codes in the report."""
     messages = [*report.feedback]
     for row in report.rows:
         messages += row.feedback

@@ -1,8 +1,8 @@
-"""Random robots, frames that are valid by construction, and an oracle for the rules of frames.
+"""Draw random robots and valid frames on their axes, without the tested code."""
 
-Nothing here uses the geometry of the program: the frames come from plain products of rotations, the
-common normals from linear equations, and the oracle only tests the two conditions of a DH row.
-"""
+# Nothing here uses the geometry of the program: the frames come from plain products of rotations,
+# the common normals from linear equations, and the oracle only tests the two conditions of a DH
+# row.
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -20,7 +20,7 @@ LENGTHS = (0.0, 0.0, 0.4, 0.25, -0.3)
 
 @dataclass(frozen=True)
 class Arm:
-    """A robot in numbers; its rows are (a, alpha, d, theta) in degrees, without joint variables."""
+    """A robot as rows of numbers."""
 
     structure: str
     convention: str
@@ -32,7 +32,6 @@ class Arm:
 
     @property
     def text(self) -> str:
-        """The exercise file: one part asks for the frames, the other for a table in free frames."""
         lines = []
         for i, (a, alpha, d, theta) in enumerate(self.rows):
             cells = [f"{a!r}", f"{alpha!r}deg", f"{d!r}", f"{theta!r}deg"]
@@ -66,7 +65,7 @@ frames = "free"
 
 
 def drawn_arm(rng: Generator) -> Arm:
-    """Draw a robot of two to six joints in a random convention."""
+    """Draw a random robot with two to six joints."""
     count = int(rng.integers(2, 7))
     structure = "".join(rng.choice(["R", "R", "R", "P"], count))
     convention = str(rng.choice(["standard", "modified"]))
@@ -106,7 +105,7 @@ class Line:
 
 @dataclass(frozen=True)
 class Home:
-    """A robot with all joint variables 0: its joint axes, and its first and last frame."""
+    """A robot at home (all joint variables are 0): its joint axes and its end frames."""
 
     arm: Arm
     axes: tuple[Line, ...]
@@ -114,14 +113,13 @@ class Home:
 
     @property
     def asked(self) -> list[int]:
-        """The indices of the joints whose frames the exercise asks for."""
         count = len(self.arm.rows) - 1
         first = 1 if self.arm.convention == "standard" else 0
         return [first + i for i in range(count)]
 
 
 def home_of(arm: Arm) -> Home:
-    """Return the robot with all joint variables 0."""
+    """Return the robot at home (all joint variables are 0)."""
     frame, axes = np.eye(4), []
     for i, (a, alpha, d, theta) in enumerate(arm.rows):
         z, x = turn(2, theta) @ shift(2, d), shift(0, a) @ turn(0, alpha)
@@ -134,7 +132,7 @@ def home_of(arm: Arm) -> Home:
 
 @dataclass(frozen=True)
 class Placed:
-    """A placed frame: joint number, z, origin and x; z and x may have any length."""
+    """A placed frame: joint number, z, origin and x."""
 
     joint: int
     z: Vector
@@ -156,7 +154,7 @@ def unit(vector: Vector) -> Vector:
 
 
 def feet(one: Line, other: Line) -> tuple[Vector, Vector, Vector]:
-    """Return the point of each line on their common normal, and the direction of the normal."""
+    # Return the point of each line on their common normal, and the direction of the normal.
     normal = unit(np.cross(one.direction, other.direction))
     solved = np.linalg.solve(
         np.column_stack([one.direction, -other.direction, normal]), other.point - one.point
@@ -169,7 +167,7 @@ def feet(one: Line, other: Line) -> tuple[Vector, Vector, Vector]:
 
 
 def drawn_frames(home: Home, rng: Generator) -> list[Placed]:
-    """Draw frames that follow the rules of the robot's convention."""
+    """Draw valid frames for a robot."""
     standard = home.arm.convention == "standard"
     asked = home.asked
     lines = dict(enumerate(home.axes))
@@ -203,7 +201,7 @@ def drawn_frames(home: Home, rng: Generator) -> list[Placed]:
 
 
 def broken(home: Home, frames: list[Placed], rng: Generator) -> tuple[int, list[Placed]]:
-    """Break one rule in one frame; return the index of the frame and all frames."""
+    """Break one rule in one frame; return its index and all frames."""
     i = int(rng.integers(len(frames)))
     frame = frames[i]
     z, x = unit(frame.z), unit(frame.x)
@@ -227,7 +225,7 @@ def broken(home: Home, frames: list[Placed], rng: Generator) -> tuple[int, list[
 
 
 def is_valid(home: Home, frames: list[Placed]) -> bool:
-    """True if the frames are on their axes, and all neighbours have a DH row between them."""
+    """True if the frames follow the DH rules."""
     for joint, frame in zip(home.asked, frames, strict=True):
         axis, z, x = home.axes[joint], unit(frame.z), unit(frame.x)
         if frame.joint != joint + 1 or abs(x @ z) > EXACT:

@@ -1,12 +1,11 @@
-"""The four reference tables, copied from the textbooks and not from the catalogue.
+"""Four reference tables, copied from textbooks."""
 
-Twists are in whole degrees; joint variables have the textbook's star. A Spelling writes a table as
-a student may write it.
-
-Sources: planar RRR and RRRP from Robotic Fundamentals (UMFM4X-15-M), Forward Kinematics, Examples 1
-and 2; Stanford arm and SCARA from Spong, Hutchinson, Vidyasagar, Robot Modeling and Control,
-pp. 91-93.
-"""
+# Twists are in whole degrees; joint variables have the textbook's star. A Spelling writes a table
+# as a student may write it.
+#
+# Sources: planar RRR and RRRP from Robotic Fundamentals (UMFM4X-15-M), Forward Kinematics, Examples
+# 1 and 2; Stanford arm and SCARA from Spong, Hutchinson, Vidyasagar, Robot Modeling and Control,
+# pp. 91-93.
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -21,7 +20,7 @@ AngleUnit = Literal["radians", "degrees"]
 
 @dataclass(frozen=True)
 class Robot:
-    """A robot: its exercise, its table, and the letters for joint variables and for lengths."""
+    """A textbook robot: its exercise, its table and its letters."""
 
     exercise: str
     joints: tuple[str, ...]
@@ -85,7 +84,7 @@ ROBOTS = (PLANAR_RRR, RRRP, SCARA, STANFORD)
 
 @dataclass(frozen=True)
 class Spelling:
-    """One way to write a table: the spelling of twists and of joint variables."""
+    """A way to write a table."""
 
     name: str
     angle_unit: AngleUnit
@@ -94,7 +93,6 @@ class Spelling:
     sliding: str = ""
 
     def rows(self, robot: Robot) -> list[Row]:
-        """Return the robot's table in this spelling."""
         return [
             (a, self.twist(int(alpha)), _named(d, self.sliding), _named(theta, self.turning))
             for a, alpha, d, theta in robot.rows
@@ -102,7 +100,6 @@ class Spelling:
 
 
 def _named(cell: str, pattern: str) -> str:
-    """Return a cell with its variable renamed by ``pattern``, in which ``#`` is the number."""
     name = cell.removesuffix("*")
     if name == cell:
         return cell

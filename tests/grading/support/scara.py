@@ -1,4 +1,4 @@
-"""The SCARA arm in four parts, each of which follows from the previous one."""
+"""An exercise about the SCARA arm, in four parts."""
 
 from collections.abc import Sequence
 from typing import Any

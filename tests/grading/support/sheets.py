@@ -1,4 +1,4 @@
-"""Convert the answer to a part of any kind to a grid of texts, and back."""
+"""Convert an answer to a grid of texts, and back."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,12 +14,10 @@ Grid = list[list[str]]
 
 @dataclass(frozen=True)
 class Sheet:
-    """The labels of an answer's rows and columns, and the JSON shape of the answer.
+    """The labels and the shape of an answer that is written as a grid."""
 
-    ``marked`` are the cells with the slip, if the part asks for a slip; every posted answer marks
-    them.
-    """
-
+    # `marked` are the cells with the slip, if the part asks for a slip; every posted answer marks
+    # them.
     kind: str
     rows: tuple[str, ...]
     columns: tuple[str, ...]
@@ -29,7 +27,6 @@ class Sheet:
         return [[text] * len(self.columns) for _ in self.rows]
 
     def posted(self, grid: Sequence[Sequence[str]]) -> Any:
-        """Return the grid as the JSON value of an answer."""
         if self.kind in ("dh_table", "dh_row"):
             rows = [dict(zip(COLUMNS, row, strict=True)) for row in grid]
             return {"rows": rows} if self.kind == "dh_table" else rows[0]
@@ -46,7 +43,6 @@ class Sheet:
         return list(map(list, grid))
 
     def grid_of(self, answer: Any) -> Grid:
-        """Return the grid of a posted answer, the inverse of ``posted``."""
         if self.kind == "find_slip":
             answer = answer["table"]
         if self.kind in ("dh_table", "find_slip"):
@@ -64,7 +60,6 @@ class Sheet:
 
 
 def sheet_of(part: PartSpec, exercise: Exercise) -> Sheet:
-    """Return the sheet for the answers to a part."""
     shape = dict(part.shape(exercise.reference))
     rows = tuple(shape.get("rows") or ("1",))
     if "matrices" in shape:

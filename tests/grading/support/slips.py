@@ -1,4 +1,4 @@
-"""All kinds of slips in a single cell of a reference table, with their codes."""
+"""Generate all kinds of slips in a table cell, with their codes."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ A, ALPHA, D, THETA = range(4)
 
 @dataclass(frozen=True)
 class Slip:
-    """A slip: ``text`` in column ``column`` of row ``row``, and the ``code`` of its message."""
+    """A wrong text in one cell, and the code of its message."""
 
     robot: Robot
     row: int
@@ -28,7 +28,7 @@ class Slip:
 
 
 def slips(robot: Robot, i: int, j: int) -> Iterator[Slip]:
-    """Yield all slips in the cell of row ``i`` and column ``j``."""
+    """Yield all slips in one cell."""
     variable = robot.joints[i] if i < len(robot.joints) else None
     cell = EXACT.rows(robot)[i][j]
     for kind, text, code in _of_cell(robot, variable, j, cell):

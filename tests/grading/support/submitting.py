@@ -1,4 +1,4 @@
-"""Submit answers, and find cells and messages in the report."""
+"""Submit answers, and search the report."""
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
@@ -20,7 +20,6 @@ from tests.grading.support.robots import COLUMNS, AngleUnit
 
 
 def table(rows: Iterable[Sequence[object]]) -> dict[str, Any]:
-    """Return a table as the answer to a ``dh_table`` part."""
     return {"rows": [dict(zip(COLUMNS, row, strict=True)) for row in rows]}
 
 
@@ -65,7 +64,7 @@ def codes(cell: CellReport) -> list[str]:
 
 
 def codes_at(report: PartReport, row_label: str, cell_label: str) -> list[str]:
-    """Return the codes of all messages in the report that are about this cell."""
+    """Return the codes of all messages about a cell."""
     return [
         message.code
         for message, places, _ in messages_of(report)
@@ -74,7 +73,6 @@ def codes_at(report: PartReport, row_label: str, cell_label: str) -> list[str]:
 
 
 def not_correct(report: PartReport) -> dict[tuple[str, str], Verdict]:
-    """Return the verdict of each cell that is not correct, by the labels of row and cell."""
     return {
         (row.label, cell.label): cell.verdict
         for row in report.rows
@@ -93,5 +91,4 @@ def full_marks(report: PartReport) -> bool:
 
 
 def as_data(report: Report) -> dict[str, Any]:
-    """Return the report as nested dicts and lists, ready for ``json.dumps``."""
     return asdict(report)

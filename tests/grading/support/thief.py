@@ -1,4 +1,4 @@
-"""A thief: a student without knowledge who copies from a report into the wrong cells."""
+"""Simulate a student who copies values from a report into the wrong cells."""
 
 import re
 from collections.abc import Iterator
@@ -20,8 +20,6 @@ _SAYING = ("message", "suggestion", "text", "latex")
 
 
 def said(report: PartReport) -> Iterator[str]:
-    """Yield all texts and numbers in a report that might be a value."""
-
     def visit(value: Any, key: str) -> Iterator[str]:
         if isinstance(value, dict):
             for name, inner in value.items():
@@ -42,7 +40,6 @@ def said(report: PartReport) -> Iterator[str]:
 
 @lru_cache(maxsize=4096)
 def expressions_in(text: str, vocabulary: Vocabulary) -> tuple[str, ...]:
-    """Return all parts of a text that are readable entries: single words and sequences of words."""
     found: dict[str, None] = {}
     for words in (text.split(), re.sub(r"[()]", " ", text).split()):
         plain = [word.strip(".,;:?!`") for word in words]
@@ -65,24 +62,20 @@ def _reads(text: str, vocabulary: Vocabulary) -> bool:
 
 
 def is_trivial(text: str) -> bool:
-    """True if a text is a trivial value in any spelling, such as 0.0."""
     return re.fullmatch(r"-?[01](\.0*)?", text) is not None
 
 
 def shortened(text: str) -> str:
-    """Return the text without zeros after its decimal point: 7 for 7.0."""
     return re.sub(r"\.0*$", "", text)
 
 
 @dataclass
 class Thief:
-    """A thief at work on one part, at one feedback level.
+    """A student who copies values from reports into the wrong cells."""
 
-    ``known`` are the texts that the thief knows without a report. The trivial values 0, 1 and -1,
-    which are in most cells of every answer, do not count as stolen either. ``hints`` collects all
-    hints.
-    """
-
+    # `known` are the texts that the thief knows without a report. The trivial values 0, 1 and -1,
+    # which are in most cells of every answer, do not count as stolen either. `hints` collects all
+    # hints.
     exercise: Exercise
     part: PartSpec
     level: FeedbackLevel
@@ -104,7 +97,6 @@ class Thief:
         return next(part for part in report.parts if part.part == self.part.id)
 
     def _hints(self, report: PartReport) -> Iterator[str]:
-        """Yield all steps of the hints for all messages, if the thief asks for hints."""
         if not self.with_hints:
             return
         answers = {self.part.id: self.sheet.posted(self.grid)}
@@ -120,7 +112,6 @@ class Thief:
                         yield from (hint.title, hint.text)
 
     def steal(self) -> tuple[float, float]:
-        """Return the points of the first answer, and those after ten rounds of copying."""
         report = self.report(self.grid)
         first = report.points
         for _ in range(ROUNDS):
@@ -138,7 +129,6 @@ class Thief:
         return first, report.points
 
     def _copied(self, text: str, report: PartReport) -> PartReport:
-        """Copy ``text`` into every wrong cell that it improves, and return the new report."""
         everywhere = [
             [own if self._is_right(report, i, j) else text for j, own in enumerate(row)]
             for i, row in enumerate(self.grid)
@@ -170,20 +160,17 @@ class Thief:
         return trial
 
     def _is_right(self, report: PartReport, i: int, j: int) -> bool:
-        """True if the report has the cell and says that it is right."""
         by_label = {row.label: row for row in report.rows}
         row = by_label.get(self.sheet.rows[i])
         return row is not None and j < len(row.cells) and row.cells[j].verdict is Verdict.CORRECT
 
 
 def worth(report: PartReport) -> tuple[float, int]:
-    """Return the points and the number of correct cells, by which the thief measures success."""
     cells = [cell.verdict for row in report.rows for cell in row.cells]
     return report.points, cells.count(Verdict.CORRECT)
 
 
 def known_before(sheet: Sheet, grid: Grid) -> set[str]:
-    """Return what a student knows without a report: the texts of an answer, and the labels."""
     labels = {piece for label in (*sheet.rows, *sheet.columns) for piece in label.split(".")}
     return {*labels, *(cell for row in grid for cell in row)}
 
@@ -194,7 +181,6 @@ def thief(exercise: Exercise, part: PartSpec, level: FeedbackLevel, grid: Grid) 
 
 
 def lazy(exercise: Exercise, part: PartSpec) -> Grid:
-    """Return an answer without knowledge: joint variables and zeros, the identity, or zeros."""
     sheet = sheet_of(part, exercise)
     grid = sheet.filled("0")
     if part.kind == "dh_table":

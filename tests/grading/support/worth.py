@@ -1,4 +1,4 @@
-"""The points of a table, as a tutor computes them by hand from the table's text."""
+"""Compute the expected points of a table from its text."""
 
 from collections.abc import Iterable, Sequence
 
@@ -8,12 +8,10 @@ from tests.grading.support.robots import Robot
 
 
 def worth_of_rows(robot: Robot) -> list[float]:
-    """Return a weight for each row: 0.2, and 1 for each cell that a student must know."""
     return [0.2 + sum(is_known(robot, i, j) for j in range(4)) for i in range(len(robot.rows))]
 
 
 def is_known(robot: Robot, row: int, column: int) -> bool:
-    """True if the cell is neither 0 nor only the joint variable, so that a student must know it."""
     cell = robot.rows[row][column]
     return cell != "0" and not cell.endswith("*")
 
@@ -32,11 +30,9 @@ UNREAD = {"stanford-arm": 0.25, "scara": 0.25, "rrrp": 0.25, "planar-rrr": 0.5}
 
 
 def points(robot: Robot, wrong: Iterable[int], unread: Iterable[int] = ()) -> list[float]:
-    """Return the points of each row of a table.
-
-    ``wrong`` has the row number of each wrong cell. ``unread`` has the numbers of rows in which a
-    cell that is 0 or only the joint variable was not read.
-    """
+    """Return the expected points of each row of a table."""
+    # `wrong` has the row number of each wrong cell. `unread` has the numbers of rows in which a
+    # cell that is 0 or only the joint variable was not read.
     wrong, unread, name = list(wrong), set(unread), robot.exercise
     worth = [
         BESIDES[name][i] + UNIT[name] * sum(is_known(robot, i, j) for j in range(4))
@@ -49,5 +45,4 @@ def points(robot: Robot, wrong: Iterable[int], unread: Iterable[int] = ()) -> li
 
 
 def about(values: Sequence[float]) -> object:
-    """Return a value that equals ``values`` up to the rounding of points."""
     return pytest.approx(list(values), abs=2e-6)

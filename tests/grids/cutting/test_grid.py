@@ -1,4 +1,4 @@
-"""The text that gives the size of a grid, such as "2 × 2"."""
+"""Write the size of a grid, such as 2 × 2."""
 
 from service.grids import read_grid
 

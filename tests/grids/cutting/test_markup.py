@@ -1,4 +1,4 @@
-"""Tags and entities in a cell of Markdown are read; each character keeps its place."""
+"""Read tags and entities in a Markdown cell."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""The places of cells, and of the characters in them, in a pasted text."""
+"""Find the places of cells in a pasted text."""
 
 from service.grids import read_grid
 from tests.grids.writers import FORMATS, POSE

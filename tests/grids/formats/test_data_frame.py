@@ -1,4 +1,4 @@
-"""Printed data frames: rows with labels, and units in their headers."""
+"""Read data frames as programs print them."""
 
 import pytest
 

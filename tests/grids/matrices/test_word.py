@@ -1,4 +1,4 @@
-"""Word's matrices in one line: @ separates rows, & separates values."""
+"""Read Word's one-line matrices: @ separates rows, & separates values."""
 
 import pytest
 

@@ -1,8 +1,7 @@
-"""Draw scripts for the Robotics Toolbox for Python, and the rows that they define.
+"""Draw random scripts for the Robotics Toolbox for Python."""
 
-Source: P. Corke, Robotics Toolbox for Python, the constructors of RevoluteDH, PrismaticDH, their
-modified forms, DHLink and DHRobot.
-"""
+# Source: P. Corke, Robotics Toolbox for Python, the constructors of RevoluteDH, PrismaticDH, their
+# modified forms, DHLink and DHRobot.
 
 from dataclasses import dataclass
 from random import Random
@@ -44,7 +43,7 @@ _OPTIONS = ["", ", name='x'", ", name=\"2R, planar\", manufacturer='me'"]
 
 @dataclass(frozen=True)
 class DrawnScript:
-    """A script, and the cells a, α, d, θ of its rows."""
+    """A script, and the table cells that it defines."""
 
     text: str
     rows: list[list[str]]
@@ -52,7 +51,7 @@ class DrawnScript:
 
 
 def draw_script(random: Random) -> DrawnScript:
-    """Return a script with one to seven links in one of seven forms."""
+    """Return a script with one to seven links."""
     modified = random.random() < 0.4
     drawn = [_link(random, number, modified=modified) for number in range(1, random.randint(2, 8))]
     links = [text for text, _ in drawn]
@@ -62,7 +61,6 @@ def draw_script(random: Random) -> DrawnScript:
 
 
 def _link(random: Random, number: int, *, modified: bool) -> tuple[str, list[str]]:
-    """Return the call that makes a link, and its row."""
     is_prismatic, is_general = random.random() < 0.4, random.random() < 0.2
     constant, variable = ("theta", "d") if is_prismatic else ("d", "theta")
     cells = {"a": random.choice(_LENGTHS), "alpha": random.choice(_ANGLES)}
@@ -94,7 +92,6 @@ def _link(random: Random, number: int, *, modified: bool) -> tuple[str, list[str
 
 
 def _robot(random: Random, links: list[str], options: str) -> str:
-    """Return the statements that make a robot of the links."""
     names = [f"L{number}" for number in range(1, len(links) + 1)]
     remark = random.choice(_REMARKS)
     together = ", ".join(links)

@@ -1,4 +1,4 @@
-"""Four lists with the names of the columns are a table if nothing else is in the script."""
+"""Read a script with four lists, one for each column of a table."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""A script for a robotics toolbox gives one row for each link, or an error if it is ambiguous."""
+"""Read a script for a robotics toolbox as one table row for each link."""
 
 import tomllib
 from pathlib import Path

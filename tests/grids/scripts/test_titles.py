@@ -1,4 +1,4 @@
-"""Sentences around a table are removed only if they cannot change it."""
+"""Sentences around a pasted table are removed only if they cannot change it."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Notes on ambiguous readings, with their places in the typed text."""
+"""Test the notes on ambiguous formulas, and the places of these notes."""
 
 import pytest
 

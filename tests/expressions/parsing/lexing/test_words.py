@@ -1,4 +1,4 @@
-"""Runs of letters and digits: declared names, shorthands and functions."""
+"""Read words of letters and digits: names, functions and abbreviations."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""A formula is recognised as a length, an angle, a number, or none of these."""
+"""Recognise whether a formula is a length, an angle or a number."""
 
 import pytest
 

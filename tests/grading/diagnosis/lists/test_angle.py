@@ -1,4 +1,4 @@
-"""Misconceptions about a single angle."""
+"""Test the misconceptions about a single angle."""
 
 import numpy as np
 
@@ -16,7 +16,6 @@ WORDS = Vocabulary([Symbol("q1", "angle"), Symbol("q2", "angle")])
 
 
 def wrong(text: str, expected: str) -> WrongValue:
-    """Return a case with the wrong angle ``text`` and the correct angle ``expected``."""
     expression = read(text, WORDS, quantity="angle")
     right = read(expected, WORDS, quantity="angle")
     zeros = np.zeros(SAMPLES)

@@ -1,4 +1,4 @@
-"""Misconceptions about a sum of angles, such as the direction of a link of a planar arm."""
+"""Test the misconceptions about a sum of angles."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -26,7 +26,6 @@ RIGHT = "q1 + q2 + q3 - pi/2"
 
 
 def wrong(text: str, expected: str = RIGHT) -> WrongValue:
-    """Return a case with the wrong angle ``text`` and the correct angle ``expected``."""
     expression, right = (read(each, WORDS, quantity="angle") for each in (text, expected))
     zeros = np.zeros(SAMPLES)
     return WrongValue(

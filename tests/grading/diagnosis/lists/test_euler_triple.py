@@ -1,4 +1,4 @@
-"""Misconceptions about three angles that describe a rotation together."""
+"""Test the misconceptions about three angles that describe a rotation."""
 
 from typing import Any
 
@@ -24,12 +24,10 @@ ROTATION = Rotation.from_euler("ZYX", RIGHT.T)
 
 
 def case(*angles: Numbers | float) -> WrongTriple:
-    """Return these wrong angles about moving z, y and x axes; q1, 0.4, q2 are correct."""
     return WrongTriple(triple(*angles), ROTATION.as_matrix(), "ZYX", fixed=False)
 
 
 def in_sequence(name: Any, rotation: Rotation = ROTATION) -> Numbers:
-    """Return the angles of a rotation in one of SciPy's sequences."""
     return np.asarray(rotation.as_euler(name).T)
 
 

@@ -1,4 +1,4 @@
-"""Misconceptions about the coordinates of a point."""
+"""Test the misconceptions about the coordinates of a point."""
 
 import numpy as np
 

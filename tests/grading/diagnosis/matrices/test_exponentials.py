@@ -1,4 +1,4 @@
-"""Misconceptions about a product of exponentials."""
+"""Test the misconceptions about a product of exponentials."""
 
 from functools import reduce
 
@@ -31,7 +31,6 @@ def twist(axis: Numbers) -> Numbers:
 
 
 def exponential(axes: Numbers, amounts: Numbers) -> Numbers:
-    """Return exp([S] amount) ``(COUNT, 4, 4)`` for each screw axis S ``(COUNT, 6)``."""
     pairs = zip(axes, amounts, strict=True)
     return np.array([expm(twist(axis) * amount) for axis, amount in pairs])
 
@@ -41,7 +40,7 @@ TURNED_MOMENT = [exponential(SPACE[i] * [1, 1, 1, -1, -1, -1], AMOUNTS[i]) for i
 
 
 def body() -> Numbers:
-    """Return the screw axes, seen from the tool frame in the home position."""
+    # Return the screw axes, seen from the tool frame in the home position.
     back = np.linalg.inv(HOME)
     matrices = np.array([[twist(axis) for axis in axes] for axes in SPACE])
     seen = back @ matrices @ HOME
@@ -54,7 +53,6 @@ def product(_case: MatrixCase) -> Exponentials:
 
 
 def wrong(*factors: Numbers) -> MatrixCase:
-    """Return a case in which the student multiplied ``factors`` instead of ``E1 E2 E3 HOME``."""
     return wrong_matrix(reduce(np.matmul, factors), E1 @ E2 @ E3 @ HOME)
 
 

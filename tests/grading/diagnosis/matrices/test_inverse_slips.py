@@ -1,4 +1,4 @@
-"""Misconceptions about the inverse of a homogeneous transform."""
+"""Test the misconceptions about the inverse of a homogeneous transform."""
 
 from collections.abc import Mapping
 
@@ -22,7 +22,6 @@ RIGHT: Numbers = np.asarray(np.linalg.inv(POSE), dtype=np.float64)
 
 
 def case(rotation: Numbers, position: Numbers) -> MatrixCase:
-    """Return a wrong inverse of ``POSE`` that has this rotation and this position."""
     matrix = RIGHT.copy()
     matrix[:, :3, :3], matrix[:, :3, 3] = rotation, position
     return wrong_matrix(matrix, RIGHT)

@@ -1,4 +1,4 @@
-"""Slips in a link transform that contains angles or factors of earlier links."""
+"""Test slips in a link transform."""
 
 import re
 from collections.abc import Mapping
@@ -66,7 +66,6 @@ def test_a_misconception_explains_only_its_case(pair: Pair) -> None:
 
 
 def matrix(angle: str, length: str, of_length: str) -> list[list[Any]]:
-    """Return a link transform of a planar arm, such as c1, -s1, 0, a1 c1 for ("1", "a1", "1")."""
     return [
         [f"c{angle}", f"-s{angle}", 0, f"{length} c{of_length}"],
         [f"s{angle}", f"c{angle}", 0, f"{length} s{of_length}"],
@@ -99,7 +98,7 @@ def test_a_pose_for_the_second_link_is_named(catalogue: Mapping[str, Exercise]) 
 
 
 def test_two_links_with_the_same_slip_get_one_message(make_exercise: Make) -> None:
-    """In the answer, A2 of a SCARA arm is also turned by θ1, and A4 by θ1 + θ2."""
+    # In the answer, A2 of a SCARA arm is also turned by θ1, and A4 by θ1 + θ2.
     second = [[re.sub(r"([cs])2", r"\g<1>12", text) for text in row] for row in SCARA_A2]
     turn = "theta1 + theta2 + theta4"
     last = [

@@ -1,4 +1,4 @@
-"""Misconceptions about a single matrix entry."""
+"""Test the misconceptions about a single matrix entry."""
 
 from collections.abc import Callable, Iterator
 from typing import Any
@@ -29,7 +29,6 @@ SAMPLE = Samples(
 
 
 def wrong(written: str, expected: str, unit: AngleUnit = "radians") -> WrongEntry:
-    """Return a case with the wrong entry ``written`` and the correct entry ``expected``."""
     expression = read(written, WORDS, angle_unit=unit)
     actual, right = (
         np.array(np.broadcast_to(text.evaluate(SAMPLE.values), SAMPLES))
@@ -176,7 +175,7 @@ def test_a_misconception_does_not_explain_other_entries(
 def test_a_misconception_that_changes_nothing_explains_nothing(
     misconception: Misconception,
 ) -> None:
-    """The test treats the answer as wrong, although it is correct within rounding."""
+    # The test treats the answer as wrong, although it is correct within rounding.
     case = wrong("l1*c1*c2 + cos(0) + s1*s2/1000000", "l1*c1*c2 + cos(0)")
     assert explained(case, misconception) is None
 

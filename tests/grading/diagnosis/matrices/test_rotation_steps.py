@@ -1,4 +1,4 @@
-"""Misconceptions about a rotation that is a product of turns about axes."""
+"""Test the misconceptions about a product of rotations."""
 
 from functools import reduce
 
@@ -28,7 +28,6 @@ STEPS = [Step("X", X, fixed=True), Step("Y", Y, fixed=True), Step("Z", Z, fixed=
 
 
 def wrong(*factors: Numbers) -> MatrixCase:
-    """Return a case in which the student multiplied ``factors`` instead of the turns ``Y X Z``."""
     return wrong_matrix(reduce(np.matmul, factors), Y @ X @ Z)
 
 

@@ -1,4 +1,4 @@
-"""Misconceptions about a whole matrix, its rotation or its position, and checks of a rotation."""
+"""Test the misconceptions about a whole matrix."""
 
 from dataclasses import replace
 
@@ -104,7 +104,7 @@ def test_a_misconception_or_check_explains_only_its_case(pair: Pair) -> None:
     ],
 )
 def test_an_alternative_that_is_right_explains_nothing(rows: list[list[float]]) -> None:
-    """With these tables, a link can be left out, exchanged or transposed without effect."""
+    # With these tables, a link can be left out, exchanged or transposed without effect.
     lengths = np.linspace(1.0, 2.0, 8)
     table = np.array(rows)[..., None] * np.array([lengths, 0 * lengths + 1] * 2)
     chain = Chain(table, Convention.STANDARD, tuple("0123"[: len(rows) + 1]))

@@ -1,4 +1,4 @@
-"""Misconceptions about a product of link transforms."""
+"""Test the misconceptions about a product of link transforms."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, 
 
 @dataclass(frozen=True)
 class WrongPose:
-    """A wrong pose ``(COUNT, 4, 4)``; the correct pose is ``POSE``."""
+    """A wrong pose; the correct pose is ``POSE``."""
 
     actual: Numbers
 

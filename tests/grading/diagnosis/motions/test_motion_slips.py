@@ -1,4 +1,4 @@
-"""Slips in a product of several motions; the exercise gives only the product, in formulas."""
+"""Test slips in a product of several motions."""
 
 from collections.abc import Mapping
 
@@ -24,7 +24,6 @@ WORDS = Vocabulary([Symbol(name, "angle" if len(name) > 1 else "length") for nam
 
 
 def step(displacement: tuple[str, str, str], axis: str, angle: str) -> Matrices:
-    """Return a motion: first the displacement, then the turn."""
     motion = np.tile(np.eye(4), (COUNT, 1, 1))
     motion[:, :3, :3] = about(axis, VALUES[angle]) if angle else np.eye(3)
     motion[:, :3, 3] = np.transpose(
@@ -56,7 +55,6 @@ MOTION = GivenMotion(
 
 
 def wrong(actual: Numbers, right: Numbers) -> WrongNumbers:
-    """Return a case with the student's numbers ``actual`` ``(COUNT, ...)`` and the correct ones."""
     actual, right = np.moveaxis(actual, 0, -1), np.moveaxis(right, 0, -1)
     return WrongNumbers(actual, right, np.ones(right.shape[:-1]))
 
@@ -180,7 +178,7 @@ def test_a_slip_in_three_motions_is_named(text: str, name: str, make_exercise: M
 
 
 def test_motions_in_reverse_order_are_named(make_exercise: Make) -> None:
-    """The answer is the product H3 H2 H1, multiplied out by hand."""
+    # The answer is the product H3 H2 H1, multiplied out by hand.
     answer = [
         ["cφ", "-sφ", 0, "a"],
         ["cψ sφ", "cψ cφ", "-sψ", "l - b sψ"],
@@ -226,7 +224,7 @@ CONSTANT = one_part(
 
 
 def test_a_rotation_and_a_shift_have_only_their_own_slips(make_exercise: Make) -> None:
-    """A rotation has no displacements, and a shift has no turns."""
+    # A rotation has no displacements, and a shift has no turns.
     exercise = make_exercise(AS_ROTATION)
     turned = [["cφ", "-sφ", "0"], ["sφ", "cφ", "0"], ["0", "0", "1"]]
     assert all_codes(graded(exercise, turned)) == {"missing_turn"}

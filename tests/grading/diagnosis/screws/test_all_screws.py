@@ -1,4 +1,4 @@
-"""Slips in all screw axes, and joint variables in answers for the home position."""
+"""Test slips in all screw axes."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -177,7 +177,7 @@ def test_right_axes_get_no_message(make_exercise: Make) -> None:
 
 
 def test_wrong_axes_with_joint_variables_earn_nothing(make_exercise: Make) -> None:
-    """Joint variables are a single slip only if the answer is correct with all of them set to 0."""
+    # Joint variables are a single slip only if the answer is correct with all of them set to 0.
     report = graded(make_exercise(SCARA), "space", [["q1"] * 6] * 4)
     assert all_codes(report) == {"not_at_home"}
     assert report.points == 0

@@ -1,4 +1,4 @@
-"""Misconceptions about a screw axis."""
+"""Test the misconceptions about a screw axis."""
 
 import numpy as np
 import pytest

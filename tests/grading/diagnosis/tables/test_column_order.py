@@ -1,4 +1,4 @@
-"""Tables with their columns in another order."""
+"""Recognise tables whose columns are in another order."""
 
 from collections.abc import Mapping, Sequence
 from itertools import permutations

@@ -1,4 +1,4 @@
-"""Misconceptions about the DH row of a transform, and the conditions for a row."""
+"""Test the misconceptions about the DH row of a transform."""
 
 import numpy as np
 import pytest

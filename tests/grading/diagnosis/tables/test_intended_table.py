@@ -1,4 +1,4 @@
-"""Tables with two slips: a and d are exchanged in one row, and another cell is wrong."""
+"""Explain tables with two slips."""
 
 from collections.abc import Mapping
 

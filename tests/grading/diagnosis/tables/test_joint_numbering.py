@@ -1,4 +1,4 @@
-"""Joint numbers that start at another number, or are separate for turning and sliding joints."""
+"""Recognise joints that the student has numbered differently."""
 
 from collections.abc import Mapping, Sequence
 

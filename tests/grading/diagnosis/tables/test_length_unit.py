@@ -1,4 +1,4 @@
-"""Tables whose lengths are in another unit than the exercise uses."""
+"""Recognise tables whose lengths are in another unit."""
 
 from collections.abc import Mapping
 

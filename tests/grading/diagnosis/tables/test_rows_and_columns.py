@@ -1,4 +1,4 @@
-"""Slips in whole rows and columns of a table are named from the wrong pose that they cause."""
+"""A wrong pose reveals a wrong row or column of the table it was computed from."""
 
 import pytest
 
@@ -17,7 +17,6 @@ EXERCISE = exercise_of(ARM)
 
 
 def said(table: Table, kind: str = "transform", arm: Arm = ARM) -> tuple[tuple[str, str], ...]:
-    """Return the messages on the answer that follows from this table in the arm's convention."""
     slip = ArmSlip("", frozenset(), table, arm.convention, tuple(range(len(table))))
     exercise = EXERCISE if arm is ARM else exercise_of(arm)
     return said_of(exercise, kind, answer_to(kind, slip))
@@ -97,7 +96,7 @@ def test_a_standard_table_in_a_modified_product_is_named() -> None:
 
 
 def test_exchanged_rows_are_no_missing_link() -> None:
-    """The last length is 0, so the position does not show an exchange of rows 3 and 4."""
+    # The last length is 0, so the position does not show an exchange of rows 3 and 4.
     wrist = (ROW1, ROW2, (NONE, UP, {"d3": 1.0}, {"q3": 1.0}), (NONE, NONE, NONE, {"q4": 1.0}))
     arm = Arm(wrist, "RRRR", STANDARD)
     [(code, words)] = said((wrist[0], wrist[2], wrist[1], wrist[3]), "position", arm)
@@ -117,7 +116,7 @@ def test_a_missing_link_is_named() -> None:
 
 
 def test_exchanged_rows_and_a_missing_link_are_both_named_if_both_fit() -> None:
-    """Row 3 only turns: without A3, the position is the same as with rows 3 and 4 exchanged."""
+    # Row 3 only turns: without A3, the position is the same as with rows 3 and 4 exchanged.
     rows = (ROW1, ROW2, (NONE, UP, NONE, {"q3": 1.0}), ROW4)
     [(code, words)] = said((*rows[:2], ROW4), "position", Arm(rows, "RRRR", STANDARD))
     assert (code, words) == (

@@ -1,4 +1,4 @@
-"""Misconceptions about a table cell."""
+"""Test the misconceptions about a table cell."""
 
 import numpy as np
 import pytest
@@ -29,7 +29,6 @@ TYPED = SAMPLE.with_names({"theta3", "d1"}).values
 
 
 def wrong(column: str, number: int, written: str, right: str) -> WrongCell:
-    """Return a case with the wrong cell ``written`` in the row of joint ``number``."""
     angle = column in ("alpha", "theta")
     quantity = "angle" if angle else "length"
     expression = read(written, WORDS, quantity=quantity)  # type: ignore[arg-type]
@@ -159,7 +158,7 @@ def test_a_number_for_a_length_gets_advice_to_use_symbols(
 
 @pytest.mark.parametrize("right", ["a1", "0", "d3"])
 def test_an_unknown_length_is_named(right: str) -> None:
-    """Joint 1 is revolute, so d1 is not its variable, and the exercise has no length d1."""
+    # Joint 1 is revolute, so d1 is not its variable, and the exercise has no length d1.
     finding = diagnose(wrong("d", 3 if right == "d3" else 1, "d1", right))
     assert finding.code == "unknown_symbol"
     assert finding.hint == "This exercise has no d1. It has d3."

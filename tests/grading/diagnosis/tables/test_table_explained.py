@@ -1,4 +1,4 @@
-"""An explanation of a whole table, compared with the separate judgement of its cells."""
+"""Compare the explanation of a whole table with those of its cells."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -76,7 +76,7 @@ def test_links_one_row_too_late_are_named(
 
 
 def test_the_other_convention_is_named_for_two_joints(catalogue: Mapping[str, Exercise]) -> None:
-    """Both wrong cells could be separate slips, but the table is in the modified convention."""
+    # Both wrong cells could be separate slips, but the table is in the modified convention.
     modified = [("0", "0", "0", "theta1"), ("a1", "0", "0", "theta2"), ("a2", "0", "0", "0")]
     report = graded_table(catalogue["planar-rr"], modified)
     assert errors(report) == ["other_convention"]

@@ -1,4 +1,4 @@
-"""Tables that have lost a degree of freedom, and tables that only seem to have lost one."""
+"""Recognise tables that have lost a degree of freedom."""
 
 from collections.abc import Callable, Mapping, Sequence
 
@@ -28,7 +28,7 @@ def samples_of(exercise: Exercise) -> Samples:
 
 
 def written(rows: Sequence[Sequence[Cell]], samples: Samples) -> Table:
-    """Return the table in numbers; each cell is a number or the name of a symbol."""
+    # Return the table in numbers; each cell is a number or the name of a symbol.
     return np.array(
         [
             [
@@ -61,7 +61,7 @@ PRINTED: list[list[Cell]] = [
 
 
 def test_the_printed_stanford_table_has_lost_freedom(stanford: Exercise) -> None:
-    """This is the worked example of robots.md, "Errata"."""
+    # This is the worked example of robots.md, "Errata".
     [finding] = found(stanford, written(PRINTED, samples_of(stanford)))
     assert finding.code == "lost_freedom"
     assert finding.hint == (
@@ -114,7 +114,7 @@ def test_joints_that_share_an_axis_need_not_be_neighbours(stanford: Exercise) ->
 
 
 def test_four_dependent_joints_are_named(catalogue: Mapping[str, Exercise]) -> None:
-    """With α3 = 90°, the last joint slides in the plane in which the other three move the arm."""
+    # With α3 = 90°, the last joint slides in the plane in which the other three move the arm.
     exercise = catalogue["rrrp"]
     table = exercise.robot.tables[Convention.STANDARD].values(samples_of(exercise).values, SAMPLES)
     table[2, ALPHA] = H

@@ -1,8 +1,7 @@
-"""Misconceptions about a whole table.
+"""Test the misconceptions about a whole table."""
 
-The tables are those of the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1 and a2 added
-so that no column is 0. A table is correct if it gives the correct pose.
-"""
+# The tables are those of the Stanford arm of Spong, Hutchinson and Vidyasagar, with d1 and a2 added
+# so that no column is 0. A table is correct if it gives the correct pose.
 
 from dataclasses import replace
 
@@ -52,19 +51,16 @@ def valid(candidates: NDArray[np.float64], convention: Convention) -> NDArray[np
 
 
 def wrong(table: Table) -> WrongTable:
-    """Return a case with this wrong table and the correct table ``right()``."""
     written = written_table.written_table(table, Convention.STANDARD, right(), JOINTS, SAMPLE)
     return WrongTable(written, written, valid)
 
 
 def in_modified_rows(table: Table) -> Table:
-    """Return the table with a and α one row later; a and α of the last link are lost."""
     table[:, :2] = np.concatenate([np.zeros((1, 2, SAMPLES)), table[:-1, :2]])
     return table
 
 
 def twists_too_late(table: Table) -> Table:
-    """Return the table with each α one row later; the other columns stay."""
     table[:, ALPHA] = np.roll(table[:, ALPHA], 1, axis=0)
     return table
 
@@ -99,7 +95,6 @@ def with_cell(table: Table, row: int, column: int, value: float) -> Table:
 
 
 def with_lengths_exchanged() -> WrongTable:
-    """Return a case with a wrong table in which d1 and d2 are exchanged."""
     table = right()
     table[0, D], table[1, D] = LENGTHS["d2"], LENGTHS["d1"]
     written = replace(wrong(table).written, exchanges=(("d1", "d2", right() - table),))
@@ -177,7 +172,7 @@ def test_the_pairs_are_in_the_order_of_ranks() -> None:
 
 
 def test_rows_in_reverse_order_are_found_if_the_last_row_is_in_its_place() -> None:
-    """As in a modified table, where the row of the tool stays at the end."""
+    # As in a modified table, where the row of the tool stays at the end.
     table = right()
     table[:-1] = table[-2::-1].copy()
     assert codes(wrong(table), combine=False) == ["row_order"]

@@ -1,4 +1,4 @@
-"""Slips that change all link transforms of an answer."""
+"""Test slips that change all link transforms of an answer."""
 
 import pytest
 
@@ -63,7 +63,7 @@ def test_one_wrong_link_has_the_slip_of_its_row() -> None:
 
 
 def test_a_slip_in_the_frames_of_the_exercise_is_named_if_frames_are_free() -> None:
-    """Other frames may fit these matrices better, but the student used the exercise's frames."""
+    # Other frames may fit these matrices better, but the student used the exercise's frames.
     free = ARM.text.replace('id = "links"\n', 'id = "links"\nframes = "free"\n')
     slip = ArmSlip("", frozenset(), (ROWS[1], ROWS[0], ROWS[2]), STANDARD, (0, 1, 2))
     [(code, _)] = said_of(loaded(free), "links", answer_to("links", slip))

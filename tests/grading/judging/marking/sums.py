@@ -1,9 +1,9 @@
-"""``python -m tests.grading.judging.marking.sums --answers 1000``: check that points add up.
+"""``python -m tests.grading.judging.marking.sums --answers 1000``: check that points add up."""
 
-Submit random wrong answers to every part of every shipped exercise, or with ``--tables`` only to
-the tables. Check that the points of the rows add up to the points of the part, that earned and lost
-points together are the maximum, and that all points are multiples of 0.25 (tables) or of 0.01.
-"""
+# Submit random wrong answers to every part of every shipped exercise, or with `--tables` only to
+# the tables. Check that the points of the rows add up to the points of the part, that earned and
+# lost points together are the maximum, and that all points are multiples of 0.25 (tables) or of
+# 0.01.
 
 import argparse
 import json
@@ -26,7 +26,7 @@ QUARTERS = "dh_table"
 
 
 def wrong_answers(exercise: Exercise, count: int, seed: int) -> Iterator[dict[str, Any]]:
-    """Yield model answers with some entries changed, exchanged or left out, or rows left out."""
+    """Yield model answers with random mistakes."""
     rng = np.random.default_rng([seed, *exercise.id.encode()])
     right = solve(exercise).answers
     for _ in range(count):
@@ -52,7 +52,6 @@ def wrong_answers(exercise: Exercise, count: int, seed: int) -> Iterator[dict[st
 
 
 def slip_throughout(rows: list[dict[str, str]], rng: np.random.Generator) -> None:
-    """Change a whole column, exchange two columns, or shift the rows."""
     column, other = rng.permutation(list(rows[0]))[:2]
     form = (*WRONG, None, None, None)[int(rng.integers(len(WRONG) + 3))]
     shifted = rows[1:] + rows[:1]
@@ -67,7 +66,6 @@ def slip_throughout(rows: list[dict[str, str]], rng: np.random.Generator) -> Non
 
 
 def entries(answer: Any) -> Iterator[tuple[Any, Any]]:
-    """Yield the place of each text in an answer, as its container and key."""
     keys = answer if isinstance(answer, dict) else range(len(answer))
     for key in list(keys):
         if isinstance(answer[key], str):
@@ -106,17 +104,12 @@ def faults(part: PartReport) -> Iterator[str]:
 
 
 def in_steps(start: float, end: float, *between: float) -> bool:
-    """True if ``start`` plus the amounts ``between`` is ``end``."""
     return abs(start + sum(between) - end) < 1e-6
 
 
 def run(
     catalogue: Mapping[str, Exercise], count: int, seed: int, kinds: frozenset[str] = frozenset()
 ) -> tuple[int, list[str]]:
-    """Return the number of graded parts, and a description of each fault in their points.
-
-    Only parts of these ``kinds`` are answered, or all parts if ``kinds`` is empty.
-    """
     graded, found = 0, []
     for exercise in catalogue.values():
         chosen = {part.id for part in exercise.parts if not kinds or part.kind in kinds}
@@ -135,12 +128,10 @@ def run(
 
 
 def run_alone(exercise: str, count: int, seed: int, kinds: frozenset[str]) -> tuple[int, list[str]]:
-    """Run one shipped exercise, in a process that has no catalogue yet."""
     return run({exercise: load_catalogue(shipped_folder())[exercise]}, count, seed, kinds)
 
 
 def main() -> int:
-    """Run the campaign, each exercise in a process; return 1 if points do not add up."""
     parser = argparse.ArgumentParser(prog="python -m tests.grading.judging.marking.sums")
     parser.add_argument("--answers", type=int, default=1000, help="for each exercise")
     parser.add_argument("--seed", type=int, default=1)

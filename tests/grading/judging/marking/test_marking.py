@@ -1,4 +1,4 @@
-"""An empty entry of a matrix, a list or a row never earns more than any text in its place."""
+"""An empty entry never earns more than any text in its place."""
 
 import json
 import random
@@ -24,7 +24,6 @@ Path = tuple[str | int, ...]
 
 
 def parts_with_answers() -> list[tuple[Exercise, PartSpec, Any]]:
-    """Return each part with its correct answer, if the answer contains texts."""
     return [
         (exercise, part, answer)
         for exercise in shipped_exercises().values()
@@ -35,7 +34,6 @@ def parts_with_answers() -> list[tuple[Exercise, PartSpec, Any]]:
 
 
 def entries(answer: Any, path: Path = ()) -> Iterator[tuple[Path, str]]:
-    """Yield each text of an answer with its place."""
     if isinstance(answer, str):
         yield path, answer
     elif isinstance(answer, dict | list):

@@ -1,4 +1,4 @@
-"""The cost of slips in tables of textbooks, computed by hand."""
+"""Compute by hand the cost of slips in textbook tables."""
 
 from collections.abc import Mapping
 
@@ -28,7 +28,7 @@ def stanford(*changes: tuple[int, int, str]) -> list[Row]:
 
 
 def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exercise]) -> None:
-    """Wrong signs of all twists cost a quarter of the points; four wrong cells would cost more."""
+    # Wrong signs of all twists cost a quarter of the points; four wrong cells would cost more.
     turned = {"pi/2": "-pi/2", "-pi/2": "pi/2", "0": "0"}
     rows = [(a, turned[alpha], d, theta) for a, alpha, d, theta in EXACT.rows(STANFORD)]
     report = graded_table(catalogue[STANFORD.exercise], rows)
@@ -41,7 +41,7 @@ def test_a_slip_of_the_whole_table_is_charged_once(catalogue: Mapping[str, Exerc
 def test_the_wrong_sign_of_a_column_with_joint_variables_is_charged_once(
     column: str, rows: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The signs of all offsets or angles are wrong, those of the joint variables included."""
+    # The signs of all offsets or angles are wrong, those of the joint variables included.
     j = COLUMNS.index(column)
     turned = [(int(i) - 1, j, f"-({EXACT.rows(STANFORD)[int(i) - 1][j]})") for i in rows]
     report = graded_table(catalogue[STANFORD.exercise], stanford(*turned))
@@ -51,7 +51,7 @@ def test_the_wrong_sign_of_a_column_with_joint_variables_is_charged_once(
 
 
 def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> None:
-    """The rows are those of the modified convention: a and α are one row later."""
+    # The rows are those of the modified convention: a and α are one row later.
     rows = EXACT.rows(STANFORD)
     ends = [("0", "0"), *((a, alpha) for a, alpha, _, _ in rows)]
     moved = [(*ends[i], d, theta) for i, (_, _, d, theta) in enumerate(rows)]
@@ -63,7 +63,7 @@ def test_the_other_convention_costs_half(catalogue: Mapping[str, Exercise]) -> N
 def test_a_standard_table_is_named_if_the_row_of_the_tool_is_empty(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The standard convention needs three rows; the fourth row of the form, e, is left empty."""
+    # The standard convention needs three rows; the fourth row of the form, e, is left empty.
     rows = [(f"l{i}", "0", "0", f"q{i}") for i in (1, 2, 3)]
     report = graded_table(catalogue["planar-rrr"], [*rows, ("", "", "", "")])
     assert codes(report) == ["other_convention"]
@@ -74,14 +74,14 @@ def test_a_standard_table_is_named_if_the_row_of_the_tool_is_empty(
 def test_a_slip_of_the_whole_table_costs_no_more_than_its_cells(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The SCARA arm's table has only one twist, so wrong twists cost at most one cell."""
+    # The SCARA arm's table has only one twist, so wrong twists cost at most one cell.
     rows = [("a1", "0", "0", "theta1"), ("a2", "0", "0", "theta2"), *EXACT.rows(SCARA)[2:]]
     report = graded_table(catalogue[SCARA.exercise], rows)
     assert report.points == 8 - 1.75
 
 
 def test_cancelling_offsets_do_not_make_a_slip_cheaper(catalogue: Mapping[str, Exercise]) -> None:
-    """Offsets that cancel along parallel axes are right, but do not make a slip cheaper."""
+    # Offsets that cancel along parallel axes are right, but do not make a slip cheaper.
     rows = [("a1", "0", "0.4", "theta1"), ("a1", "pi", "-0.4", "theta2"), *EXACT.rows(SCARA)[2:]]
     report = graded_table(catalogue[SCARA.exercise], rows)
     assert report.points == 8 - 1.75
@@ -113,7 +113,7 @@ def test_the_worth_computed_by_hand_is_right() -> None:
 
 
 def test_lost_points_have_places(catalogue: Mapping[str, Exercise]) -> None:
-    """Two cells of row 2 are wrong; row 3 holds only zeros."""
+    # Two cells of row 2 are wrong; row 3 holds only zeros.
     rows = [list(row) for row in EXACT.rows(SCARA)]
     rows[1][:2] = "a1", "0"
     report = graded_table(catalogue[SCARA.exercise], rows)
@@ -125,7 +125,7 @@ def test_lost_points_have_places(catalogue: Mapping[str, Exercise]) -> None:
 
 
 def test_a_slip_of_the_whole_table_is_lost_at_one_place(catalogue: Mapping[str, Exercise]) -> None:
-    """Wrong signs of all twists cost a quarter of 12 points."""
+    # Wrong signs of all twists cost a quarter of 12 points.
     turned = {"pi/2": "-pi/2", "-pi/2": "pi/2", "0": "0"}
     rows = [(a, turned[alpha], d, theta) for a, alpha, d, theta in EXACT.rows(STANFORD)]
     report = graded_table(catalogue[STANFORD.exercise], rows)

@@ -1,4 +1,4 @@
-"""Points add up in reports on random wrong answers: a sample of ``sums``."""
+"""The points in reports on random wrong answers add up."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Rows that could be paired with the joints in several ways."""
+"""Test rows that may belong to several joints."""
 
 from collections.abc import Mapping
 
@@ -9,7 +9,7 @@ from tests.grading.support.submitting import graded_table, not_correct
 def test_a_row_of_zeros_may_have_a_missing_value(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """z3 and z4 point up, so that row e must turn the last frame over, but its α is 0."""
+    # z3 and z4 point up, so that row e must turn the last frame over, but its α is 0.
     report = graded_table(
         catalogue["rrrp-proximal"],
         [

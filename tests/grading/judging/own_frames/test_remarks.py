@@ -1,4 +1,4 @@
-"""Remarks on frames that are valid but differ from the reference's frames."""
+"""Test the remarks on valid but unusual frames."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""The rows of an answer are paired in order with the expected rows, with the best sum of scores."""
+"""Match the rows of an answer with the expected rows, in order."""
 
 import numpy as np
 import pytest

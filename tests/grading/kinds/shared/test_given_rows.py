@@ -1,4 +1,4 @@
-"""Rows that an exercise gives: they may be left out, earn nothing, and cannot be changed."""
+"""Rows that an exercise gives earn nothing and cannot be changed."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Matrices entry by entry: their shapes, unreadable entries, and messages on wrong entries."""
+"""Grade matrices entry by entry."""
 
 from collections.abc import Mapping
 
@@ -113,7 +113,7 @@ def test_a_whole_matrix_of_unreadable_entries_is_not_gradable(arm: Exercise) -> 
 
 
 def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
-    """The missing bottom row of a 3×4 matrix is reported; the other rows are graded."""
+    # The missing bottom row of a 3×4 matrix is reported; the other rows are graded.
     report = graded_pose(arm, POSE[:3])
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.MISSING]
     # The row has no content cell, so that it costs a fifth of a unit in each half.

@@ -1,4 +1,4 @@
-"""A correct table gets no diagnosis; grading a wrong sign runs code in few files only."""
+"""A correct table is graded without a search for misconceptions."""
 
 import sys
 from collections.abc import Mapping
@@ -18,7 +18,6 @@ RIGHT, WRONG_SIGN = 22, 62
 
 
 def files_of(exercise: Exercise, answer: Any, verdict: Verdict) -> set[str]:
-    """Return the files of the service whose functions run when an answer is graded again."""
     submission = Submission({"table": answer}, feedback=FeedbackLevel.HINTS)
     assert grade(exercise, submission).parts[0].verdict is verdict
     root, found = Path(service.__file__).parent, set[str]()

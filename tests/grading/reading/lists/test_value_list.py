@@ -1,4 +1,4 @@
-"""Lists of values in all shapes, and the messages on answers that are not lists."""
+"""Read lists of values in all shapes."""
 
 import pytest
 
@@ -104,7 +104,7 @@ def test_a_list_is_not_calculated(text: str, make_exercise: Make) -> None:
     ],
 )
 def test_products_may_be_written_with_blanks(text: str, make_exercise: Make) -> None:
-    """If only one reading has the expected number of values, this reading is used."""
+    # If only one reading has the expected number of values, this reading is used.
     vector = one_part(
         "vector",
         """components = [

@@ -1,4 +1,4 @@
-"""Matrices pasted as text: every format, prints of SymPy, wrong sizes."""
+"""Read matrices that are pasted as text."""
 
 from collections.abc import Mapping
 from functools import reduce
@@ -44,8 +44,9 @@ def test_each_format_gets_full_marks(name: str, arm: Exercise) -> None:
 
 
 def exact_pose(robot: Robot) -> Any:
-    """Return the product of the textbooks' link matrices (SHV eq. 3.10; Craig eq. 3.6)."""
+    """Return the exact pose of a robot."""
 
+    # The link matrices are those of the textbooks: SHV eq. 3.10, Craig eq. 3.6.
     def symbol(text: str) -> Any:
         name = text.removesuffix("*")
         return sp.Integer(0) if name == "0" else sp.Symbol(name)

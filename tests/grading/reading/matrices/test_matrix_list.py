@@ -1,4 +1,4 @@
-"""All link transforms of an arm in one text: their order, and unreadable matrices."""
+"""Read all link transforms of an arm from one text."""
 
 from collections.abc import Mapping
 
@@ -16,7 +16,7 @@ A2 = "[c2 -s2 0 a2*c2; s2 c2 0 a2*s2; 0 0 1 0; 0 0 0 1]"
 
 @pytest.fixture
 def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
-    """Return an arm with two revolute joints, whose tool frame is the frame of the second link."""
+    # Return an arm with two revolute joints, whose tool frame is the frame of the second link.
     return catalogue["planar-rr"]
 
 

@@ -1,4 +1,4 @@
-"""Names of matrices in textbooks and programs, and the links that these names mean."""
+"""Find the link that the name of a matrix means."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Screw axes as students write them: as rows, as columns, or ω and v separately."""
+"""Read screw axes as students write them."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -62,7 +62,7 @@ def rpr(catalogue: Mapping[str, Exercise]) -> Exercise:
 
 @pytest.mark.parametrize("header", ["ω | q", "q | ω", "v | s", "ω | ω"])
 def test_a_table_of_other_vectors_is_not_read(header: str, rpr: Exercise) -> None:
-    """A point on an axis is not read as v, and v is not read as ω."""
+    # A point on an axis is not read as v, and v is not read as ω.
     rows = "| (0,0,0) | (0,0,1) |\n| (1,0,0) | (0,0,0) |\n| (0,L1,0) | (0,0,1) |"
     report = part(handed_in(rpr, {PART: f"| {header} |\n|---|---|\n{rows}"}), PART)
     assert report.verdict is Verdict.UNREADABLE

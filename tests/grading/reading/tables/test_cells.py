@@ -1,4 +1,4 @@
-"""The cells of a table: its JSON shapes, and memoized rows."""
+"""Read the cells of a table."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -114,7 +114,7 @@ def test_labels_without_an_order_leave_the_rows_unchanged(labels: tuple[object, 
 
 
 def test_a_single_row_of_names_is_a_row() -> None:
-    """If a and d are declared lengths, the only row of a table may look like headers."""
+    # If a and d are declared lengths, the only row of a table may look like headers.
     assert canonical_table([["a", "alpha", "d", "theta"]]) == table([["a", "alpha", "d", "theta"]])
 
 
@@ -125,7 +125,7 @@ def test_too_many_rows_are_still_counted() -> None:
 
 
 def test_only_the_first_names_of_a_body_are_read(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Each name costs about ten microseconds, and a request may have tens of thousands of names."""
+    # Each name costs about ten microseconds, and a request may have tens of thousands of names.
     read: list[str] = []
     monkeypatch.setattr(reading_cells, "read_header", read.append)
     canonical_table([{f"α_{i}_{j}": 0 for j in range(200)} for i in range(50)])
@@ -133,7 +133,7 @@ def test_only_the_first_names_of_a_body_are_read(monkeypatch: pytest.MonkeyPatch
 
 
 def test_a_number_of_any_length_raises_nothing() -> None:
-    """Python raises an error if an integer of more than 4,300 digits is converted to text."""
+    # Python raises an error if an integer of more than 4,300 digits is converted to text.
     rows = [{"i": 10**5000, "a": 0, "alpha": 0, "d": 0, "theta": "q1"}]
     assert canonical_table(rows) == {"rows": [{"a": 0, "alpha": 0, "d": 0, "theta": "q1"}]}
 

@@ -1,4 +1,4 @@
-"""Comments of a program name the columns of a table, and their units."""
+"""Read column names and units from the comments of a script."""
 
 from collections.abc import Mapping
 
@@ -20,7 +20,6 @@ ROWS = "[q1 400 300 90; q2 0 0 0; q3 0 0 0]"
 
 @pytest.fixture
 def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
-    """Return an arm whose lengths are in metres."""
     return catalogue["rrrp"]
 
 

@@ -1,4 +1,4 @@
-"""Spellings of headers, and the columns and units that the headers mean."""
+"""Read the headers of table columns."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Units in the headers of a pasted table are converted if that is safe, else refused."""
+"""Convert or refuse the units in the headers of a pasted table."""
 
 from collections.abc import Callable, Mapping
 
@@ -170,7 +170,7 @@ def test_without_a_unit_the_submission_decides(arm: Exercise) -> None:
 
 
 def test_a_name_may_be_a_header_or_a_declared_length(make_exercise: Maker) -> None:
-    """The row a, alpha, d, q is a header even if all four are symbols; a, 0, d, q is not."""
+    # The row a, alpha, d, q is a header even if all four are symbols; a, 0, d, q is not.
     text = ARM.replace("UNIT", "m").replace("l1", "a").replace("l2", "d")
     exercise = make_exercise(text)
     plain = "0.25, 90deg, a, q1\nd, 0, 0, q2 - 90deg"

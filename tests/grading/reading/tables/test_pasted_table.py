@@ -1,4 +1,4 @@
-"""Each textbook's table, pasted in each format and spelling, gets full marks."""
+"""A textbook's table, pasted in any format, gets full marks."""
 
 from collections.abc import Callable, Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""The spellings of row labels: 1, Link 2, Glied 3, 0→1, e, TCP."""
+"""Read row labels such as 1, Link 2, 0→1 or TCP."""
 
 from service.grading.reading.tables.row_labels import LAST, label_place
 from tests.together import together

@@ -1,4 +1,4 @@
-"""Empty cells and dashes in a table, and tables with a row for each parameter."""
+"""Read tables with empty cells and dashes."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -38,7 +38,6 @@ def graded(exercise: Exercise, answer: object) -> PartReport:
 
 
 def as_zero(exercise: Exercise) -> Exercise:
-    """Return the exercise, changed so that empty cells count as 0."""
     parts = tuple(
         each.model_copy(update={"empty_cells": "zero"}) if isinstance(each, DhTableSpec) else each
         for each in exercise.parts
@@ -136,7 +135,7 @@ def test_lists_of_other_shapes_are_not_tables(
 def test_only_the_first_row_of_a_long_table_is_read_twice(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The first row is read twice, because it might be a row of headers."""
+    # The first row is read twice, because it might be a row of headers.
     exercise = catalogue["planar-rrr"]
     for cell, rows in (("q1", 3), ("q1" + "+0" * 60, 2)):
         reader = Reader.of(exercise, draw(exercise, cell), "degrees")

@@ -1,4 +1,4 @@
-"""A row of units below the headers belongs to the headers."""
+"""Read a row of units below the column headers."""
 
 import pytest
 

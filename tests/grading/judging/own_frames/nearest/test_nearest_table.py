@@ -9,7 +9,7 @@ from tests.grading.support.submitting import graded_table, not_correct
 def test_a_table_in_the_other_convention_is_judged_by_the_intended_one(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The answer has modified rows, with z2 reversed; the exercise expects standard rows."""
+    # The answer has modified rows, with z2 reversed; the exercise expects standard rows.
     report = graded_table(
         catalogue["stanford-arm"],
         [

@@ -1,7 +1,6 @@
-"""One slip with each choice of free base, tool and directions: only its own cell is wrong.
+"""If one cell of a table is wrong, only this cell is marked wrong."""
 
-The robot's axes are skew, so that no other cell can repair the table.
-"""
+# The robot's axes are skew, so that no other cell can repair the table.
 
 from itertools import product
 
@@ -84,7 +83,7 @@ def test_a_wrong_variable_is_found_if_its_constant_is_right(make_exercise: Make,
 
 
 def test_only_the_variable_is_wrong_if_any_constant_is_valid(make_exercise: Make) -> None:
-    """If the base is free, any constant in row 1 is valid, so the student's constant is kept."""
+    # If the base is free, any constant in row 1 is valid, so the student's constant is kept.
     exercise = make_exercise(policy("free", "free", "given"))
     rows = [dict(zip(COLUMNS, row, strict=True)) for row in TURNED_OVER]
     rows[0]["theta"] = "-theta1 + 23deg"
@@ -108,7 +107,7 @@ def test_a_table_with_a_number_out_of_bounds_is_not_repaired(
 
 
 def test_one_cell_is_wrong_between_moved_prismatic_axes(make_exercise: Make) -> None:
-    """The two prismatic axes were moved, so that a search cannot find their intended places."""
+    # The two prismatic axes were moved, so that a search cannot find their intended places.
     exercise = make_exercise(policy("free", "given", "given", PARALLEL, "modified"))
     table = [
         ("-0.44", "0", "1.06", "q1 + 1.29984947646"),

@@ -1,9 +1,8 @@
-"""One slip that could be repaired in several cells: the likeliest cell is wrong.
+"""If a slip can be repaired in several cells, the likeliest cell is marked wrong."""
 
-The first three axes of the RRRP arm are parallel, and z3 and z4 point down. Therefore the pose
-contains only the sum d1 + d2 − d3 − d4 = l1 − l4 − q4 (Robotic Fundamentals, Forward Kinematics,
-Example 2).
-"""
+# The first three axes of the RRRP arm are parallel, and z3 and z4 point down. Therefore the pose
+# contains only the sum d1 + d2 − d3 − d4 = l1 − l4 − q4 (Robotic Fundamentals, Forward Kinematics,
+# Example 2).
 
 from collections.abc import Mapping
 

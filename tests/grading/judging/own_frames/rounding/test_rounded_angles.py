@@ -1,4 +1,4 @@
-"""In frames of the student's own choice, rounded angles are read as the exact angles."""
+"""Rounded angles are read as the exact angles."""
 
 from collections.abc import Mapping
 
@@ -33,7 +33,7 @@ def test_rounded_angles_are_right_in_frames_of_the_student(
 
 
 def test_a_decimal_beside_a_round_angle_may_be_intended(catalogue: Mapping[str, Exercise]) -> None:
-    """x3 is turned about z3 by nearly 120°, and a later row turns it back."""
+    # x3 is turned about z3 by nearly 120°, and a later row turns it back.
     rows = [[text.format(quarter="pi/2", half="pi") for text in row] for row in TURNED_OVER]
     rows[2][3] = "-2.09559209845"
     rows[3][3] = "theta4 - 2.09559209845"
