@@ -87,7 +87,7 @@ def npx(folder: Path, package: str, *command: str) -> str:
 
 
 def lint(folder: Path) -> None:
-    """Check the document with the recommended rules of redocly; exit if there is a warning."""
+    """Check the document with redocly; exit if there is a warning."""
     found = json.loads(
         npx(folder, "@redocly/cli@2", "redocly", "lint", "--format=json", "openapi.json")
     )
@@ -96,7 +96,7 @@ def lint(folder: Path) -> None:
 
 
 def typescript(folder: Path) -> None:
-    """Generate types for TypeScript, and type-check a program that uses these types."""
+    """Generate TypeScript types, and type-check a program that uses them."""
     npx(folder, "openapi-typescript@7", "openapi-typescript", "openapi.json", "-o", "schema.d.ts")
     (folder / "client.ts").write_text(_TYPESCRIPT, encoding="utf-8")
     npx(folder, "typescript@5", "tsc", "--strict", "--target", "es2022", "--noEmit", "client.ts")
@@ -119,7 +119,6 @@ def python(folder: Path) -> None:
 
 
 def main() -> None:
-    """Lint the document and try both clients."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "openapi.json").write_text(json.dumps(app.openapi()), encoding="utf-8")

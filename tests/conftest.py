@@ -1,4 +1,4 @@
-"""Fixtures for all tests: the shipped exercises, exercises for single tests, and a server."""
+"""Fixtures for all tests: exercises, and a server."""
 
 import gc
 import os
@@ -46,7 +46,7 @@ FIGURE = "figure"
 
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_auto_num_workers() -> int:
-    """Return the number of processes: one more than the cores, because many tests only wait."""
+    # Return the number of processes: one more than the cores, because many tests only wait.
     return (os.cpu_count() or 1) + 1
 
 
@@ -56,11 +56,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark test cases outside of a sample as long; shuffle all tests if ``--shuffle`` is given.
-
-    In a test with the marker ``sampled(n)``, every n-th case is in the sample. All processes use
-    the same order of tests.
-    """
+    """Mark most cases of sampled tests as long; shuffle all tests with ``--shuffle``."""
+    # In a test with the marker `sampled(n)`, every n-th case is in the sample. All processes use
+    # the same order of tests.
     places: Counter[str] = Counter()
     for item in items:
         if (sampled := item.get_closest_marker("sampled")) is not None:
@@ -74,7 +72,7 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 
 @pytest.hookimpl(wrapper=True)
 def pytest_collection() -> Generator[None, object, object]:
-    """Exclude the collected tests from garbage collection, because they live until the end."""
+    # Exclude the collected tests from garbage collection, because they live until the end.
     gc.disable()
     try:
         return (yield)
@@ -90,7 +88,7 @@ def figure(record_property: Callable[[str, object], None]) -> Callable[[str], No
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Print the measured figures of all processes. The test reports contain these figures."""
+    """Print the measured figures of all processes."""
     figures = [
         str(value)
         for reports in terminalreporter.stats.values()
@@ -113,17 +111,15 @@ def catalogue() -> Mapping[str, Exercise]:
 
 @pytest.fixture(scope="session")
 def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    """A server process with default settings, for tests that neither end it nor make it busy."""
+    """A server process with default settings, which tests share."""
     with served(tmp_path_factory.mktemp("server")) as server:
         yield server
 
 
 @pytest.fixture(scope="session")
 def given_frames(catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
-    """The shipped exercises, reduced to their table and their pose.
-
-    All frames are given, so exactly one table is correct.
-    """
+    """The shipped exercises, reduced to their table and their pose."""
+    # All frames are given, so exactly one table is correct.
     given = {"frames": "given", "base": "given", "tool": "given", "directions": "given"}
     return {
         name: replace(

@@ -1,4 +1,4 @@
-"""Services with keys and a database, shared by all tests: building one takes longer than a test."""
+"""Share services with keys and a database between tests, because building one is slow."""
 
 from collections.abc import Callable
 from typing import Any
@@ -18,7 +18,7 @@ Build = Callable[[AttemptStore, KeyRing], Any]
 
 
 class KeptServices:
-    """An application, its store and its keys for each kind of database and each catalogue."""
+    """Services that tests share: one for each kind of database and each catalogue."""
 
     def __init__(self, request: pytest.FixtureRequest, folders: pytest.TempPathFactory) -> None:
         self._request, self._folders = request, folders
@@ -27,11 +27,9 @@ class KeptServices:
     def empty(
         self, kind: str, catalogue: object, build: Build
     ) -> tuple[Any, AttemptStore, KeyRing]:
-        """Return the application, store and keys for this kind and catalogue, with empty tables.
-
-        The application must keep the catalogue alive, because Python's id of the catalogue is used
-        to find the application again.
-        """
+        """Return the application, store and keys of a service with empty tables."""
+        # The application must keep the catalogue alive, because Python's id of the catalogue is
+        # used to find the application again.
         place = kind, id(catalogue)
         if place not in self._built:
             store = AttemptStore.open(self._url(kind))

@@ -1,4 +1,4 @@
-"""The address of a request decides which client the request counts for."""
+"""Find the client to which a request belongs, from the address of the request."""
 
 import pytest
 

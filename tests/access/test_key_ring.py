@@ -1,4 +1,4 @@
-"""Memoized keys, their lifetime, and failures of the database."""
+"""Test memoized API keys: their lifetime, and failures of the database."""
 
 import asyncio
 import threading
@@ -135,8 +135,6 @@ def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:
 
 
 def flooded(ring: KeyRing, invented: int, *keys: str) -> list[Caller]:
-    """Look up ``keys`` among invented keys; return the callers of ``keys``."""
-
     async def flood() -> list[BaseException | Caller]:
         before, after = ((new_key_text() for _ in range(invented // 2)) for _ in range(2))
         asked = map(ring.caller, (*before, *keys, *after))

@@ -34,8 +34,6 @@ def store(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[str]:
 
 
 def waits(rates: Rates, *callers: tuple[Caller, str]) -> list[bool]:
-    """Return, for each request in order, whether it has to wait."""
-
     async def ask() -> list[bool]:
         return [await rates.seconds_to_wait(*each) > 0 for each in callers]
 

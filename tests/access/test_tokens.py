@@ -1,4 +1,4 @@
-"""Tokens with valid signatures and any content are read, or refused with a reason."""
+"""Accept or refuse signed tokens, whatever they contain."""
 
 import base64
 import hmac
@@ -55,7 +55,6 @@ def text(value: object) -> bytes:
 
 
 def with_raw(fields: Mapping[str, Any], name: str, raw: bytes) -> bytes:
-    """The fields as JSON, with ``raw`` as the value of one field."""
     return text({**fields, name: "@@"}).replace(b'"@@"', raw)
 
 

@@ -11,7 +11,7 @@ from service.catalogue import Exercise
 
 
 class InProcess(httpx.BaseTransport):
-    """Let a plain httpx.Client call an app. An exception in the app becomes a 500."""
+    """Connects an httpx.Client to an app in this process."""
 
     def __init__(self, app: FastAPI) -> None:
         self._inner = httpx.ASGITransport(app, raise_app_exceptions=False)
@@ -41,5 +41,4 @@ def client(app: FastAPI) -> Iterator[httpx.Client]:
 
 @pytest.fixture
 def client_of() -> Any:
-    """Return a function that makes a client of an app."""
     return lambda app: httpx.Client(transport=InProcess(app), base_url="http://service")

@@ -15,7 +15,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
-    """Wait until the server prints its port; only the test's own timeout limits the wait."""
+    """Wait until the server prints its port, and return the port."""
     while True:
         text = log.read_text(encoding="utf-8")
         if found := re.search(r"running on http://127\.0\.0\.1:(\d+)", text):
@@ -29,7 +29,7 @@ def announced_port(process: subprocess.Popen[bytes], log: Path) -> int:
 
 @dataclass(frozen=True)
 class Served:
-    """A process that serves."""
+    """A running server process."""
 
     process: subprocess.Popen[bytes]
     log: Path
@@ -42,10 +42,8 @@ class Served:
 
 @contextmanager
 def served(folder: Path, *, module: str = "service", **environment: str) -> Iterator[Served]:
-    """Run a real process, `python -m service serve`, that logs into a folder.
-
-    Another ``module`` may start the service with a change.
-    """
+    """Run a real process, `python -m service serve`, with its log in a folder."""
+    # Another `module` may start the service with a change.
     log = folder / "log"
     command = [sys.executable, "-m", module, "serve"]
     usual = {"NO_COLOR": "1", "DH_GRADER_PORT": "0"}

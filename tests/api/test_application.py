@@ -1,4 +1,4 @@
-"""The application as a whole, apart from its routes."""
+"""Test the application as a whole, apart from its routes."""
 
 import asyncio
 import gc
@@ -7,8 +7,7 @@ from service.api.application import application
 
 
 def test_garbage_is_collected_while_it_serves() -> None:
-    """This also holds if the process started with the collector off."""
-
+    # This also holds if the process started with the collector off.
     async def serve() -> None:
         app = application({})
         async with app.router.lifespan_context(app):

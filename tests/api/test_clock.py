@@ -1,4 +1,4 @@
-"""The clock jumps by hours in both directions: nothing is lost, doubled or blocked for long."""
+"""If the clock jumps by hours, the service loses no attempt and blocks nobody for long."""
 
 import asyncio
 import csv
@@ -44,7 +44,6 @@ class Clock:
 
 @pytest.fixture
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    """Replace the clock of each module of the service and of its libraries."""
     clock, real_time = Clock(), time.time
     # The module is imported with the first token.
     importlib.import_module("service.access.tokens")
@@ -63,7 +62,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
 
 
 class Term:
-    """A service with a key, called at moments between which the clock jumps."""
+    """A service with an API key, for tests in which the clock jumps."""
 
     def __init__(self, store: AttemptStore, clock: Clock, scara: Exercise, **rules: Any) -> None:
         now = datetime.now(UTC)

@@ -1,4 +1,4 @@
-"""POST /v1/grade: many submissions in one request, each graded as if it were sent alone."""
+"""POST /v1/grade grades many submissions in one request, each independently."""
 
 import asyncio
 import json
@@ -126,7 +126,7 @@ def test_too_many_submissions_are_told_how_many_there_may_be(client: httpx.Clien
 
 
 def test_the_bound_lets_a_full_request_through(client: httpx.Client) -> None:
-    """The request has all answers to the exercise with seven joints, as often as is allowed."""
+    # The request has all answers to the exercise with seven joints, as often as is allowed.
     rows = [dict.fromkeys(("a", "alpha", "d", "theta"), "2*L1 + 90deg")] * 8
     matrix = [["cos(theta1)*sin(theta2)"] * 4] * 4
     answers = {"table": {"rows": rows}, "home": matrix, "pose": matrix, "wrist": ["L1"] * 3}

@@ -1,4 +1,4 @@
-"""The pages on HTTP and on frame choice print the service's real answers."""
+"""The docs pages on HTTP and on frame choice show the service's real responses."""
 
 import json
 import re

@@ -46,7 +46,6 @@ def title(client: httpx.Client) -> str:
 
 
 def until(client: httpx.Client, expected: str) -> None:
-    """Ask until the title is ``expected``; only the test's own timeout limits the wait."""
     while title(client) != expected:
         time.sleep(0.05)
 

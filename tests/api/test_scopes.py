@@ -1,4 +1,4 @@
-"""Every route answers each kind of caller as tests/api/permissions/statuses.txt says."""
+"""Each route gives each kind of caller the expected status."""
 
 import asyncio
 import gzip
@@ -134,10 +134,7 @@ _number = count()
 
 @dataclass(frozen=True)
 class Guarded:
-    """A service with keys; ``credentials`` has the callers of each column of the statuses.
-
-    ``open_app`` is the same service without keys.
-    """
+    """A service with keys, and the same service without keys (``open_app``)."""
 
     app: FastAPI
     open_app: FastAPI
@@ -148,7 +145,6 @@ class Guarded:
     names: dict[str, str]
 
     def filled(self, route: str) -> str:
-        """Return a route with real names in place of its parameters."""
         for place, name in self.names.items():
             for written in (f"{{{place}}}", f"{{{place}:path}}"):
                 route = name if place == route else route.replace(written, name)
@@ -168,7 +164,6 @@ class Guarded:
     async def send(
         self, client: httpx.AsyncClient, route: str, language: str = "en"
     ) -> httpx.Response:
-        """Send a request that the route accepts from a caller with the required right."""
         for file in self.editor_dir.iterdir():
             file.unlink()
         new = {"id": f"new-{next(_number)}"} if route in MAKING else {}
@@ -209,7 +204,6 @@ def guarded(
         return text, made.id
 
     def link(course: str, *, renew: bool = False) -> str:
-        """Return the key in ada's link to a course."""
         wanted = LinksRequest(learners=["ada"], renew=renew)
         [made] = in_transaction(
             store.engine, lambda it: issue_links(it, course, wanted, SECRET, HERE, NOW)
@@ -301,7 +295,6 @@ def guarded(
 
 
 def _add_course(course: str, connection: Connection) -> None:
-    """Add a course with the learner ada and an assignment."""
     new = NewCourse(id=course, title="Robots", zone="Europe/Berlin")
     roll.add_course(connection, new, NOW)
     people = [NewLearner(learner="ada", name="Ada"), NewLearner(learner="grace", name="Grace")]
@@ -319,7 +312,7 @@ def routes_of(app: FastAPI) -> set[str]:
 
 
 def expected() -> dict[str, dict[str, int]]:
-    """Return the status of each route for each kind of caller."""
+    """Return the expected status of each route for each kind of caller."""
     head, *lines = STATUSES.read_text(encoding="utf-8").splitlines()
     _, *headings = re.split(" {2,}", head)
     rows = [re.split(" {2,}", line) for line in lines]
@@ -355,8 +348,6 @@ def test_every_route_answers_each_caller_as_expected(guarded: Guarded) -> None:
 
 
 def _strangers(guarded: Guarded) -> dict[str, str]:
-    """Return credentials of callers who must learn nothing about zora in the course robots."""
-
     def made(connection: Connection) -> dict[str, str]:
         found = {}
         for heading, scopes in (("record", [Scope.RECORD, Scope.GRADE]), ("all", list(Scope))):
@@ -380,7 +371,6 @@ def _strangers(guarded: Guarded) -> dict[str, str]:
 
 
 def _state(store: AttemptStore) -> list[Any]:
-    """Return all rows of the course robots, its attempts and its keys, as they are now."""
     wanted = (
         select(courses).where(courses.c.id == "robots"),
         select(course_learners).where(course_learners.c.course == "robots"),
@@ -395,7 +385,6 @@ def _state(store: AttemptStore) -> list[Any]:
 
 
 async def _told(guarded: Guarded, credential: str, mark: str) -> list[str]:
-    """Return the routes whose responses to a caller contain the text ``mark``."""
     found = []
     # That route grades files of the request itself.
     routes = sorted(RIGHTS.keys() - {"POST /tutor/class"})

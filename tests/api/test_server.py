@@ -1,4 +1,4 @@
-"""The real process, `python -m service serve`, on a free port."""
+"""Test the real process, `python -m service serve`, on a free port."""
 
 import json
 import os
@@ -73,7 +73,7 @@ def test_twenty_megabytes_are_refused_while_they_are_still_coming(
 
 
 def receive(connection: socket.socket) -> bytes:
-    """Return the bytes that have arrived, or none if the server has closed the connection."""
+    """Return the bytes that have arrived; none if the server has closed the connection."""
     try:
         return connection.recv(65536)
     except ConnectionResetError:

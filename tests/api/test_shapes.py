@@ -1,4 +1,4 @@
-"""The shape of an answer, which a student sees before answering."""
+"""The service describes the shape of each answer, such as 4 × 4."""
 
 from typing import Any
 

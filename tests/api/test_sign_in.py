@@ -1,4 +1,4 @@
-"""Tutors sign in with their key: the cookie, its limits, and the way back."""
+"""Tutors sign in with their API key and get a cookie."""
 
 import asyncio
 from collections.abc import Iterator, Mapping

@@ -1,4 +1,4 @@
-"""Variants over HTTP: the id ``<exercise>~<seed>`` in all routes, and refusals."""
+"""All routes accept the id of an exercise's variant, ``<exercise>~<seed>``."""
 
 from typing import Any
 

@@ -1,9 +1,11 @@
 """`python -m tests.attack`: attack a real process while honest clients use it.
 
-Exit with 1 if an honest client gets no response, if costly requests make the 99th percentile of the
-waiting times more than five times as long as in a quiet run, if the memory grows by more than
-100 MB, if a health check takes 0.3 s, or if the process does not end within ten seconds.
+Print the waiting times of honest clients. Exit with 1 if a limit is missed.
 """
+
+# Exit with 1 if an honest client gets no response, if costly requests make the 99th percentile of
+# the waiting times more than five times as long as in a quiet run, if the memory grows by more than
+# 100 MB, if a health check takes 0.3 s, or if the process does not end within ten seconds.
 
 import argparse
 import sys
@@ -46,19 +48,17 @@ HONEST_ADDRESS = "127.0.0.2"
 
 @dataclass(frozen=True)
 class Attack:
-    """An attack: a flood of requests, while honest clients pause between their requests.
+    """A flood of requests to the service."""
 
-    If ``compared`` is true, the waiting times of honest clients must not be much longer than
-    without the flood.
-    """
-
+    # If `compared` is true, the waiting times of honest clients must not be much longer than
+    # without the flood.
     flood: Flood
     pause: float = 0.0
     compared: bool = False
 
 
 def attacks(scale: float) -> dict[str, Attack]:
-    """Return the attacks by name, with their sizes multiplied by ``scale``."""
+    """Return the attacks by name; ``scale`` multiplies their sizes."""
     header = b"Cookie: " + b"x" * 50 + b"\r\n"
     floods = {
         "8,000 half heads": half_open(int(8000 * scale)),
@@ -96,7 +96,7 @@ def attacks(scale: float) -> dict[str, Attack]:
 
 
 def attack(seconds: float, scale: float, only: str = "") -> list[str]:
-    """Run the attacks one after the other and print times; return a line for each missed limit."""
+    """Run the attacks one after the other; return a line for each missed limit."""
     broken: list[str] = []
     with tempfile.TemporaryDirectory() as folder, ExitStack() as opened:
         running = opened.enter_context(service(Path(folder)))
@@ -139,7 +139,6 @@ def attack(seconds: float, scale: float, only: str = "") -> list[str]:
 
 
 def _without(running: Service, pause: float, seconds: float) -> Waits:
-    """Return the waiting times of honest submissions while nothing attacks the service."""
     with watched(running, pause, HONEST_ADDRESS) as (submissions, health):
         time.sleep(seconds)
     _print(f"nothing, pauses of {pause} s", submissions, health)
@@ -165,7 +164,6 @@ def _longer(submissions: Waits, quiet: Waits) -> Iterator[str]:
 
 
 def main() -> int:
-    """Run all attacks, or those whose names contain a word; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--seconds", type=float, default=25.0, help="for each attack")
     parser.add_argument(

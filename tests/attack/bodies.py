@@ -1,4 +1,4 @@
-"""Generate requests: the model answers of all exercises, changed at random."""
+"""Generate requests: model answers of all exercises, with random changes."""
 
 import json
 from collections.abc import Callable, Mapping
@@ -61,7 +61,6 @@ def drawn_model(random: Random) -> Model:
 
 
 def model_of(exercise: Exercise) -> Model:
-    """Return an exercise with its model answers."""
     return Model(exercise, {part.part: part.answer for part in solved(exercise).parts})
 
 
@@ -71,7 +70,6 @@ def _texts() -> list[str]:
 
 
 def rows_of(answer: Any) -> list[list[str]] | None:
-    """Return a table or a matrix as rows of texts, and None for any other answer."""
     if isinstance(answer, dict) and isinstance(answer.get("rows"), list):
         rows = answer["rows"]
         if all(isinstance(row, dict) for row in rows):
@@ -88,7 +86,6 @@ def _typed(value: Any) -> str:
 
 
 def pasted(rows: list[list[str]], random: Random) -> str:
-    """Return rows as one text in a random format, perhaps with headers."""
     width = max(map(len, rows), default=0) or 1
     rows = [[*row, *["0"] * (width - len(row))] for row in rows] or [["0"]]
     if random.random() < 0.4:
@@ -101,7 +98,6 @@ def pasted(rows: list[list[str]], random: Random) -> str:
 
 
 def _entry(value: Any, random: Random) -> Any:
-    """Return a random replacement for a value."""
     kind = random.random()
     if kind < 0.1:
         return random.choice(VALUES)
@@ -115,10 +111,6 @@ def _entry(value: Any, random: Random) -> Any:
 
 
 def spoiled(value: Any, random: Random, share: float) -> Any:
-    """Return the value with random changes: about this share of its texts gets replaced.
-
-    Sometimes a list also loses or gains an item, or its order changes.
-    """
     if isinstance(value, dict):
         return {key: spoiled(each, random, share) for key, each in value.items()}
     if not isinstance(value, list):
@@ -139,7 +131,6 @@ def spoiled(value: Any, random: Random, share: float) -> Any:
 
 
 def answers_of(model: Model, random: Random) -> dict[str, Any]:
-    """Return randomly changed answers to some parts of an exercise."""
     answers: dict[str, Any] = {}
     share = random.choice((0.0, 0.02, 0.1, 0.1, 0.5, 1.0))
     for part, answer in model.answers.items():
@@ -155,7 +146,8 @@ def answers_of(model: Model, random: Random) -> dict[str, Any]:
 
 
 def submission(random: Random, number: int | None = None) -> Post:
-    """Return a request with random answers. A new ``number`` gives texts that no cache contains."""
+    """Return a request with random answers."""
+    # A new `number` gives texts that no cache contains.
     model = drawn_model(random)
     body: dict[str, Any] = {"answers": answers_of(model, random)}
     if random.random() < 0.3:
@@ -173,7 +165,6 @@ def submission(random: Random, number: int | None = None) -> Post:
 
 
 def _make_unique(answers: dict[str, Any], number: int) -> None:
-    """Append ``+ 0*number`` to one text in each answer that is a list or a table."""
     for part, answer in answers.items():
         if isinstance(answer, str):
             continue
@@ -181,7 +172,6 @@ def _make_unique(answers: dict[str, Any], number: int) -> None:
 
 
 def _with_zero(value: Any, number: int) -> tuple[Any, bool]:
-    """Return the value with ``+ 0*number`` in its first text, and True if the value has a text."""
     if isinstance(value, str) and value.strip():
         return f"{value} + 0*{number}", True
     if isinstance(value, dict | list):
@@ -196,7 +186,6 @@ def _with_zero(value: Any, number: int) -> tuple[Any, bool]:
 
 
 def preview(random: Random, number: int | None = None) -> Post:
-    """Return a random request for a preview, with or without an exercise and a part."""
     model = drawn_model(random)
     part = random.choice(list(model.answers))
     rows = rows_of(spoiled(model.answers[part], random, 0.2))
@@ -218,7 +207,6 @@ def preview(random: Random, number: int | None = None) -> Post:
 
 
 def _encoded(body: Any, random: Random) -> bytes:
-    """Return the body as JSON, sometimes with random bytes in it."""
     data = bytearray(
         json.dumps(body, ensure_ascii=random.random() < 0.5).encode("utf-8", "replace")
     )

@@ -25,7 +25,7 @@ Flood = Callable[[Service, ExitStack, float], str]
 
 
 def half_open(heads: int) -> Flood:
-    """Return a flood of ``heads`` connections that send only half of the headers of a request."""
+    """Return a flood of connections that send incomplete headers."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         lines = [opened.enter_context(running.connect(HEAD, SOURCE)) for _ in range(heads)]
@@ -37,7 +37,7 @@ def half_open(heads: int) -> Flood:
 
 
 def half_bodies(bodies: int) -> Flood:
-    """Return a flood of ``bodies`` connections that send a large body, but not its end."""
+    """Return a flood of connections that never finish their large body."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = HEAD + b"Content-Length: 260000\r\n\r\n" + b" " * 250_000
@@ -54,7 +54,7 @@ def half_bodies(bodies: int) -> Flood:
 
 
 def endless(begin: bytes, piece: bytes) -> Flood:
-    """Return a flood that sends ``begin``, then ``piece`` again and again."""
+    """Return a flood of connections that send ``begin``, then ``piece`` again and again."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = tries = 0
@@ -70,7 +70,7 @@ def endless(begin: bytes, piece: bytes) -> Flood:
 
 
 def dripping(lines: int) -> Flood:
-    """Return a flood of ``lines`` connections that send a body slowly, one byte each second."""
+    """Return a flood of connections that send one byte of a body each second."""
 
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         sent = HEAD + b"Content-Length: 1000\r\n\r\n"
@@ -89,7 +89,8 @@ def dripping(lines: int) -> Flood:
 
 
 def costly_answers(number: int) -> dict[str, Any]:
-    """Return the costliest answers that a submission may have. Each number gives other texts."""
+    """Return the costliest answers that a submission may have."""
+    # Each number gives other texts.
     return {"answers": {"links": links_of("c12 " * 33, number)}}
 
 
@@ -114,7 +115,6 @@ _NAMES: Final = ("exercise", "part", "angle_unit", "quantity", "structure", "fig
 
 
 def _spelled(value: Any, number: int) -> Any:
-    """Return the body with blanks appended to each text, so that no cache contains the texts."""
     match value:
         case dict():
             return {
@@ -139,7 +139,6 @@ KINDS: Final = {
 
 
 def of_kind(kind: str) -> Callable[[int], bytes]:
-    """Return a function that makes a costly request of this kind, different for each number."""
     path, known = KINDS[kind]
 
     def numbered(number: int) -> bytes:
@@ -149,12 +148,10 @@ def of_kind(kind: str) -> Callable[[int], bytes]:
 
 
 def from_one_address(_: int) -> str:
-    """Return the address of the attacker, which is the same for all connections."""
     return SOURCE
 
 
 def from_addresses(number: int) -> str:
-    """Return a different address of the attacker for each number of a connection."""
     return f"127.0.3.{number + 1}"
 
 
@@ -164,11 +161,9 @@ def costly(
     *,
     again: bool = True,
 ) -> Flood:
-    """Return a flood on 16 connections. Each sends a costly request, waits, and sends the next one.
+    """Return a flood of costly requests on 16 connections."""
 
-    If ``again`` is false, each request opens a new connection.
-    """
-
+    # If `again` is false, each request opens a new connection.
     def flood(running: Service, opened: ExitStack, until: float) -> str:
         numbers, lock, answered = itertools.count(), threading.Lock(), itertools.count()
 
@@ -197,7 +192,6 @@ def costly(
 
 
 def _answer(line: socket.socket, until: float) -> bool:
-    """Read one response; return False if the connection closes first or the time is over."""
     received = b""
     while time.monotonic() < until:
         with suppress(TimeoutError):

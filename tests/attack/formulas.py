@@ -1,10 +1,9 @@
-"""Draw random formulas as trees and evaluate them, without any code of the program.
+"""Draw random formulas as trees, and evaluate them without the tested code."""
 
-    Number 0.5 | Ratio 1/2 | Turn 90 (degrees) | Name q1
-    Sum of signed terms | Product of factors | Quotient | Power (an integer exponent) | Call
-
-The argument of sin, cos and tan is a sum of angle names, multiples of these names, and constants.
-"""
+#     Number 0.5 | Ratio 1/2 | Turn 90 (degrees) | Name q1
+#     Sum of signed terms | Product of factors | Quotient | Power (an integer exponent) | Call
+#
+# The argument of sin, cos and tan is a sum of angle names, multiples of these names, and constants.
 
 import math
 from collections.abc import Mapping
@@ -38,19 +37,19 @@ class Ratio(NamedTuple):
 
 
 class Turn(NamedTuple):
-    """A constant angle in whole degrees, positive."""
+    """A positive constant angle in whole degrees."""
 
     degrees: int
 
 
 class Name(NamedTuple):
-    """A symbol: q1 … q6, or one of the others."""
+    """A symbol, such as q1."""
 
     name: str
 
 
 class Sum(NamedTuple):
-    """A sum of signed terms: two or more terms, or one negative term."""
+    """A sum of signed terms."""
 
     terms: "tuple[tuple[int, Tree], ...]"
 
@@ -91,7 +90,6 @@ _FUNCTIONS: Final = {
 
 
 def evaluated(tree: Tree, values: Mapping[str, Values]) -> Values:
-    """Return the values of a formula at each sample, of shape (samples,)."""
     with np.errstate(all="ignore"):
         return np.asarray(_evaluated(tree, values), dtype=float)
 
@@ -126,7 +124,7 @@ def _constant(tree: Number | Ratio | Turn) -> float:
 
 
 def numbers(random: Random, samples: int = 7) -> dict[str, Values]:
-    """Return random values of shape (samples,) for each symbol."""
+    """Return ``samples`` random values for each symbol."""
     return {name: np.array([random.uniform(0.25, 1.25) for _ in range(samples)]) for name in NAMES}
 
 
@@ -212,7 +210,6 @@ def product(random: Random, depth: int) -> Tree:
 
 
 def formula(random: Random, depth: int = 2) -> Tree:
-    """Return a random formula, often one that looks like forward kinematics."""
     count = random.choice((1, 1, 1, 2, 2, 3, 4))
     terms = tuple((random.choice((1, 1, 1, -1)), product(random, depth)) for _ in range(count))
     return terms[0][1] if count == 1 and terms[0][0] == 1 else Sum(terms)

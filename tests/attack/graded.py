@@ -1,4 +1,4 @@
-"""Write an answer in many notations, and check that all get the same verdicts and points."""
+"""Write an answer in many notations, and check that all get the same points."""
 
 import json
 import re
@@ -62,7 +62,6 @@ _TERM: Final = re.compile(r"\s*([+-]?)\s*([A-Za-z][A-Za-z_]*\d?|\d+deg|[\d.]+)")
 
 
 def exercise_of(trees: Sequence[Sequence[Tree]]) -> Exercise:
-    """Return an exercise whose correct answer is this matrix."""
     plain = Writer(PLAIN, Random(0))
     # A list of texts is written in TOML as in JSON.
     rows = json.dumps([[plain.write(each) for each in row] for row in trees])
@@ -74,19 +73,16 @@ def exercise_of(trees: Sequence[Sequence[Tree]]) -> Exercise:
 
 
 def _signature(report: PartReport) -> tuple[object, ...]:
-    """Return the verdicts and points of a report."""
     cells = [[cell.verdict.value for cell in row.cells] for row in report.rows]
     return report.verdict.value, report.points, [row.points for row in report.rows], cells
 
 
 def _refused(report: PartReport) -> bool:
-    """True if some cell could not be read or is missing."""
     verdicts = {cell.verdict for row in report.rows for cell in row.cells}
     return bool({Verdict.UNREADABLE, Verdict.MISSING} & (verdicts | {report.verdict}))
 
 
 def _spoiled(random: Random, trees: Trees) -> tuple[Trees, tuple[int, int]] | None:
-    """Change a random sign. Return the matrix and the changed cell; None if no value changes."""
     i, j = random.randrange(len(trees)), random.randrange(len(trees[0]))
     changed = changed_sign(random, trees[i][j])
     values = numbers(random)
@@ -99,7 +95,6 @@ def _spoiled(random: Random, trees: Trees) -> tuple[Trees, tuple[int, int]] | No
 
 
 def _is_tame(tree: Tree) -> bool:
-    """True if the value is a moderate number for all values of joints and lengths."""
     match tree:
         case Sum(terms):
             return all(_is_tame(term) for _, term in terms)
@@ -121,7 +116,6 @@ def _drawn(random: Random) -> Tree:
 
 
 def matrices(random: Random, suited: Suited) -> Iterator[Outcome]:
-    """Submit a correct matrix and one with a wrong sign in some formats; yield the outcomes."""
     trees = [[_drawn(random) for _ in range(3)] for _ in range(random.randint(2, 3))]
     exercise = exercise_of(trees)
     spoiled = _spoiled(random, trees)
@@ -168,7 +162,6 @@ def _reasons(report: PartReport) -> set[str]:
 
 
 def _tree(text: str) -> Tree | None:
-    """Parse a table cell; return None if it is not a sum of names, numbers and angles."""
     terms: list[tuple[int, Tree]] = []
     at = 0
     for match in _TERM.finditer(text):
@@ -186,7 +179,6 @@ def _tree(text: str) -> Tree | None:
 
 @memoized_by_exercise
 def _trees_of(exercise: Exercise) -> Trees | None:
-    """Parse the correct table; return None if ``_tree`` cannot read it or it contains q1, q2, …"""
     rows = model_of(exercise).answers["table"]["rows"]
     trees = [[_tree(str(row[column])) for column in COLUMNS] for row in rows]
     found = [[tree for tree in row if tree is not None] for row in trees]
@@ -196,7 +188,6 @@ def _trees_of(exercise: Exercise) -> Trees | None:
 
 
 def _table(random: Random) -> tuple[Exercise, Trees]:
-    """Return a random exercise with a table, and its model table."""
     with_tables = [each for each in exercises() if each.part("table")]
     while True:
         exercise = random.choice(with_tables)
@@ -205,7 +196,6 @@ def _table(random: Random) -> tuple[Exercise, Trees]:
 
 
 def _slips(random: Random, trees: Trees) -> Trees:
-    """Return the table with none, one or two random slips."""
     rows = [list(row) for row in trees]
     for _ in range(random.choice((0, 1, 1, 2))):
         row = random.choice(rows)
@@ -233,7 +223,6 @@ _HEADERS: Final = (
 
 
 def tables(random: Random, suited: Suited) -> Iterator[Outcome]:
-    """Submit a table with or without slips, as rows and as pasted text; yield the outcomes."""
     exercise, trees = _table(random)
     rows = _slips(random, trees)
     plain = Writer(PLAIN, random)

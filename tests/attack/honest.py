@@ -1,4 +1,4 @@
-"""Honest clients: measure how long they wait for responses during an attack."""
+"""Measure how long honest clients wait for responses during an attack."""
 
 import http.client
 import threading
@@ -24,12 +24,10 @@ class Waits:
     failures: list[str] = field(default_factory=list)
 
     def quantile(self, share: float) -> float:
-        """Return the quantile of the waiting times for a share between 0 and 1, in seconds."""
         ordered = sorted(self.seconds) or [float("nan")]
         return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
 
     def __str__(self) -> str:
-        """Return the waiting times in milliseconds, as one line."""
         p50, p99, longest = (1e3 * self.quantile(share) for share in (0.5, 0.99, 1.0))
         failed = f", {len(self.failures)} failed: {self.failures[0]}" if self.failures else ""
         return (
@@ -41,10 +39,8 @@ class Waits:
 def watched(
     running: Service, pause: float = 0.0, source: str = "127.0.0.2"
 ) -> Iterator[tuple[Waits, Waits]]:
-    """Run honest clients during the block; yield the waits of submissions and of health checks.
-
-    Each client pauses for ``pause`` seconds after each response.
-    """
+    """Run honest clients during the block, and yield their waiting times."""
+    # Each client pauses for `pause` seconds after each response.
     submissions, health = Waits(), Waits()
     over = threading.Event()
 

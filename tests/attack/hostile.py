@@ -1,9 +1,8 @@
-"""Generate texts, grids and whole requests, and check how the program reads them.
+"""Generate random texts, grids and requests, and check how the program reads them."""
 
-The program reads many texts one after the other, and every fifth text twice in a row. Then it reads
-each text again with empty caches. It must read the same text in the same way each time, and may
-raise only documented errors.
-"""
+# The program reads many texts one after the other, and every fifth text twice in a row. Then it
+# reads each text again with empty caches. It must read the same text in the same way each time, and
+# may raise only documented errors.
 
 import json
 import re
@@ -36,21 +35,20 @@ COSTLIEST: Final = 20
 
 
 class Case(NamedTuple):
-    """One text, grid or request."""
+    """A text, a grid or a request for the program to read."""
 
     kind: str
     value: str | Post
     degrees: bool = False
 
     def __str__(self) -> str:
-        """Return the case as a line of a report, shortened."""
         value = self.value
         shown = repr(value) if isinstance(value, str) else f"{value.path} {value.body!r}"
         return f"{self.kind}{' in degrees' if self.degrees else ''}: {shown[:600]}"
 
 
 class Costly(NamedTuple):
-    """A case and its cost: its processor time divided by that of a fixed computation in numpy."""
+    """A text, grid or request, and the cost of reading it."""
 
     ratio: float
     case: Case
@@ -58,7 +56,7 @@ class Costly(NamedTuple):
 
 @dataclass
 class Found:
-    """The results of many cases."""
+    """The results of reading many texts, grids and requests."""
 
     count: int = 0
     outcomes: Counter[str] = field(default_factory=Counter)
@@ -67,7 +65,6 @@ class Found:
     costliest: list[Costly] = field(default_factory=list)
 
     def add(self, other: "Found") -> None:
-        """Add the results of another group."""
         self.count += other.count
         self.outcomes += other.outcomes
         self.escaped += other.escaped
@@ -78,7 +75,7 @@ class Found:
 
 
 def cases(count: int, seed: str) -> Iterator[Case]:
-    """Yield ``count`` cases; the same seed gives the same cases."""
+    """Yield random texts, grids and requests; the same seed gives the same ones."""
     random = Random(seed)
     single = texts(count, random.getrandbits(60))
     for _ in range(count):
@@ -111,22 +108,16 @@ def _grid(random: Random) -> str:
 
 
 class Reading:
-    """Lets the program read cases in this process."""
+    """Reads texts, grids and requests with the program, in this process."""
 
     @cached_property
     def service(self) -> InProcess:
-        """The routes of the service, built at the first request."""
         return InProcess()
 
     def close(self) -> None:
-        """Close the service."""
         self.service.close()
 
     def outcome(self, case: Case) -> tuple[str, bytes, float]:
-        """Read a case; return "read" or why not, a digest of the result, and the processor time.
-
-        If the program raises an undocumented exception, this function raises it, too.
-        """
         start = time.process_time()
         if isinstance(case.value, Post):
             status, body = self.service.post(case.value)
@@ -156,7 +147,6 @@ def _digest(data: bytes) -> bytes:
 
 
 def floor_seconds() -> float:
-    """Measure the processor time of the fixed computation to which ``make bench`` compares."""
     spent = []
     for _ in range(100):
         start = time.process_time()
@@ -172,7 +162,6 @@ def clear_caches() -> None:
 
 
 def group(chosen: Sequence[Case], reading: Reading) -> Found:
-    """Read each case twice or three times; return the results."""
     found = Found(len(chosen))
     digests: list[bytes | None] = []
     floor = floor_seconds()
@@ -203,7 +192,6 @@ def group(chosen: Sequence[Case], reading: Reading) -> Found:
 
 
 def measured(case: Case, reading: Reading) -> Costly:
-    """Measure the cost of a case three times with empty caches; return the least cost."""
     ratios = []
     for _ in range(3):
         clear_caches()
@@ -213,12 +201,10 @@ def measured(case: Case, reading: Reading) -> Costly:
 
 
 def groups(count: int, seed: str, size: int) -> Iterator[tuple[int, str]]:
-    """Split ``count`` cases into groups of at most ``size``; yield size and seed of each group."""
     for number in range(0, count, size):
         yield min(size, count - number), f"{seed}.{number // size}"
 
 
 def sample(count: int, seed: str) -> Found:
-    """Return the results of one group of cases."""
     with closing(Reading()) as reading:
         return group(list(cases(count, seed)), reading)

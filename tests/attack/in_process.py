@@ -25,7 +25,7 @@ class Reply(NamedTuple):
 
 
 class InProcess:
-    """The application with its own event loop; it is called as a server calls it."""
+    """Calls the application in this process, on an event loop of its own."""
 
     def __init__(self) -> None:
         self.catalogue = shipped_exercises()
@@ -33,11 +33,9 @@ class InProcess:
         self._loop = asyncio.new_event_loop()
 
     def close(self) -> None:
-        """Close the event loop."""
         self._loop.close()
 
     def post(self, post: Post) -> Reply:
-        """Return the response to a request. Raises the exceptions of the application."""
         return self._loop.run_until_complete(self._answer(post))
 
     async def _answer(self, post: Post) -> Reply:
@@ -77,7 +75,6 @@ class InProcess:
 
 
 def caches() -> Iterator[Callable[[], None]]:
-    """For each cache in the program's modules, yield a function that empties this cache."""
     known = set()
     for name, module in sorted(sys.modules.items()):
         if name.startswith("service."):

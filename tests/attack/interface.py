@@ -24,11 +24,6 @@ expected-statuses = ["2xx", 403, 404, 422]
 
 
 def with_all_accepted(document: dict[str, Any]) -> dict[str, Any]:
-    """Return the OpenAPI document, extended by further requests that the service accepts.
-
-    An optional field may be null. A list of submissions may have any items, because the service
-    checks each submission separately.
-    """
     schemas = document["components"]["schemas"]
     for schema in schemas.values():
         required = schema.get("required", ())
@@ -43,7 +38,6 @@ SECRET: Final = "0123456789abcdef" * 4
 
 
 def with_key(folder: Path) -> tuple[dict[str, str], str]:
-    """Return the settings of a service that needs keys, and a key with every scope."""
     database = str(folder / "attempts.db")
     text, now = new_key_text(), datetime.now(UTC)
     until = now + timedelta(days=1)
@@ -57,7 +51,6 @@ def with_key(folder: Path) -> tuple[dict[str, str], str]:
 def faults(
     running: Service, folder: Path, examples: int, *options: str, key: str = ""
 ) -> Iterator[str]:
-    """Try every operation with ``examples`` requests; yield schemathesis' output if one fails."""
     [answer] = running.ask(b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n")
     document, config = folder / "openapi.json", folder / "schemathesis.toml"
     document.write_text(json.dumps(with_all_accepted(answer.json())), encoding="utf-8")

@@ -1,9 +1,7 @@
 """`python -m tests.attack.memory --count 1000000`: test if many requests make the memory grow.
 
-Send requests to the service's routes in this process: correct and wrong tables and matrices,
-pasted texts, previews, and hostile requests. No two requests are equal. Exit with 1 if the memory
-after the warm-up grows beyond the limit, or if a response is a server error. With ``--http``, send
-the requests over a connection to a separate process.
+With ``--http``, send the requests to a separate process. Exit with 1 if the memory grows too much,
+or if a response is a server error.
 """
 
 import argparse
@@ -40,7 +38,7 @@ Send = Callable[[Post], int]
 
 
 def posts(seed: str) -> Iterator[Post]:
-    """Yield requests without end, no two of them equal."""
+    """Yield random requests without end, all different."""
     number = 0
     while True:
         number += 1
@@ -59,7 +57,6 @@ def posts(seed: str) -> Iterator[Post]:
 
 
 def _student_s_table(random: Random, number: int) -> Post:
-    """Return a request with a table that contains a new text; one table in three is wrong."""
     rows = [list(row) for row in one_student_s_table(number)]
     at = random.randrange(6)
     rows[at][0] = f"{rows[at][0]} + 0*{number}"
@@ -67,7 +64,6 @@ def _student_s_table(random: Random, number: int) -> Post:
 
 
 def _matrix(random: Random, number: int) -> Post:
-    """Return a request with a pose of new texts; one pose in four has a wrong entry."""
     pose = distinct(T06, number)
     if random.random() < 0.25:
         pose[random.randrange(3)][random.randrange(4)] += " + s1"
@@ -85,7 +81,7 @@ def _graded(answers: dict[str, object]) -> Post:
 
 
 def resident(process: int | None = None) -> float:
-    """Return the resident memory of a process (default: this one) in MB, or nan if unknown."""
+    """Return the memory of a process in MB, or nan if unknown."""
     status = Path(f"/proc/{process or os.getpid()}/status")
     found = status.is_file() and re.search(r"VmRSS:\s+(\d+)", status.read_text(encoding="ascii"))
     return int(found[1]) / 1024 if found else float("nan")
@@ -93,7 +89,7 @@ def resident(process: int | None = None) -> float:
 
 @dataclass
 class MemoryUse:
-    """The memory in MB after the warm-up and at the end, and the number of server errors."""
+    """The memory (MB) before and after the requests, and the number of server errors."""
 
     count: int
     warm: float
@@ -102,11 +98,9 @@ class MemoryUse:
 
     @property
     def growth(self) -> float:
-        """The growth in MB after the warm-up."""
         return self.end - self.warm
 
     def __str__(self) -> str:
-        """Return the figures as one line."""
         return (
             f"{self.count:,} requests: {self.warm:.1f} MB after the warm-up, {self.end:.1f} MB at "
             f"the end, {self.growth:+.1f} MB; {self.failures} failures"
@@ -115,7 +109,6 @@ class MemoryUse:
 
 @contextmanager
 def in_process() -> Iterator[tuple[Send, Callable[[], float]]]:
-    """Send requests to the routes in this process."""
     with closing(InProcess()) as running:
         # The server does this when it starts.
         gc.collect()
@@ -128,7 +121,6 @@ def in_process() -> Iterator[tuple[Send, Callable[[], float]]]:
 
 @contextmanager
 def over_http() -> Iterator[tuple[Send, Callable[[], float]]]:
-    """Send requests to a process of the service over one connection."""
     with tempfile.TemporaryDirectory() as folder, service(Path(folder)) as running:
         connection = http.client.HTTPConnection("127.0.0.1", running.port, timeout=ANSWER)
 
@@ -149,7 +141,6 @@ def measured(
     way: Callable[[], object] = in_process,
     minutes: float = float("inf"),
 ) -> MemoryUse:
-    """Send ``count`` requests after the warm-up, fewer if the time ends; return the memory use."""
     with way() as (send, memory):  # type: ignore[attr-defined]
         endless = posts(seed)
         failures = sum(send(post) >= 500 for post in islice(endless, warm_up))
@@ -171,7 +162,6 @@ def measured(
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Send the requests and print the memory use; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100_000, help="requests after the warm-up")
     parser.add_argument("--warm-up", type=int, default=WARM_UP)

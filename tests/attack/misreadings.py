@@ -1,10 +1,13 @@
-"""`python -m tests.attack.misreadings`: test if the program reads a formula as another one.
+"""`python -m tests.attack.misreadings`: test if the program misreads formulas.
 
-Write each random formula in every spelling, and matrices of formulas in every grid format. The
-program must read the value that an oracle of the tests computes, or refuse the text. An answer
-must get the same verdicts and points in every spelling, and an entry with a changed sign must be
-wrong. Exit with 1 if the program misread a text, or refused too many.
+Write random formulas in many notations, and compare how the program reads them with their true
+values. Exit with 1 if the program misreads a formula, or refuses too many.
 """
+
+# Write each random formula in every spelling, and matrices of formulas in every grid format. The
+# program must read the value that an oracle of the tests computes, or refuse the text. An answer
+# must get the same verdicts and points in every spelling, and an entry with a changed sign must be
+# wrong.
 
 import argparse
 import sys
@@ -50,25 +53,22 @@ _CANONICAL: Final = {f"q{index}": f"theta{index}" for index in TURNING} | {"q3":
 
 @dataclass
 class Tally:
-    """Counts how often each spelling or format was read or misread; keeps the misread texts."""
+    """Counts how often texts in each notation were read or misread."""
 
     outcomes: dict[str, Counter[str]] = field(default_factory=lambda: defaultdict(Counter))
     misread: list[str] = field(default_factory=list)
 
     def add(self, name: str, outcome: str, text: str = "") -> None:
-        """Count an outcome, and keep a misread text."""
         self.outcomes[name][outcome] += 1
         if outcome == "misread":
             self.misread.append(f"{name}: {text}")
 
     def refused(self, name: str) -> float:
-        """Return the share of texts that were refused."""
         counted = self.outcomes[name]
         return counted.total() and 1 - counted["read"] / counted.total()
 
 
 def is_steady(tree: Tree, values: dict[str, Values]) -> bool:
-    """True if rounding hardly changes the values, so that two computations must agree."""
     found = evaluated(tree, values)
     near = evaluated(tree, {name: each * (1 + 1e-12) for name, each in values.items()})
     return bool(np.all(np.isfinite(found)) and np.all(np.abs(found) < 1e9)) and bool(
@@ -77,7 +77,6 @@ def is_steady(tree: Tree, values: dict[str, Values]) -> bool:
 
 
 def drawn(random: Random, depth: int = 2) -> tuple[Tree, dict[str, Values]]:
-    """Return a random formula that is defined everywhere, and values for its names."""
     while True:
         tree = angle(random) if random.random() < 0.1 else formula(random, depth)
         values = numbers(random)
@@ -86,7 +85,6 @@ def drawn(random: Random, depth: int = 2) -> tuple[Tree, dict[str, Values]]:
 
 
 def outcome(text: str, tree: Tree, values: dict[str, Values], *, degrees: bool) -> str:
-    """Return "read" if a text is read as the formula ``tree``, else "misread" or "refused: …"."""
     try:
         expression = read(text, ROBOT, angle_unit="degrees" if degrees else "radians")
     except ExpressionError as error:
@@ -98,7 +96,7 @@ def outcome(text: str, tree: Tree, values: dict[str, Values], *, degrees: bool) 
 
 
 def entries(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
-    """Write ``count`` formulas in every spelling; yield spelling, outcome, text."""
+    """Write random formulas in every notation; yield notation, outcome and text."""
     for number in range(count):
         random = Random(f"{seed}.{number}")
         tree, values = drawn(random)
@@ -108,7 +106,6 @@ def entries(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
 
 
 def suited(name: str, random: Random) -> Spelling:
-    """Return a random spelling for the cells of a grid format."""
     if name in BLANKS:
         return random.choice(TIGHT)
     closed = [each for each in SPELLINGS if each not in OPEN]
@@ -123,7 +120,6 @@ def suited(name: str, random: Random) -> Spelling:
 
 
 def grids(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
-    """Write ``count`` matrices in every format; yield format, outcome, text."""
     for number in range(count):
         random = Random(f"{seed}.{number}")
         rows, columns = random.randint(2, 4), random.randint(2, 4)
@@ -153,7 +149,6 @@ def _grid_outcome(text: str, trees: Sequence[Sequence[tuple[Tree, dict[str, Valu
 
 
 def submissions(count: int, seed: str) -> Iterator[tuple[str, str, str]]:
-    """Submit ``count`` matrices and tables; yield kind, outcome, text."""
     for number in range(count):
         random = Random(f"{seed}.{number}")
         yield from graded.matrices(random, suited)
@@ -168,7 +163,6 @@ SECTIONS: Final[dict[str, Callable[[int, str], Iterable[tuple[str, str, str]]]]]
 
 
 def tallied(section: str, count: int, seed: str) -> Tally:
-    """Return the tally of one section with ``count`` formulas, grids or submissions."""
     tally = Tally()
     for name, found, text in SECTIONS[section](count, seed):
         tally.add(name, found, text)
@@ -176,7 +170,6 @@ def tallied(section: str, count: int, seed: str) -> Tally:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the campaign; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=1000, help="formulas; a tenth as many grids")
     parser.add_argument("--seed", default="1")

@@ -1,8 +1,7 @@
-"""Write formulas in the spellings that docs/expressions.md promises.
+"""Write formulas in the notations that docs/expressions.md promises."""
 
-A spelling says how names, products, powers, functions and constant angles are written. A writer
-adds the brackets that are needed, and sometimes more.
-"""
+# A spelling says how names, products, powers, functions and constant angles are written. A writer
+# adds the brackets that are needed, and sometimes more.
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
@@ -37,8 +36,9 @@ Written = tuple[str, int]
 
 @dataclass(frozen=True)
 class Spelling:
-    """One way of writing formulas. A field with several variants lets the writer draw one."""
+    """One way of writing formulas."""
 
+    # A field with several variants lets the writer draw one.
     names: Callable[[Random, str, str], str]
     times: tuple[str, ...] = ("*",)
     divided: str = "/"
@@ -185,7 +185,7 @@ OPEN: Final = frozenset({
 
 
 class Writer:
-    """Writes formulas in one spelling. If the spelling allows variants, it draws one at random."""
+    """Writes formulas in one notation, and chooses at random between its variants."""
 
     def __init__(self, spelling: Spelling, random: Random) -> None:
         self._s = spelling
@@ -199,7 +199,6 @@ class Writer:
         return self._random.choice(self._s.blanks)
 
     def _text(self, tree: Tree, least: int, *, angle: bool = False) -> str:
-        """Return the formula as text, in brackets if its operator binds less than ``least``."""
         if self._s.others and self._random.random() < 0.4:
             other = replace(self._random.choice(self._s.others), others=self._s.others)
             return Writer(other, self._random)._text(tree, least, angle=angle)
@@ -282,7 +281,6 @@ class Writer:
         return text
 
     def _product(self, factors: tuple[Tree, ...]) -> str:
-        """Return a product as text; numbers come first if the spelling may omit the times sign."""
         marked = not set(self._s.times) & {"", " ", r" \, "}
         ordered = factors if marked else sorted(factors, key=_place_in_product)
         text = ""
@@ -346,7 +344,6 @@ class Writer:
         return text + self._raised(exponent), POWER
 
     def _shorthand(self, call: Call) -> str:
-        """Return the shorthand (c12) for the sine or cosine of a sum of joint angles, or ""."""
         if call.function not in ("sin", "cos"):
             return ""
         [of] = call.arguments
@@ -405,12 +402,10 @@ class Writer:
 
 
 def _cosine_of_theta(random: Random, letter: str, digits: str) -> str:
-    r"""Return the LaTeX shorthand for a cosine of one joint angle: c\theta_1, c_{\theta_1}."""
     return random.choice((rf"{letter}\theta_{digits}", rf"{letter}_{{\theta_{digits}}}"))
 
 
 def _place_in_product(each: Tree) -> int:
-    """Return a sort key that puts numbers before names, functions, and factors in brackets."""
     for place, kinds in enumerate(((Number,), (Ratio, Turn), (Name,), (Power,))):
         if isinstance(each, kinds):
             return place
@@ -418,12 +413,10 @@ def _place_in_product(each: Tree) -> int:
 
 
 def _may_touch(left: str, right: str) -> bool:
-    """True if two factors may be written without a sign or blank between them."""
     if right[0] in "([" or left[-1] in ")]":
         return True
     return right[0].isalpha() and (left[-1].isdigit()) and right[0] not in "eE"
 
 
 def _is_bare(text: str, spelling: Spelling) -> bool:
-    """True if a text may end with a function's argument that is not in brackets."""
     return bool(spelling.bare) and text[-1] not in ")]}"

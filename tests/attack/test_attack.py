@@ -1,4 +1,4 @@
-"""A small sample of `make attack`."""
+"""Run a small part of `make attack`."""
 
 from contextlib import closing
 
@@ -19,7 +19,7 @@ def test_honest_clients_are_served_while_others_send_half_heads() -> None:
 @pytest.mark.sampled(3)
 @pytest.mark.parametrize("kind", KINDS)
 def test_each_costly_body_is_accepted(kind: str) -> None:
-    """A refused body would cost nothing."""
+    # A refused body would cost nothing.
     body = of_kind(kind)(5).partition(b"\r\n\r\n")[2]
     with closing(InProcess()) as service:
         assert service.post(Post(KINDS[kind][0], body)).status == 200

@@ -1,4 +1,4 @@
-"""A small sample of `make fuzz`."""
+"""Run a small part of `make fuzz`."""
 
 import pytest
 
@@ -15,7 +15,7 @@ def test_hostile_texts_grids_and_requests() -> None:
 
 
 class Unsteady(Reading):
-    """A reader whose outcome differs each time, and which fails at the text "bad"."""
+    """A fake reader that gives a different result each time."""
 
     def __init__(self) -> None:
         self.times = 0

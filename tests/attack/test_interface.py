@@ -1,4 +1,4 @@
-"""A small sample of the requests that `make attack` generates from the OpenAPI document."""
+"""Run a small part of the generated requests of `make attack`."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""A small sample of `python -m tests.attack.memory`."""
+"""Run a small part of `python -m tests.attack.memory`."""
 
 from itertools import islice
 

@@ -1,4 +1,4 @@
-"""A small sample of `python -m tests.attack.misreadings`."""
+"""Run a small part of `python -m tests.attack.misreadings`."""
 
 import pytest
 

@@ -1,7 +1,6 @@
 """Measure the store with many attempts: ``python -m tests.attempts.campaign [--count N]``.
 
-Prints the time of a page, of the statistics of an exercise and of a regrade. The cost of recording
-is a line of ``make bench``.
+Print the time of a page of attempts, of statistics, and of a regrade (grading attempts again).
 """
 
 import argparse
@@ -46,13 +45,11 @@ show = Console(highlight=False, soft_wrap=True).print
 
 
 def table(dice: random.Random) -> str:
-    """A table with about two slips."""
     cells = [dice.choice(each) if dice.random() < 0.25 else each[0] for each in CELLS]
     return "\n".join(" ".join(cells[i : i + 4]) for i in range(0, 16, 4))
 
 
 def spelled(text: str, i: int) -> str:
-    """Return the text with some blanks doubled: the k-th blank if bit k of ``i`` is 1."""
     first, *others = text.split(" ")
     return first + "".join(" " * (1 + (i >> k & 1)) + each for k, each in enumerate(others))
 
@@ -60,7 +57,6 @@ def spelled(text: str, i: int) -> str:
 def fill(
     store: AttemptStore, exercise: Exercise, count: int, *, no_two_alike: bool = False
 ) -> None:
-    """Record ``count`` attempts: with repeated tables as in a class, or all different."""
     dice = random.Random(1)
     tables = [table(dice) for _ in range(count if no_two_alike else min(TABLES, count))]
     if no_two_alike:
@@ -89,7 +85,6 @@ def fill(
 
 
 def _insert(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
-    """Insert the rows; in PostgreSQL with COPY, because there may be millions of rows."""
     if connection.dialect.name != "postgresql":
         connection.execute(insert(attempts), rows)
         return
@@ -101,7 +96,6 @@ def _insert(connection: Connection, rows: Sequence[Mapping[str, Any]]) -> None:
 
 
 def timed(what: str, work: Callable[[], object], most: float) -> None:
-    """Print the least wall time and the least processor time of five runs (ms)."""
     clock, processor = [], []
     for _ in range(5):
         begun, used = time.perf_counter(), time.process_time()
@@ -115,7 +109,6 @@ def timed(what: str, work: Callable[[], object], most: float) -> None:
 
 
 def read(store: AttemptStore) -> None:
-    """Time pages and statistics."""
     pages = {
         "first page": AttemptFilter(),
         "of an exercise": AttemptFilter(exercise="scara"),
@@ -130,7 +123,6 @@ def read(store: AttemptStore) -> None:
 
 
 def regrade(store: AttemptStore, exercise: Exercise, most: int) -> None:
-    """Time the regrade of ``most`` attempts in this process."""
     regrading = Regrading(replace(exercise, version="corrected"), FeedbackLevel.HINTS)
     in_transaction(store.engine, regrading.enqueue)
     done, begun, used = 0, time.perf_counter(), time.process_time()
@@ -142,7 +134,6 @@ def regrade(store: AttemptStore, exercise: Exercise, most: int) -> None:
 
 
 def main() -> None:
-    """Measure, and print."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=100_000)
     parser.add_argument("--url", help="an empty database; by default a new file of SQLite")

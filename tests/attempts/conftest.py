@@ -13,7 +13,7 @@ from tests.attempts.databases import KINDS, new_file
 
 @pytest.fixture(scope="session")
 def killable() -> Any:
-    """A class of processes that start quickly, because a fork server has imported the service."""
+    # A class of processes that start quickly, because a fork server has imported the service.
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(
         ["service.attempts.regrades.outdated", "service.attempts.store", "service.server.start"]
@@ -30,13 +30,12 @@ def file_with_tables(tmp_path_factory: pytest.TempPathFactory) -> str:
 
 @pytest.fixture
 def sqlite_url(file_with_tables: str, tmp_path: Path) -> str:
-    """The path of an SQLite database with migrated, empty tables."""
     return str(shutil.copy(file_with_tables, new_file(tmp_path)))
 
 
 @pytest.fixture(params=KINDS)
 def database_url(request: pytest.FixtureRequest) -> str:
-    """The URL of a database with migrated, empty tables; tests run with each kind of database."""
+    """The URL of an empty database; a test runs once with each kind of database."""
     url: str = request.getfixturevalue(f"{request.param}_url")
     return url
 

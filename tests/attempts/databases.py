@@ -1,4 +1,4 @@
-"""Real databases for the tests: a file of SQLite, and a PostgreSQL server from a wheel."""
+"""Create real databases for tests: SQLite files, and a PostgreSQL server."""
 
 import atexit
 import os
@@ -53,7 +53,6 @@ STOPS: Final = {
 
 
 def stop(server: Any, how: str) -> None:
-    """Stop the server in one of the ways of ``STOPS``."""
     main = server.get_postmaster_info().process
     processes = [main, *main.children()]
     for each in processes if how in ("kill", "pause") else [main]:
@@ -64,7 +63,6 @@ def stop(server: Any, how: str) -> None:
 
 
 def start(server: Any, how: str) -> None:
-    """Start or resume a server that was stopped in the way ``how``."""
     if how != "pause":
         server.start()
         return
@@ -74,7 +72,7 @@ def start(server: Any, how: str) -> None:
 
 
 def new_database(server: Any, name: str, like: str = "template1") -> str:
-    """Create a database on the server, empty or as a copy of another; return its URL."""
+    """Create a database on the server, and return its URL."""
     url = make_url(server.get_uri().replace("postgresql://", "postgresql+psycopg://"))
     engine = create_engine(url, isolation_level="AUTOCOMMIT")
     with engine.connect() as connection:
@@ -85,7 +83,6 @@ def new_database(server: Any, name: str, like: str = "template1") -> str:
 
 
 def new_file(folder: Path) -> str:
-    """The path of a new SQLite database."""
     return str(folder / "attempts.db")
 
 
@@ -102,7 +99,6 @@ def postgresql() -> Iterator[Any]:
 
 @pytest.fixture
 def postgresql_url(postgresql: Any) -> str:
-    """The URL of a PostgreSQL database with migrated, empty tables."""
     return migrated_database(postgresql)
 
 

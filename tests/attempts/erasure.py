@@ -1,4 +1,4 @@
-"""Search the files of an SQLite database for a text, and keep a reader open."""
+"""Search the files of an SQLite database for a text."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -8,7 +8,6 @@ from service.attempts.storage.database import open_database
 
 
 def files_with(text: str, path: str) -> list[str]:
-    """The suffixes of the files of a database that contain a text ("" for the main file)."""
     name = Path(path).name
     found = Path(path).parent.glob(f"{name}*")
     return sorted(
@@ -18,7 +17,7 @@ def files_with(text: str, path: str) -> list[str]:
 
 @contextmanager
 def reader(path: str) -> Iterator[None]:
-    """Keep another connection open that reads the database."""
+    """Keep a second connection open that reads the database."""
     other = open_database(path, create=False)
     with other.connect() as connection:
         assert connection.exec_driver_sql("SELECT count(*) FROM attempts").scalar_one() >= 0

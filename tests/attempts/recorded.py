@@ -1,4 +1,4 @@
-"""Recorded attempts for tests."""
+"""Record attempts for tests."""
 
 from collections.abc import Iterable
 from dataclasses import replace
@@ -24,7 +24,6 @@ LAZY = "0 0 0 θ1\n0 0 0 θ2\n0 0 d3 0\n0 0 0 θ4"
 async def record_once(
     store: AttemptStore, new: NewAttempt, outcome: Outcome
 ) -> RecordedAttempt | None:
-    """Write the attempt as it is; return None if its ordinal or its key is taken."""
     before = Standing(0, None)
     written = await store.record(
         before, lambda standing: (new, outcome) if standing is before else None
@@ -35,7 +34,6 @@ async def record_once(
 def recorded(
     store: AttemptStore, exercise: Exercise, learner: str, table: str, *given: Any, **more: Any
 ) -> RecordedAttempt:
-    """Write an attempt; see ``new_attempt``."""
     (written,) = recorded_all(store, [new_attempt(exercise, learner, table, *given, **more)])
     return written
 
@@ -43,7 +41,6 @@ def recorded(
 def recorded_all(
     store: AttemptStore, new: Iterable[tuple[NewAttempt, Outcome]]
 ) -> list[RecordedAttempt]:
-    """Write attempts in one commit."""
     with store.engine.connect() as connection:
         connection = connection.execution_options(writes=True)
         with connection.begin():
@@ -56,7 +53,6 @@ _MEMOIZED: dict[tuple[str, ...], AttemptReport] = {}
 
 
 def _graded(exercise: Exercise, body: AttemptRequest, level: FeedbackLevel) -> AttemptReport:
-    """Grade each table once: these tests send the same few tables again and again."""
     key = (exercise.id, exercise.version, body.answers["table"], level)
     if key not in _MEMOIZED:
         _MEMOIZED[key] = AttemptGrading(exercise, body).at(level)
@@ -71,7 +67,7 @@ def new_attempt(
     hours: float = 0,
     **more: Any,
 ) -> tuple[NewAttempt, Outcome]:
-    """An attempt at the exercise, ``hours`` after noon; ``more`` replaces fields."""
+    """Return an attempt at the exercise."""
     body = AttemptRequest(learner=learner, answers={"table": table})
     graded = _graded(exercise, body, exercise.feedback_at(ordinal or 1))
     report = graded.report
@@ -97,7 +93,6 @@ def new_attempt(
 
 
 def regraded(store: AttemptStore, regrading: Regrading) -> list[RegradedAttempt]:
-    """Regrade all outdated attempts, in as many batches as the machine needs."""
     in_transaction(store.engine, regrading.enqueue)
     done: list[RegradedAttempt] = []
     while in_transaction(store.engine, regrading.waiting):

@@ -1,8 +1,6 @@
 """Regrade by several processes and kill some: ``python -m tests.attempts.shared_regrade``.
 
-Fills a PostgreSQL database with ``--count`` attempts, starts four processes
-``dh-grader attempts regrade scara --apply``, kills two of them at random moments, and checks that
-every attempt was regraded exactly once.
+Check that every attempt in a PostgreSQL database was regraded exactly once.
 """
 
 import argparse
@@ -34,7 +32,6 @@ show = Console(highlight=False, soft_wrap=True).print
 
 
 def corrected(folder: Path) -> str:
-    """Write the exercise with another marking rule into the folder; return its version."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     text = text.replace('kind = "dh_table"\n', 'kind = "dh_table"\nmarking = "rows"\n', 1)
     (folder / "scara.toml").write_text(text, encoding="utf-8")
@@ -42,10 +39,6 @@ def corrected(folder: Path) -> str:
 
 
 def regraded(store: AttemptStore, url: str, folder: Path, workers: int, killed: int) -> float:
-    """Regrade all outdated attempts with ``workers`` processes; return the seconds it takes.
-
-    The first ``killed`` workers are killed meanwhile.
-    """
     dice = random.Random(1)
     settings = {"DH_GRADER_DATABASE": url, "DH_GRADER_EXERCISES_DIR": str(folder)}
     # By another marking rule, the exercise's own check expects other points.
@@ -82,7 +75,6 @@ def regraded(store: AttemptStore, url: str, folder: Path, workers: int, killed: 
 
 
 def _wait_for(store: AttemptStore, done: int) -> None:
-    """Wait until about ``done`` attempts are regraded (counting all rows would be too slow)."""
     while True:
         with store.engine.connect() as connection:
             if (connection.scalar(select(func.max(earlier_reports.c.id))) or 0) >= done:
@@ -91,7 +83,7 @@ def _wait_for(store: AttemptStore, done: int) -> None:
 
 
 def check(store: AttemptStore, version: str, count: int) -> None:
-    """Assert that every attempt was regraded exactly once and the queue is empty."""
+    """Assert that every attempt was regraded exactly once."""
     with store.engine.connect() as connection:
         times = Counter(connection.scalars(select(earlier_reports.c.attempt)))
         versions = Counter(connection.scalars(select(attempts.c.version)))
@@ -102,7 +94,6 @@ def check(store: AttemptStore, version: str, count: int) -> None:
 
 
 def main() -> None:
-    """Fill, regrade, check."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=1_000_000)
     count = parser.parse_args().count

@@ -36,7 +36,6 @@ PROGRAMS = Path(_SERVER.origin).parent / "pginstall18" / "bin"
 
 
 def command(*words: str) -> str:
-    """The command of the page that contains all these words."""
     blocks = re.findall(r"```sh\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     lines = [line for block in blocks for line in block.splitlines()]
     found: str
@@ -63,7 +62,6 @@ def run(line: str, folder: Path, **environment: str) -> None:
 
 
 def ids(url: str) -> set[str]:
-    """The ids of all recorded attempts, after migrating the database."""
     engine = open_database(url)
     with engine.connect() as connection:
         found = set(connection.scalars(select(attempts.c.id)))
@@ -73,7 +71,6 @@ def ids(url: str) -> set[str]:
 
 @contextmanager
 def recording(url: str, exercise: Exercise) -> Iterator[set[str]]:
-    """Record attempts in a thread; yield the growing set of their ids."""
     store = AttemptStore.open(url)
     told: set[str] = set()
     over, first = threading.Event(), threading.Event()
@@ -100,7 +97,6 @@ def recording(url: str, exercise: Exercise) -> Iterator[set[str]]:
 
 
 def check(url: str, restored: str, exercise: Exercise, back_up: Callable[[], None]) -> None:
-    """Back up while attempts are recorded; assert that no earlier attempt is missing."""
     with recording(url, exercise) as told:
         before = set(told)
         back_up()

@@ -35,12 +35,10 @@ TABLE = "a1 0 0 θ1\na2 {} 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
 
 
 class Acknowledged:
-    """Posts attempts from several threads until all replicas are dead; stores the confirmed ids.
+    """Posts attempts from several threads, and stores the ids of confirmed attempts."""
 
-    If a replica is dead, the request is sent to the next replica with the same key. Every fifth
-    request is sent to all replicas.
-    """
-
+    # If a replica is dead, the request is sent to the next replica with the same key. Every fifth
+    # request is sent to all replicas.
     def __init__(self, ports: Sequence[int]) -> None:
         self._urls = [f"http://127.0.0.1:{port}/v1/exercises/scara/attempts" for port in ports]
         self.ids: dict[str, str] = {}
@@ -76,7 +74,6 @@ class Acknowledged:
 
 
 def _serve(url: str, log: Path) -> None:
-    """Run the service like ``dh-grader serve``, with its log in a file."""
     output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
     os.dup2(output, 1)
     os.dup2(output, 2)
@@ -84,7 +81,6 @@ def _serve(url: str, log: Path) -> None:
 
 
 def _port(process: BaseProcess, log: Path) -> int:
-    """Wait until the log names the server's port; return it."""
     while True:
         alive = process.is_alive()
         text = log.read_text(encoding="utf-8") if log.exists() else ""
@@ -97,10 +93,8 @@ def _port(process: BaseProcess, log: Path) -> int:
 def killed_at_random(
     url: str, folder: Path, killable: Any, replicas: int, seed: int, most: float
 ) -> None:
-    """Kill one replica after the other; assert that acknowledged attempts are recorded once.
-
-    After each kill, wait for a response of another replica and up to ``most`` seconds more.
-    """
+    """Kill replicas one after the other; assert that confirmed attempts are recorded once."""
+    # After each kill, wait for a response of another replica and up to `most` seconds more.
     dice = random.Random(seed)
     logs = [folder / f"log{i}" for i in range(replicas)]
     processes = [killable(target=_serve, args=(url, log), daemon=True) for log in logs]
@@ -119,7 +113,6 @@ def killed_at_random(
 
 
 def assert_recorded_once(url: str, acknowledged: Mapping[str, str]) -> None:
-    """Assert that the database has all these keys with these ids, and few others."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(select(attempts.c.idempotency_key, attempts.c.id)).all()
@@ -133,7 +126,6 @@ def assert_recorded_once(url: str, acknowledged: Mapping[str, str]) -> None:
 
 
 def _record(url: str, exercise: Exercise, told: Connection) -> None:
-    """Record attempts of several clients forever; report acknowledged attempts through a pipe."""
     new, outcome = new_attempt(exercise, "ada", RIGHT, None)
     store = AttemptStore.open(url)
     store.start()

@@ -1,4 +1,4 @@
-"""A locked, full or missing database is reported in time and works again afterwards."""
+"""The service reports a locked, full or missing database, and recovers afterwards."""
 
 import asyncio
 import shutil

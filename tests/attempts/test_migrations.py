@@ -1,4 +1,4 @@
-"""Migrations that are killed, run concurrently, or run beside another version of the program."""
+"""Migrations may be killed, run at once, or run beside an old version of the program."""
 
 import multiprocessing
 import os
@@ -39,7 +39,6 @@ OldDatabase = Callable[[str], str]
 
 @pytest.fixture(params=KINDS)
 def old(request: pytest.FixtureRequest, tmp_path: Path) -> OldDatabase:
-    """A function that creates a database of a revision, with two attempts."""
     if request.param == "sqlite":
 
         @cache
@@ -61,7 +60,6 @@ def old(request: pytest.FixtureRequest, tmp_path: Path) -> OldDatabase:
 
 
 def _open(url: str, killed_at: int, barrier: Any = None) -> None:
-    """Migrate the database; kill this process before statement or commit no. ``killed_at``."""
     steps = count(1)
 
     def step(*_: object) -> None:
@@ -76,7 +74,6 @@ def _open(url: str, killed_at: int, barrier: Any = None) -> None:
 
 
 def check_whole(url: str) -> None:
-    """Open the database; assert that it has today's tables and the old attempts."""
     engine = open_database(url)
     with engine.connect() as connection:
         found = inspect(connection)
@@ -96,7 +93,6 @@ def check_whole(url: str) -> None:
 
 
 def kill_before(url: str, statement: int, killable: Any) -> bool:
-    """Migrate in a process that dies before statement no. ``statement``; False if it survives."""
     process = killable(target=_open, args=(url, statement))
     process.start()
     process.join(ANSWER)

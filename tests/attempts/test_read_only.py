@@ -1,4 +1,4 @@
-"""A database that can be read but not written to: a standby, a mount without write permission."""
+"""Test databases that can be read but not written."""
 
 import os
 import re
@@ -30,7 +30,6 @@ STRANGER = 65534
 def store_and_switch(
     request: pytest.FixtureRequest,
 ) -> Iterator[tuple[AttemptStore, Callable[[str], None]]]:
-    """A store, and a function that makes its database read-only ("on") or writable ("off")."""
     url = request.getfixturevalue(f"{request.param}_url")
     store = AttemptStore.open(url)
     store.start()
@@ -102,7 +101,6 @@ def _read_only(store: AttemptStore) -> str:
 
 @contextmanager
 def without_permission(path: Path) -> Iterator[None]:
-    """Remove write permission from the path, and root's rights from this process."""
     path.chmod(0o555)
     is_root = os.geteuid() == 0
     if is_root:

@@ -23,7 +23,7 @@ ATTEMPTS = "/v1/exercises/scara/attempts"
 
 
 class Course:
-    """Learners who send each attempt with the same idempotency key until it is recorded."""
+    """Learners who repeat each request until their attempt is recorded."""
 
     def __init__(self, client: httpx.AsyncClient) -> None:
         self._client = client
@@ -50,13 +50,11 @@ class Course:
         assert told == (503, "5", "urn:dh-grader:problem:store-down")
 
     async def more(self) -> None:
-        """Wait until some more attempts are recorded."""
         known = len(self.ids)
         while len(self.ids) < known + 2 * CLIENTS:
             await asyncio.sleep(0.01)
 
     async def survive(self, server: Any, how: str) -> None:
-        """Stop and start the server while learners send attempts."""
         await self.more()
         await asyncio.to_thread(stop, server, how)
         known = self.refused

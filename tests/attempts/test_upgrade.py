@@ -54,7 +54,6 @@ FIXED = {"submission": json.dumps({"answers": {"table": RIGHT}}), "report": REPO
 
 
 def make_old(url: str, revision: str) -> None:
-    """Create the tables of a revision in an empty database, and insert two old attempts."""
     parsed = make_url(url if "://" in url else f"sqlite:///{url}")
     zone = ""
     if parsed.get_backend_name() == "postgresql":
@@ -77,7 +76,6 @@ def make_old(url: str, revision: str) -> None:
 
 @pytest.fixture(params=["sqlite", "postgresql"])
 def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
-    """The URL of a database with the first tables, in which two attempts are recorded."""
     if request.param == "sqlite":
         url = f"sqlite:///{new_file(tmp_path)}"
     else:
@@ -88,7 +86,6 @@ def oldest(request: pytest.FixtureRequest, tmp_path: Path) -> str:
 
 @pytest.fixture
 def store(oldest: str) -> Iterator[AttemptStore]:
-    """A database with the first tables, opened by today's program."""
     store = AttemptStore.open(oldest)
     store.start()
     yield store

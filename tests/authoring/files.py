@@ -1,4 +1,4 @@
-"""Exercise files for tests, and the program's remarks on them."""
+"""Exercise files for tests of the remarks about faulty files."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Each remark on a faulty file, and no remarks on a correct one."""
+"""Test each remark about a faulty exercise file."""
 
 from collections.abc import Mapping
 
@@ -116,7 +116,7 @@ def test_a_failed_check_is_reported(name: str, make_exercise: Make) -> None:
 
 @pytest.mark.long
 def test_a_model_answer_that_is_too_long_is_reported(make_exercise: Make) -> None:
-    """The model pose of a robot with ten skew axes has an entry over the length limit."""
+    # The model pose of a robot with ten skew axes has an entry over the length limit.
     rows = ", ".join(f'["a1", "90deg", "a1", "q{i}"]' for i in range(1, 11))
     remarks = remarks_on(make_exercise, HEAD + robot("R" * 10, f"[{rows}]") + POSE)
     [remark] = [each for each in remarks if each.level is Level.FAILED]
@@ -144,7 +144,6 @@ def test_too_few_checks_are_reported(dropped: list[int], said: str, make_exercis
 
 
 def named(name: str) -> tuple[tuple[str, str], ...]:
-    """Return the replacements of texts that give another name to the symbol a1."""
     return (
         ('"a1", "theta1"', f'"{name}", "theta1"'),
         ("a1 = {", f"{name} = {{"),
@@ -174,7 +173,7 @@ def test_an_ambiguous_name_gets_a_warning(name: str, said: str, make_exercise: M
 
 @pytest.mark.parametrize("name", ["c3", "theta2", "d1", "L", "width", "s"])
 def test_an_unambiguous_name_gets_no_warning(name: str, make_exercise: Make) -> None:
-    """No joint variable has such a name: there is no joint 3, joint 2 slides, joint 1 turns."""
+    # No joint variable has such a name: there is no joint 3, joint 2 slides, joint 1 turns.
     remarks = remarks_on(make_exercise, HEAD + ROBOT + POSE, *named(name))
     expected = {"symbols.s"} if name == "s" else set()
     assert {each.field for each in remarks if each.field.startswith("symbols")} == expected
@@ -284,7 +283,7 @@ convention = "standard"
 
 
 def test_tables_with_given_and_free_frames_are_different_tasks(make_exercise: Make) -> None:
-    """An exercise may ask for a table in given frames, and for one in free frames."""
+    # An exercise may ask for a table in given frames, and for one in free frames.
     drawn, free = TABLE.format("drawn", ""), TABLE.format("free", 'frames = "free"')
     assert remarks_on(make_exercise, HEAD + ROBOT + POSE + drawn + free + CHECKS) == []
     again = HEAD + ROBOT + POSE + drawn + TABLE.format("again", "") + CHECKS
@@ -292,7 +291,7 @@ def test_tables_with_given_and_free_frames_are_different_tasks(make_exercise: Ma
 
 
 def test_an_angle_without_a_unit_is_radians_in_the_model_answer_too(make_exercise: Make) -> None:
-    """The author's 0.7 must stay 0.7 rad. In a submission in degrees it would mean 0.7°."""
+    # The author's 0.7 must stay 0.7 rad. In a submission in degrees it would mean 0.7°.
     text = HEAD + robot("R", '[["a1", 0.7, "0", "q1 + 0.4"]]') + TABLE.format("table", "") + POSE
     assert [each for each in remarks_on(make_exercise, text) if each.level is Level.FAILED] == []
 

@@ -1,4 +1,4 @@
-"""Warnings for degrees without a unit in exercise files."""
+"""Test the warnings about degrees without a unit in exercise files."""
 
 import pytest
 

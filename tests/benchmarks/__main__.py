@@ -1,7 +1,7 @@
-"""Print every measured time with its budget, as multiples of a fixed computation in numpy.
+"""Print every measured time with its budget.
 
-With ``--against DIR``, compare this checkout with another one: measure both in turn, and exit with
-1 if a figure is worse here by more than 3 %.
+Times are multiples of a fixed computation in numpy. With ``--against DIR``, compare this checkout
+with another one; exit with 1 if a time is worse here by more than 3 %.
 """
 
 import argparse
@@ -27,7 +27,6 @@ ENTRY = "-s1*(d3*s2 + d2*c2) + d2*c1"
 
 
 def with_free_frames(exercise_id: str) -> Exercise:
-    """Return a shipped exercise whose table part has free frames."""
     text = (shipped_folder() / f"{exercise_id}.toml").read_text(encoding="utf-8")
     if 'frames = "free"' not in text:
         text = re.sub(r'(kind = "dh_table"\n)', r'\1frames = "free"\n', text, count=1)
@@ -63,7 +62,6 @@ START_SECONDS = {"dh-grader --help": 0.3, "dh-grader grade, one file": 0.8}
 
 
 def in_process() -> dict[str, float]:
-    """Return the figures that need no server, as multiples of the floor."""
     exercise = load_catalogue(shipped_folder())["stanford-arm"]
     free = with_free_frames("stanford-arm")
     vocabulary = exercise.vocabulary
@@ -101,7 +99,7 @@ def in_process() -> dict[str, float]:
 
 
 def print_budgets(*, with_server: bool) -> None:
-    """Print each figure of this checkout with its budget."""
+    """Print each measured time of this checkout with its budget."""
     floor = floor_seconds()
     printed = Table("what", "here", "asked", "", "milliseconds")
     printed.add_row(
@@ -123,7 +121,6 @@ def print_budgets(*, with_server: bool) -> None:
 
 
 def add_starts(printed: Table) -> None:
-    """Add the processor time of each command, in seconds and as a multiple of numpy's import."""
     times = starts.start_seconds()
     numpy_alone = next(iter(times.values()))
     for what, seconds in times.items():
@@ -138,7 +135,6 @@ def add_starts(printed: Table) -> None:
 
 
 def add_server_lines(printed: Table) -> None:
-    """Add the figures that need a server, with their budgets."""
     for what, bodies in server.BODIES.items():
         speed = server.posts_per_second(bodies)
         share = speed["graded"] / speed["trivial"]
@@ -183,7 +179,6 @@ def add_server_lines(printed: Table) -> None:
 
 
 def print_comparison(there: Path, rounds: int, *, with_server: bool) -> bool:
-    """Print each figure of this and the other checkout; return True if none is slower here."""
     lines = paired.compare(there, rounds, with_server=with_server)
     printed = Table(f"median of {rounds}, × floor", "here", str(there), "here / there", "")
     for line in lines:
@@ -199,7 +194,6 @@ def print_comparison(there: Path, rounds: int, *, with_server: bool) -> bool:
 
 
 def main() -> int:
-    """Measure and print; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--no-server", action="store_true", help="omit figures that need a server")
     parser.add_argument("--against", type=Path, metavar="DIR", help="another checkout")

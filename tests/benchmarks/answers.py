@@ -1,4 +1,4 @@
-"""The answers that the benchmarks grade: the Stanford arm, written as a student would."""
+"""Answers about the Stanford arm, which the benchmarks grade."""
 
 import random
 import re
@@ -40,12 +40,11 @@ T06 = [
 
 
 def table(rows: Rows) -> dict[str, Any]:
-    """Return the rows in the form of the HTTP API."""
     return {"rows": [dict(zip(("a", "alpha", "d", "theta"), row, strict=True)) for row in rows]}
 
 
 def turned_over() -> Rows:
-    """Return a valid table of the same mechanism with other frames: z2 is reversed."""
+    """Return a valid table of the same robot in which z2 is reversed."""
     rows = list(STANFORD)
     rows[1] = ("0", "-90deg", "d2", "theta2")
     rows[2] = ("0", "180deg", "-d3", "0")
@@ -76,16 +75,13 @@ def in_other_convention() -> Rows:
 
 
 def standing_still() -> list[list[str]]:
-    """Return the pose of the tool with joint 2 fixed at 0, so that the answer is wrong."""
     return [[re.sub(r"\bs2\b", "0", re.sub(r"\bc2\b", "1", text)) for text in row] for row in T06]
 
 
 def distinct(texts: list[list[str]], i: int, point: str = ".") -> list[list[str]]:
-    """Append ``+ 0*number`` to each text of the matrix, so that no cache contains the texts.
-
-    The numbers are decimals, or integers if ``point`` is empty. The grader tries to explain a
-    wrong entry with decimals as a rounded one; with integers it does not.
-    """
+    """Make each text of the matrix new to all caches."""
+    # The numbers are decimals, or integers if `point` is empty. The grader tries to explain a wrong
+    # entry with decimals as a rounded one; with integers it does not.
     return [
         [f"{text} + 0*{abs(i) + 2}{point}{j}{k}" for k, text in enumerate(row)]
         for j, row in enumerate(texts)
@@ -108,7 +104,6 @@ SPELLINGS = {
 
 
 def one_student_s_table(i: int) -> Rows:
-    """Return the table as student ``i`` spells it; one in three has a wrong cell."""
     choose = random.Random(i)
     rows = [[choose.choice(SPELLINGS[cell]) for cell in row] for row in STANFORD]
     if i % 3 == 0:

@@ -15,7 +15,7 @@ from service.server.installed import installed_app
 
 
 class Trivial(BaseModel):
-    """The body of a trivial request; its schema is that of a submission."""
+    """The body of a request that is validated but not graded."""
 
     answers: dict[str, Any]
 

@@ -1,6 +1,6 @@
 """Write a folder with the submissions of a class, of which a few are broken.
 
-``python -m tests.benchmarks.class_folder --count 1000`` grades such a folder as a tutor would, and
+``python -m tests.benchmarks.class_folder --count 1000`` grades such a folder, and
 prints the time and the memory.
 """
 
@@ -35,7 +35,6 @@ BROKEN = {
 
 
 def write_class(folder: Path, count: int) -> None:
-    """Write ``count`` usable submissions, and the broken ones."""
     folder.mkdir()
     (folder.parent / "secret.json").write_text('{"answers": {}}', encoding="utf-8")
     for i in range(count):
@@ -52,10 +51,6 @@ def write_class(folder: Path, count: int) -> None:
 
 
 def _write_student(folder: Path, i: int) -> None:
-    """Write the submission of student ``i`` in the layout that one of four platforms exports.
-
-    One table in three and one pose in five have a slip. No two poses have the same text.
-    """
     rows = answers.one_student_s_table(i)
     pose = answers.distinct(answers.T06 if i % 5 else answers.standing_still(), i)
     body = {"answers": {"table": answers.table(rows), "pose": pose}}

@@ -1,4 +1,4 @@
-"""Compare two checkouts by measuring them in turn."""
+"""Compare the speed of two checkouts by measuring them in turn."""
 
 import json
 import os
@@ -16,7 +16,7 @@ TOLERATED = 1.03
 
 @dataclass(frozen=True)
 class Comparison:
-    """One figure of the benchmark: its median in both checkouts, as a multiple of the floor."""
+    """A benchmark and its median time in two checkouts."""
 
     what: str
     here: float
@@ -40,7 +40,6 @@ def python_of(checkout: Path) -> str:
 
 
 def measured(checkout: Path, *, with_server: bool) -> dict[str, float]:
-    """Return all figures of a checkout, measured once, as multiples of its floor."""
     options = [] if with_server else ["--no-server"]
     result = subprocess.run(
         [python_of(checkout), "-P", str(PROBE), *options],
@@ -52,7 +51,6 @@ def measured(checkout: Path, *, with_server: bool) -> dict[str, float]:
 
 
 def compare(there: Path, rounds: int, *, with_server: bool) -> list[Comparison]:
-    """Measure both checkouts in turn for some rounds; return the figures that both have."""
     pairs = [
         (measured(HERE, with_server=with_server), measured(there, with_server=with_server))
         for _ in range(rounds)

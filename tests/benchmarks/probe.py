@@ -1,9 +1,8 @@
-"""Measure one checkout once, and print the figures of its benchmark as JSON.
+"""Measure one checkout once, and print the times as JSON."""
 
-``paired.py`` runs this file in the folder of the measured checkout, with the Python of that
-checkout. The benchmarks come from the measured checkout, which may be older; only the timing comes
-from the checkout of this file.
-"""
+# `paired.py` runs this file in the folder of the measured checkout, with the Python of that
+# checkout. The benchmarks come from the measured checkout, which may be older; only the timing
+# comes from the checkout of this file.
 
 import json
 import runpy
@@ -22,7 +21,6 @@ TIMING = runpy.run_path(str(Path(__file__).with_name("timing.py")))
 
 
 def in_process() -> dict[str, float]:
-    """Return the figures that need no server, as multiples of the floor."""
     if hasattr(lines, "BUDGETS"):
         return lines.in_process()
     # In an older checkout, this function returns milliseconds, with the floor as the first line.
@@ -39,7 +37,6 @@ def _thousandth_of(timer: Callable[[Callable[..., object]], float]) -> Callable[
 
 
 def over_http() -> dict[str, float]:
-    """Return the figures that need a server: graded POSTs relative to trivial ones, and a start."""
     server.SECONDS = SECONDS_OF_POSTS
     figures = {}
     for what, bodies in server.BODIES.items():

@@ -1,7 +1,6 @@
-"""Compare graded POSTs with trivial ones, on one server in one run.
+"""Compare graded POSTs with trivial POSTs on one server."""
 
-All seconds are processor time of the server, so that other programs do not count.
-"""
+# All seconds are processor time of the server, so that other programs do not count.
 
 import asyncio
 import contextlib
@@ -42,29 +41,24 @@ CLOCK = "/processor-seconds"
 
 
 def right_tables(i: int) -> bytes:
-    """Return a request body with a correct table, in the spelling of a student."""
     wrong_ones = i // 2 + 1
     return json.dumps({"answers": {"table": table(one_student_s_table(i + wrong_ones))}}).encode()
 
 
 def tables(i: int) -> bytes:
-    """Return a request body with the table of student ``i``; one in three has a wrong cell."""
     return json.dumps({"answers": {"table": table(one_student_s_table(i))}}).encode()
 
 
 def tables_and_poses(i: int) -> bytes:
-    """Return a request body with a table and a pose, in which every entry is a new text."""
     answers = {"table": table(one_student_s_table(i)), "pose": distinct(T06, i)}
     return json.dumps({"answers": answers}).encode()
 
 
 def attempts(i: int) -> bytes:
-    """Return a request body with a table, from a new learner for each ``i``."""
     return json.dumps(json.loads(tables(i)) | {"learner": f"learner {i}"}).encode()
 
 
 def hand_ins(i: int) -> bytes:
-    """Return a request body with a table, from one of the learners in the course."""
     learner = {"exercise": "stanford-arm", "learner": f"u{i % LEARNERS}"}
     return json.dumps(json.loads(tables(i)) | learner).encode()
 
@@ -96,7 +90,6 @@ def request(path: str, body: bytes) -> bytes:
 def running_server(
     workers: int = 1, /, module: str = "tests.benchmarks.app", **settings: str
 ) -> Iterator[int]:
-    """Run the service with the trivial route in processes of its own; yield the port."""
     with tempfile.TemporaryDirectory() as folder:
         options = ("--workers", str(workers))
         # The modules are compiled once, as for an installed program, and not at each start.
@@ -130,7 +123,6 @@ async def post_all(port: int, requests: list[bytes], deadline: float) -> int:
 
 
 async def _posted(port: int, path: str, messages: list[bytes]) -> tuple[int, float]:
-    """Return the number of answered POSTs, and the processor time of the server for them."""
     shares = [
         [request(path, body) for body in messages[i::CONNECTIONS]] for i in range(CONNECTIONS)
     ]
@@ -140,13 +132,11 @@ async def _posted(port: int, path: str, messages: list[bytes]) -> tuple[int, flo
 
 
 def posts_per_second(body: Callable[[int], bytes]) -> dict[str, float]:
-    """Return how many trivial and how many graded POSTs the server answers in a second."""
     trivial, graded = _in_turn({TRIVIAL: body, GRADE: body})
     return {"trivial": trivial, "graded": graded}
 
 
 def recorded_per_second() -> dict[str, float]:
-    """Return the number of POSTs per second on a server with SQLite: only graded, and recorded."""
     with tempfile.TemporaryDirectory() as folder:
         database = str(Path(folder) / "attempts.db")
         graded, recorded = _in_turn({GRADE: tables, RECORD: attempts}, DH_GRADER_DATABASE=database)
@@ -154,7 +144,6 @@ def recorded_per_second() -> dict[str, float]:
 
 
 def handed_in_per_second() -> dict[str, float]:
-    """Return the number of POSTs per second on a server with SQLite: only graded, and handed in."""
     with tempfile.TemporaryDirectory() as folder:
         database = str(Path(folder) / "attempts.db")
         _set_up_course(database)
@@ -165,7 +154,6 @@ def handed_in_per_second() -> dict[str, float]:
 
 
 def _set_up_course(database: str) -> None:
-    """Add the course ``robots`` with an assignment to a new database."""
     engine, now = open_database(database), datetime.now(UTC)
     assigned = NewAssignment.model_validate(
         {
@@ -189,12 +177,11 @@ def _set_up_course(database: str) -> None:
 
 
 def _in_turn(bodies: Mapping[str, Callable[[int], bytes]], **settings: str) -> Iterator[float]:
-    """Measure the paths in turn on one server; yield the number of POSTs per second for each path.
-
-    The number of the first path is the median of all rounds. Every other path is compared with the
-    first path in the same round, because a slow machine hardly changes their ratio. Its number is
-    the median ratio times the number of the first path.
-    """
+    # Measure the paths in turn on one server; yield the number of POSTs per second for each path.
+    #
+    # The number of the first path is the median of all rounds. Every other path is compared with
+    # the first path in the same round, because a slow machine hardly changes their ratio. Its
+    # number is the median ratio times the number of the first path.
     messages = {
         path: [body(i) for i in range(100 + ROUNDS * MOST)] for path, body in bodies.items()
     }
@@ -225,14 +212,13 @@ def graded_per_second(workers: int) -> float:
 
 
 async def _per_second(port: int, messages: list[bytes]) -> float:
-    """Return the number of graded POSTs per second of wall time."""
     start = time.perf_counter()
     count, _ = await _posted(port, GRADE, messages)
     return count / (time.perf_counter() - start)
 
 
 def first_answer_seconds() -> float:
-    """Return the seconds from the start of the process to the response with the first report."""
+    """Return the seconds from the start of the process to its first report."""
     start = time.perf_counter()
     with running_server(module="service") as port:
         asyncio.run(post_all(port, [request(GRADE, tables_and_poses(1))], time.perf_counter() + 10))

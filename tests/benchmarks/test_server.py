@@ -1,4 +1,4 @@
-"""The benchmark's server starts like the service, and answers the requests that are measured."""
+"""The benchmark's server answers the requests that are measured."""
 
 import asyncio
 import time

@@ -1,8 +1,7 @@
-"""Measure processor time as a multiple of the floor: a fixed computation in plain numpy.
+"""Measure processor time as a multiple of a fixed numpy computation (the floor)."""
 
-Other programs do not count in processor time. Calls alternate with the floor, so that both are
-affected if the machine is slow for a while.
-"""
+# Other programs do not count in processor time. Calls alternate with the floor, so that both are
+# affected if the machine is slow for a while.
 
 import time
 from collections.abc import Callable
@@ -15,7 +14,7 @@ WARM_UP = 3
 
 
 def floor() -> object:
-    """Do the computation that is the floor of ``make bench``."""
+    """Do the fixed computation to whose time others are compared."""
     return floors.stanford_pose(32)
 
 
@@ -27,17 +26,16 @@ def seconds(action: Callable[[], object]) -> float:
 
 
 def floor_seconds() -> float:
-    """Return the median processor time of the floor."""
+    """Return the median processor time of the fixed computation."""
     return median(seconds(floor) for _ in range(1000))
 
 
 def multiple(action: Callable[[], object]) -> float:
-    """Return the median time of a call, as a multiple of the floor."""
+    """Return the median time of a call, divided by that of the fixed computation."""
     return multiple_of_each(lambda _: action())
 
 
 def multiple_of_each(action: Callable[[int], object]) -> float:
-    """Return the median time of ``action(i)`` over different ``i``, as a multiple of the floor."""
     for i in range(WARM_UP):
         floor()
         action(-1 - i)

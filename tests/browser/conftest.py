@@ -1,4 +1,4 @@
-"""Fixtures: a real server of the service, and web servers of two other origins."""
+"""Fixtures: a real service, and web servers on two other origins."""
 
 import os
 import threading
@@ -63,7 +63,6 @@ def origin() -> Iterator[Origin]:
 
 @pytest.fixture(scope="session")
 def service(tmp_path_factory: pytest.TempPathFactory, other_origin: Origin) -> Iterator[str]:
-    """Return the address of a real service with the shipped exercises and a hostile exercise."""
     folder = tmp_path_factory.mktemp("exercises")
     (folder / "hostile.toml").write_text(HOSTILE_EXERCISE, encoding="utf-8")
     variables = {

@@ -1,4 +1,4 @@
-"""One browser for all tests of a process, and visits to pages with this browser."""
+"""Start one browser for all tests, and open pages in it."""
 
 import asyncio
 import os
@@ -34,7 +34,6 @@ APPEARANCES: Final[tuple[tuple[Literal["screen", "print"], Literal["light", "dar
 
 @pytest.fixture(scope="session")
 def chromium() -> Chromium:
-    """Return the Chromium of this machine. Without one, tests are skipped, or fail in CI."""
     found = find_chromium()
     if found is None:
         if os.environ.get("CI"):
@@ -45,7 +44,7 @@ def chromium() -> Chromium:
 
 @dataclass
 class Started:
-    """A started browser, and the event loop of Playwright."""
+    """A started browser, and Playwright's event loop."""
 
     browser: Browser
     loop: asyncio.AbstractEventLoop
@@ -68,11 +67,9 @@ def started_browser(chromium: Chromium) -> Iterator[Started]:
 
 @pytest.fixture
 def browser(started_browser: Started) -> Iterator[Browser]:
-    """The browser for tests.
-
-    Playwright leaves its event loop marked as running in this thread, which prevents other loops.
-    The fixture removes this mark while tests without a browser run.
-    """
+    """The browser for tests."""
+    # Playwright leaves its event loop marked as running in this thread, which prevents other loops.
+    # The fixture removes this mark while tests without a browser run.
     asyncio._set_running_loop(started_browser.loop)
     yield started_browser.browser
     asyncio._set_running_loop(None)
@@ -80,7 +77,7 @@ def browser(started_browser: Started) -> Iterator[Browser]:
 
 @dataclass
 class Visit:
-    """A page, the browser's errors and warnings on it, and the addresses of its requests."""
+    """An open page, its errors and warnings, and the addresses that it requested."""
 
     page: Page
     complaints: list[str] = field(default_factory=list)
@@ -92,11 +89,10 @@ READBACK: Final = "GPU stall due to ReadPixels"
 
 
 def complaint(line: ConsoleMessage) -> list[str]:
-    """Return a list with the console message, or an empty list if the test may ignore it.
-
-    A missing /favicon.ico is ignored: a browser requests this file if a page, such as a JSON
-    document, does not name an icon.
-    """
+    # Return a list with the console message, or an empty list if the test may ignore it.
+    #
+    # A missing /favicon.ico is ignored: a browser requests this file if a page, such as a JSON
+    # document, does not name an icon.
     is_known = READBACK in line.text or line.location["url"].endswith("/favicon.ico")
     return [f"{line.text} {line.location['url']}"] if is_serious(line) and not is_known else []
 
@@ -107,13 +103,13 @@ def is_serious(line: ConsoleMessage) -> bool:
 
 
 def failure(request: Request) -> list[str]:
-    """Return a list with the failure of a request; empty if the visitor has left the page."""
+    # Return a list with the failure of a request; empty if the visitor has left the page.
     return [] if request.failure == "net::ERR_ABORTED" else [f"{request.failure}: {request.url}"]
 
 
 @pytest.fixture
 def visit(browser: Browser) -> Iterator[Callable[..., Visit]]:
-    """Yield a function that opens a page in a new context; fail if it has errors or warnings."""
+    """Yield a function that opens a page; fail if the page has errors or warnings."""
     contexts: list[BrowserContext] = []
     visits: list[Visit] = []
 

@@ -1,4 +1,4 @@
-"""An exercise by an attacker who wants to run a script in students' browsers."""
+"""An exercise that tries to run a script in students' browsers."""
 
 # Each text calls `stolen` or loads a picture if a page takes it for markup, which a test notices.
 SCRIPT = "<script>stolen('script')</script>"

@@ -92,12 +92,10 @@ def practice(page: Page, service: str) -> None:
 
 
 def reading_help(page: Page, service: str) -> None:
-    """Open the first page of help."""
     page.goto(f"{service}/help/expressions")
 
 
 def ten_minutes(page: Page, service: str) -> None:
-    """Give a wrong answer on a screen of "DH in ten minutes"."""
     page.goto(f"{service}/learn-dh#alpha")
     page.locator("#alpha input").fill("-90")
     page.locator("#alpha").get_by_role("button", name="Check").click()
@@ -106,7 +104,6 @@ def ten_minutes(page: Page, service: str) -> None:
 
 
 def frames(page: Page, service: str) -> None:
-    """Place frames; one of them breaks a rule."""
     open_exercise(page, service, "planar-rrr-frames")
     placed = ("1,+z,0,0,0,+x", "2,-z,l1,0,0,+x", "3,+z,l1+l2,0,0,+z")
     for i, text in enumerate(",".join(placed).split(",")):
@@ -117,7 +114,6 @@ def frames(page: Page, service: str) -> None:
 
 
 def slip(page: Page, service: str) -> None:
-    """Mark a correct cell as the slip."""
     open_exercise(page, service, "find-the-slip-scara")
     page.get_by_role("button", name="mark row 3").click()
     page.get_by_role("button", name="Check").click()
@@ -181,7 +177,6 @@ VIEWS: Final[Mapping[str, Callable[[Page, str], None]]] = {
 
 
 def recorded_class(database: Path) -> None:
-    """Record the attempts of a class on several days."""
     store = AttemptStore.open(str(database))
     scara = load_catalogue(shipped_folder())["scara"]
     recorded_all(
@@ -195,7 +190,7 @@ def recorded_class(database: Path) -> None:
 
 
 def take_screenshots(service: str, names: Collection[str]) -> None:
-    """Take screenshots of the named views in light and dark, wide and narrow."""
+    """Take screenshots of the named views, in light and dark, wide and narrow."""
     found = find_chromium()
     if found is None:
         raise SystemExit(ABSENT)
@@ -223,7 +218,6 @@ def take_screenshots(service: str, names: Collection[str]) -> None:
 
 
 def main() -> None:
-    """Start the service and take screenshots of the named views, by default of all."""
     names = sys.argv[1:] or VIEWS
     if unknown := set(names) - set(VIEWS):
         raise SystemExit(f"There is no view {', '.join(unknown)}; there are {', '.join(VIEWS)}.")

@@ -21,7 +21,7 @@ def cells(page: Page, part: int = 0) -> Locator:
 
 
 def right_answers(exercise: Exercise) -> dict[str, list[str]]:
-    """Return the entries of each part in order, from the author's checks with correct answers."""
+    """Return the correct entries of each part, from the checks in the exercise file."""
     found: dict[str, list[str]] = {}
     for check in exercise.checks:
         if check.kind == "right":
@@ -59,10 +59,8 @@ def type_with_tab(page: Page, texts: Sequence[str]) -> None:
 
 
 def answer(page: Page, part: PartSpec, place: int, texts: Sequence[str]) -> None:
-    """Answer a part by keyboard from its first cell, which has the focus.
-
-    Matrices are pasted, in the notation of MATLAB; all other answers are typed.
-    """
+    """Answer a part by keyboard, beginning at its first cell."""
+    # Matrices are pasted, in the notation of MATLAB; all other answers are typed.
     if part.kind not in _MATRICES:
         return type_with_tab(page, texts)
     width = _MATRICES[part.kind]

@@ -1,4 +1,4 @@
-"""A tutor works with recorded attempts: list, override, statistics, regrade, deletion."""
+"""A tutor works with recorded attempts in the browser."""
 
 import csv
 import json
@@ -38,19 +38,16 @@ ANSWERS: list[tuple[str, Any]] = [("ada", RIGHT), ("grace", WRONG), (PICTURE, WR
 
 @dataclass
 class Recording:
-    """A service that records attempts, with its exercise folder and two keys.
+    """A service that records attempts, with its exercise folder and two keys."""
 
-    ``key`` is a key to record attempts, and a tutor's key for all exercises; ``narrow_key`` is a
-    tutor's key for one exercise.
-    """
-
+    # `key` is a key to record attempts, and a tutor's key for all exercises; `narrow_key` is a
+    # tutor's key for one exercise.
     address: str
     exercises: Path
     key: str
     narrow_key: str
 
     def sign_in(self, page: Page, key: str = "") -> None:
-        """Sign in with a key; by default with the key for all exercises."""
         page.goto(f"{self.address}/tutor")
         page.get_by_label("Your key").fill(key or self.key)
         page.get_by_role("button", name="Sign in").click()
@@ -65,7 +62,6 @@ class Recording:
             return str(json.load(answer)["attempt"]["id"])
 
     def correct(self) -> None:
-        """Change the exercise so that the correct table has no half turn."""
         text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
         changed = text.replace('["a2", "180deg",', '["a2", "0",').partition("[[checks]]")[0]
         assert "180deg" not in changed, "the exercise has changed"
@@ -298,7 +294,7 @@ def test_the_pages_of_attempts_are_accessible(
 
 @pytest.mark.long
 def test_the_api_page_shows_recorded_answers_as_text(recording: Recording, visit: Opening) -> None:
-    """Recorded answers are shown as text when a tutor tries an operation at /docs."""
+    # Recorded answers are shown as text when a tutor tries an operation at /docs.
     attempt = recording.record(PICTURE, WRONG)
     page = visit(viewport=NARROW, bypass_csp=True).page
     recording.sign_in(page)

@@ -1,4 +1,4 @@
-"""Pages show the answers in forged links as text, or ignore them."""
+"""Pages treat the answers in a forged link as plain text."""
 
 import base64
 import json

@@ -1,4 +1,4 @@
-"""All pages in a real browser: accessible, embedded, without scripts, and with hostile texts."""
+"""Test all pages in a browser: accessibility, embedding and hostile texts."""
 
 import json
 import re
@@ -40,7 +40,7 @@ FORCED_FILL = """() => {
 
 
 def violations(shown: Page | Frame, axe: str) -> list[str]:
-    """Return the violations that axe-core finds; in dark and forced colours, only of contrast."""
+    """Return the accessibility violations that axe-core finds on a page."""
     page = shown.page if isinstance(shown, Frame) else shown
     shown.evaluate(f"({json.dumps(axe)}, 0)")
     shown.evaluate(FORCED_FILL)

@@ -1,4 +1,4 @@
-"""Paste a part of a table from a spreadsheet; undo a change of the table in free play."""
+"""Paste part of a table from a spreadsheet; undo a change in free play."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Free play: a table, its robot in 3D, its pose, and its table in the other convention."""
+"""Test free play: a table of the student's own, its robot in 3D, and its pose."""
 
 from collections.abc import Callable
 
@@ -67,7 +67,7 @@ def test_a_seven_joint_arm_can_be_moved(
 
 @pytest.mark.campaign
 def test_a_table_can_be_written_and_shared(visit: Opening, service: str) -> None:
-    """The page also points out that both joints of the table turn about the same line."""
+    # The page also points out that both joints of the table turn about the same line.
     page = visit(permissions=["clipboard-read", "clipboard-write"], viewport=SMALL).page
     page.goto(f"{service}/play")
     page.get_by_label("Start from a robot").select_option("Planar arm, RR")

@@ -1,4 +1,4 @@
-"""The 3D view: sliders, the student's table drawn over the robot, and browsers without WebGL."""
+"""Test the 3D view: sliders, and the student's table over the robot."""
 
 import base64
 import os
@@ -26,7 +26,6 @@ def open_view(page: Page) -> None:
 
 
 def picture(page: Page) -> bytes:
-    """Return a screenshot of the 3D scene after the page has drawn all responses."""
     expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")
     page.evaluate("() => new Promise((done) => requestAnimationFrame(() => setTimeout(done, 50)))")
     return page.locator(".stage canvas").screenshot()
@@ -47,7 +46,6 @@ EDGE = """async (data) => {
 
 
 def is_cut(page: Page) -> bool:
-    """True if something is drawn at the upper edge or at a side of the 3D scene."""
     data = base64.b64encode(picture(page)).decode()
     return int(page.evaluate(EDGE, f"data:image/png;base64,{data}")) > 1
 

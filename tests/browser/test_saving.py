@@ -25,7 +25,6 @@ def folder(tmp_path: Path) -> Path:
 
 @pytest.fixture
 def writing(folder: Path) -> Iterator[str]:
-    """Start a service whose editor saves in the folder; return its address."""
     log = folder.parent / "log"
     command = [sys.executable, "-m", "service", "serve", "--port", "0"]
     variables = {"NO_COLOR": "1", "DH_GRADER_EDITOR_DIR": str(folder)}

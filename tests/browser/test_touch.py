@@ -12,7 +12,6 @@ Opening = Callable[..., Visit]
 
 
 def swipe(session: CDPSession, start: tuple[float, float], end: tuple[float, float]) -> None:
-    """Move a finger over the screen by the browser's own input events."""
     points = [
         {"x": start[0] + (end[0] - start[0]) * i / 8, "y": start[1] + (end[1] - start[1]) * i / 8}
         for i in range(9)

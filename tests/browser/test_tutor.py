@@ -1,4 +1,4 @@
-"""The tutor's pages: solutions, the editor, the report on a class."""
+"""Test the tutor's pages: solutions, editor, and the report on a class."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""A browser without WebGL: the service draws the student's own table."""
+"""Without WebGL, the service draws the student's table."""
 
 import os
 from collections.abc import Iterator
@@ -30,7 +30,6 @@ def page(browser: Browser, chromium: Chromium) -> Iterator[Page]:
 
 
 def drawing(page: Page) -> Locator:
-    """Return the drawing after the browser has decoded it."""
     image = page.get_by_role("img", name="Drawing of the robot at these joint values")
     expect(image).to_be_visible()
     expect(page.locator(".robot-view")).to_have_attribute("aria-busy", "false")

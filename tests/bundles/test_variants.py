@@ -1,4 +1,4 @@
-"""A bundle always gives a student the same seeds, and refuses data that name no student."""
+"""A bundle always gives a student the same variant."""
 
 import json
 from pathlib import Path
@@ -14,7 +14,6 @@ VARIANTS = BundleVariants("s" * 64, {"reach": ["a", "b", "c"], "wrist": []})
 
 
 def seeds(folder: Path, submission: object) -> dict[str, str]:
-    """Return the seeds that a bundle derives from the platform's JSON about a submission."""
     described, variants = folder / "described.json", folder / "variants.json"
     described.write_text(json.dumps(submission), encoding="utf-8")
     variants.write_bytes(VARIANTS.file().content)
@@ -22,7 +21,6 @@ def seeds(folder: Path, submission: object) -> dict[str, str]:
 
 
 def users(*numbers: object) -> object:
-    """Return Gradescope's JSON about a submission by the accounts with these ids."""
     return {"id": 5, "users": [{"id": each, "email": "a@b.c", "name": "A"} for each in numbers]}
 
 

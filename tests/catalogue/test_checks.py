@@ -1,4 +1,4 @@
-"""Messages on faults of the checks in an exercise file: line, known keys, advice."""
+"""Test the messages about faulty checks (sample answers) in an exercise file."""
 
 import re
 from pathlib import Path

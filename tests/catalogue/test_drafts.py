@@ -1,4 +1,4 @@
-"""Drafts of exercises: a limited number, for a limited time, in a folder that processes share."""
+"""Drafts of exercises are limited in number and time."""
 
 from itertools import count
 from pathlib import Path

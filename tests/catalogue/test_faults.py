@@ -1,4 +1,4 @@
-"""Every fault of an exercise file is refused with file, field and reason."""
+"""Every fault of an exercise file is reported with file, field and reason."""
 
 import os
 import re
@@ -379,7 +379,7 @@ def test_ranges_may_be_formulas_of_constants(tmp_path: Path) -> None:
 
 
 def test_every_row_of_a_robot_can_be_handed_in(tmp_path: Path) -> None:
-    """A robot that loads has no table longer than the twelve rows that an answer may have."""
+    # A robot that loads has no table longer than the twelve rows that an answer may have.
     names = [f"q{i}" for i in range(1, 12)]
     joints = [f'["k", "60deg", "0", "{name}"]' for name in names]
     table = ", ".join([*joints, '["k", "0", "k", "0"]'])

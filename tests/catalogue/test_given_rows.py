@@ -1,4 +1,4 @@
-"""Messages on faults of given rows in an exercise file."""
+"""Test the messages about faulty given rows in an exercise file."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The order of the catalogue, and the fields that describe an exercise there."""
+"""Test the order of the catalogue, and its descriptions of exercises."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Sentences that describe the shape of each answer."""
+"""Test the sentences that describe the shape of an answer, such as 4 × 4."""
 
 import re
 from collections.abc import Mapping

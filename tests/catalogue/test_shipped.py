@@ -1,4 +1,4 @@
-"""The shipped exercises."""
+"""Test the shipped exercises."""
 
 import tomllib
 from collections.abc import Mapping
@@ -84,7 +84,7 @@ def test_both_conventions_of_a_robot_reach_the_same_pose(
 def elementary(
     convention: Convention, a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers
 ) -> Numbers:
-    """Return the link transforms of rows as the product Z·X (standard) or X·Z (modified)."""
+    """Return the link transforms of rows as products of elementary motions."""
     z = np.tile(np.eye(4), (len(a), 1, 1))
     z[:, 0, 0] = z[:, 1, 1] = np.cos(theta)
     z[:, 1, 0] = np.sin(theta)
@@ -99,7 +99,7 @@ def elementary(
 
 
 def test_rrrp_in_the_proximal_convention(catalogue: Mapping[str, Exercise]) -> None:
-    """The in-class practice of Robotic Fundamentals has (a, α, d, θ) with α = 180° in row 3."""
+    # The in-class practice of Robotic Fundamentals has (a, α, d, θ) with α = 180° in row 3.
     reference = catalogue["rrrp"].robot.tables[Convention.MODIFIED]
     assert reference.labels == ("1", "2", "3", "4")
     texts = [tuple(cell.text() for cell in row) for row in reference.rows]
@@ -128,7 +128,7 @@ def test_planar_rrr_in_the_distal_convention(catalogue: Mapping[str, Exercise]) 
 def test_a_table_of_one_number_never_passes(
     exercise_id: str, number: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """This shows that the tests above for full marks can fail."""
+    # This shows that the tests above for full marks can fail.
     exercise = catalogue[exercise_id]
     [spec] = [spec for spec in exercise.parts if isinstance(spec, DhTableSpec)]
     rows = exercise.robot.tables[exercise.robot.convention].rows

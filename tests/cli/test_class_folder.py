@@ -1,4 +1,4 @@
-"""Grading a class folder in several processes: broken files do not affect other submissions."""
+"""Grade a class folder in several processes; broken files affect only themselves."""
 
 import json
 import os
@@ -153,7 +153,6 @@ def children(pid: int) -> list[int]:
 
 
 def workers(pid: int) -> list[int]:
-    """Return the ids of the worker processes, without Python's resource tracker."""
     return [each for each in children(pid) if b"spawn_main" in command_of(each)]
 
 

@@ -1,4 +1,4 @@
-"""The help of all commands shows words in square brackets, which Rich takes for markup."""
+"""The help of all commands shows square brackets, which Rich takes for markup."""
 
 import re
 from collections.abc import Iterator
@@ -12,14 +12,12 @@ from service.cli.program import COMMANDS, commands_of
 
 
 def commands(found: Any, *path: str) -> Iterator[tuple[tuple[str, ...], Any]]:
-    """Yield a command and all commands below it, each with the words that call it."""
     yield path, found
     for name, each in getattr(found, "commands", {}).items():
         yield from commands(each, *path, name)
 
 
 def bracketed(texts: list[str]) -> set[str]:
-    """Return the words in square brackets, with the brackets, from the sources of help texts."""
     return {word for text in texts for word in re.findall(r"\[[a-z][^\[\]]*\]", text)}
 
 

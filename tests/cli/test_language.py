@@ -1,4 +1,4 @@
-"""The command line speaks the language of the user."""
+"""The command line uses the user's language."""
 
 import ast
 import json
@@ -41,7 +41,6 @@ SAME = re.compile(r"\\?\[[^\]]*\]")
 
 
 def process(*arguments: object, **environment: str) -> subprocess.CompletedProcess[str]:
-    """Run Python in an environment with no locale except the one in ``environment``."""
     kept = {name: value for name, value in os.environ.items() if name not in VARIABLES}
     return subprocess.run(
         [sys.executable, *map(str, arguments)],
@@ -54,7 +53,6 @@ def process(*arguments: object, **environment: str) -> subprocess.CompletedProce
 
 
 def all_help(code: str) -> str:
-    """Return the help of all commands in a language, as one line."""
     # Wide enough for each text to stay on one line.
     wide = {"COLUMNS": "2000", "DH_GRADER_LANGUAGE": code}
     result = process("-c", ALL_HELP, code, **wide)
@@ -63,7 +61,6 @@ def all_help(code: str) -> str:
 
 
 def shown(text: str) -> str:
-    """Return a text as help shows it: without the escapes of markup."""
     return " ".join(text.replace("\\[", "[").split())
 
 
@@ -142,7 +139,6 @@ def test_json_is_the_same_in_every_locale(tmp_path: Path) -> None:
 
 
 def wrong_table(folder: Path) -> tuple[object, ...]:
-    """Return the command that grades a wrong table and an unreadable pose."""
     rows = [[0, 0, 0, "q1"], ["l1 +", "90deg", 0, "q2"], ["l2", 0, 0, "-q3"], ["l3", 0, 0, 0]]
     named = [dict(zip(("a", "alpha", "d", "theta"), map(str, row), strict=True)) for row in rows]
     file = folder / "a.json"
@@ -241,7 +237,6 @@ def test_the_list_of_exercises_is_in_the_language() -> None:
 
 
 def plain_words(node: ast.AST) -> Iterator[str]:
-    """Yield the string literals in a printed expression, but not those inside calls."""
     match node:
         case ast.Call(func=ast.Name(id="Text"), args=[text, *_]):
             yield from plain_words(text)

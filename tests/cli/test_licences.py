@@ -1,4 +1,4 @@
-"""The list of installed packages and their licences."""
+"""Test the list of installed packages and their licences."""
 
 import re
 from importlib.metadata import PackageNotFoundError, distribution

@@ -1,4 +1,4 @@
-"""The program as a process: its version, help, imported modules and streams."""
+"""Test the program as a process: its version, help, imports and output."""
 
 import importlib.metadata
 import json
@@ -50,7 +50,6 @@ def test_help_names_every_command_and_the_program() -> None:
 
 
 def loaded(*arguments: object) -> tuple[set[str], bytes]:
-    """Run a command; return the names of the modules that it imports, and its output."""
     probe = (
         "import sys; from service.cli import main\n"
         "try: main()\n"

@@ -33,6 +33,6 @@ def asynchronous(address: str, use: Use, **options: Any) -> Any:
 
 @pytest.fixture(params=[synchronous, asynchronous], ids=["sync", "async"])
 def using(request: pytest.FixtureRequest) -> Using:
-    """``using(address, lambda client: …)`` calls a function with a client, sync or async."""
+    # `using(address, lambda client: …)` calls a function with a client, sync or async.
     use: Using = request.param
     return use

@@ -1,4 +1,4 @@
-"""A server with scripted responses that records the requests."""
+"""A server that sends prepared responses, and records the requests."""
 
 import socket
 import threading
@@ -19,7 +19,7 @@ class Received:
 
 
 def http(status: int, body: str | bytes = "", **headers: str) -> bytes:
-    """The bytes of an HTTP response; ``retry_after=…`` is the header ``retry-after``."""
+    """Return the bytes of an HTTP response."""
     content = body.encode() if isinstance(body, str) else body
     named = {name.replace("_", "-"): value for name, value in headers.items()}
     lines = [f"{name}: {value}" for name, value in named.items()]
@@ -29,7 +29,7 @@ def http(status: int, body: str | bytes = "", **headers: str) -> bytes:
 
 @dataclass
 class Scripted:
-    """A server with one response for each request; a response is bytes, or pieces of bytes."""
+    """A server that sends one prepared response to each request."""
 
     answers: list[bytes | Iterable[bytes]]
     listener: socket.socket = field(default_factory=lambda: socket.create_server(("127.0.0.1", 0)))
@@ -39,7 +39,6 @@ class Scripted:
         self.address = f"http://127.0.0.1:{self.listener.getsockname()[1]}"
 
     def serve(self) -> None:
-        """Respond to requests until no response is left."""
         for answer in self.answers:
             try:
                 connection, _ = self.listener.accept()
@@ -57,7 +56,7 @@ class Scripted:
 
 @contextmanager
 def scripted(*answers: bytes | Iterable[bytes]) -> Iterator[Scripted]:
-    """Run a server with these responses; an empty response closes the connection."""
+    """Run a server that sends these responses in order."""
     server = Scripted(list(answers))
     thread = threading.Thread(target=server.serve)
     thread.start()

@@ -1,4 +1,4 @@
-"""Both clients with a real server process, and with servers that fail in various ways."""
+"""Test the sync and the async client, with real and with failing servers."""
 
 import json
 import socket
@@ -35,7 +35,6 @@ BUSY = {"type": "about:blank", "title": "Busy", "status": 503, "detail": "Wait."
 
 
 def in_a_file(value: object) -> Any:
-    """The value after writing it to JSON and reading it back."""
     return read_json(json.dumps(value).encode())
 
 

@@ -31,18 +31,18 @@ NO_TWIST = {"table": "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
 
 @dataclass
 class Class:
-    """The course ``robots`` in a running store; ``keys`` has the key in each learner's link."""
+    """The course ``robots`` in a running service, and each learner's key."""
 
     store: AttemptStore
     keys: Mapping[str, str]
     app: Any
 
     def do(self, work: Callable[[Connection], Any]) -> Any:
-        """Return the result of ``work`` in a transaction."""
+        """Call ``work`` in a database transaction, and return its result."""
         return in_transaction(self.store.engine, work)
 
     def assign(self, **more: Any) -> None:
-        """Add the assignment ``homework``: the exercise scara for ten points."""
+        """Add an assignment: the exercise scara for ten points."""
         exercises = [{"exercise": "scara", "points": 10}]
         fields = {"id": "homework", "title": "Homework", "exercises": exercises, **more}
         new = NewAssignment.model_validate(fields)
@@ -68,7 +68,6 @@ class Class:
         return self.ask("POST", path, learner, key, **body)
 
     def own(self, learner: str = "ada") -> Any:
-        """Return the learner's state at the exercise scara."""
         [course] = self.ask("GET", "/v1/me", learner).json()["courses"]
         return course["assignments"][0]["exercises"][0]
 
@@ -86,8 +85,6 @@ def services(
 def class_(
     request: pytest.FixtureRequest, services: KeptServices, catalogue: Mapping[str, Exercise]
 ) -> Class:
-    """The class, in a database of the kind that the parameter names."""
-
     def build(store: AttemptStore, keys: KeyRing) -> Any:
         access = Access(OPEN_HERE, read_attempts=None, keys=keys)
         return application(catalogue, access=access, store=store)

@@ -1,4 +1,4 @@
-"""An assignment file or options become an assignment, or the refusal gives the reason."""
+"""Create an assignment from a file or options, or refuse it with a reason."""
 
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The client has a method for every route of courses, and each works on a real server."""
+"""The client has a working method for every route of courses."""
 
 import io
 import zipfile
@@ -36,7 +36,6 @@ SECRET = "0123456789abcdef" * 4
 
 
 def administrator(database: str) -> str:
-    """Return a new key for all courses."""
     store, text, now = AttemptStore.open(database), new_key_text(), datetime.now(UTC)
     digest, until = Secret(SECRET).key_digest(text), now + timedelta(days=1)
     in_transaction(

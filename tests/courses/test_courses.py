@@ -1,4 +1,4 @@
-"""A class hands in: limits, lateness, extensions, practice, solutions and the gradebook."""
+"""Test courses: hand-ins, due dates, extensions and the gradebook."""
 
 import asyncio
 import json
@@ -44,13 +44,12 @@ def points(class_: Class) -> list[list[float | None]]:
 
 
 def all_right() -> Any:
-    """Return correct answers to all parts of scara, from the first check in its file."""
+    """Return correct answers to all parts of the exercise scara."""
     file = Path(__file__).parents[2] / "exercises/scara.toml"
     return tomllib.loads(file.read_text(encoding="utf-8"))["checks"][0]["answers"]
 
 
 def near(value: float) -> list[Any]:
-    """Return a list that equals ``[value]`` up to rounding."""
     return [pytest.approx(value, abs=1e-5)]
 
 
@@ -153,7 +152,7 @@ def test_no_practice_before_the_assignment_opens_either(class_: Class) -> None:
 def test_an_exercise_whose_file_is_not_there_is_named_to_learner_and_tutor(
     class_: Class, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """The command line knows a new file, which the service has not read yet."""
+    # The command line knows a new file, which the service has not read yet.
     exercises = [{"exercise": each, "points": 1} for each in ("scara", "brand-new")]
     fields = {"id": "homework", "title": "Homework", "exercises": exercises}
     new = NewAssignment.model_validate(fields)
@@ -206,8 +205,7 @@ def test_all_lists_have_the_order_of_family_names(class_: Class) -> None:
 
 
 def test_an_exercise_with_the_same_robot_is_no_practice_either(class_: Class) -> None:
-    """Practice with another exercise on the same robot would give away the assigned table."""
-
+    # Practice with another exercise on the same robot would give away the assigned table.
     def practised(exercise: str) -> list[int]:
         paths = [f"/v1/exercises/{exercise}/{last}" for last in ("grade", "solution")]
         return [class_.ask("POST", path, answers={}).status_code for path in paths]
@@ -245,7 +243,7 @@ def test_attempts_outside_of_the_assignment_are_no_practice_either(class_: Class
 
 
 def test_waiting_for_a_turn_makes_no_hand_in_late(class_: Class) -> None:
-    """A busy service gets a request before the due date, and grades it after the due date."""
+    # A busy service gets a request before the due date, and grades it after the due date.
     class_.assign(due=(NOW + timedelta(minutes=-1)).isoformat())
     inner = class_.app
 

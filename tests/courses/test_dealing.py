@@ -1,4 +1,4 @@
-"""Variants in assignments: each learner has a personal variant, and never sees its seed."""
+"""Each learner gets a personal variant of an assigned exercise."""
 
 import asyncio
 import json
@@ -197,8 +197,7 @@ def test_no_learner_sees_a_seed_that_counts(
 
 
 class TestAVariantThatCannotBeMade:
-    """The file has a fault in nearly every variant, but not in the variant that is checked."""
-
+    # The file has a fault in nearly every variant, but not in the variant that is checked.
     @pytest.fixture
     def catalogue(self, catalogue: Mapping[str, Exercise]) -> Mapping[str, Exercise]:
         unreadable = ", ".join(['{ sign = "*", says = "down" }'] * 500)
@@ -316,7 +315,6 @@ def test_a_tutor_renews_the_variants_over_http(class_: Class) -> None:
     assign(class_)
 
     def change(catalogue: Mapping[str, Exercise], **fields: Any) -> str:
-        """Change the assignment over HTTP, without a key; return its recorded choices."""
         access = Access(OPEN_HERE, read_attempts=None)
         app = application(catalogue, access=access, store=class_.store)
 

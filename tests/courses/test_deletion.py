@@ -1,4 +1,4 @@
-"""Nothing is left of deleted courses, deleted assignments and removed learners."""
+"""Deleted courses, assignments and learners leave no data."""
 
 import asyncio
 from functools import partial
@@ -49,7 +49,6 @@ def rows(class_: Class) -> dict[str, int]:
 
 @pytest.fixture
 def tutored(class_: Class) -> Class:
-    """A class with an extension, two attempts by ada, and one by grace with a tutor's points."""
     class_.assign(due=days(1))
     more = Extension.model_validate({"learner": "ada", "due": days(2)})
     class_.do(partial(extend, course="robots", assignment="homework", extension=more))
@@ -90,7 +89,7 @@ def test_an_assignment_is_deleted_with_its_attempts_only_on_request(tutored: Cla
 @pytest.mark.long
 @BOTH
 def test_the_attempts_of_another_assignment_stay_and_do_not_count_outside(tutored: Class) -> None:
-    """Deleted attempts leave gaps in the numbers of a learner's attempts."""
+    # Deleted attempts leave gaps in the numbers of a learner's attempts.
     exercises = [{"exercise": "scara", "points": 10}]
     tutored.assign(id="other", title="Other", exercises=exercises)
     path = "/v1/courses/robots/assignments/other/attempts"

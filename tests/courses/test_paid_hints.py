@@ -1,4 +1,4 @@
-"""Hints at handed-in answers: their price, a new answer between two steps, and thieves."""
+"""Test hints that cost points."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -30,7 +30,6 @@ PROBLEM = "urn:dh-grader:problem:"
 
 
 def wrong(d: str = "d3") -> Mapping[str, str]:
-    """Return a table that lacks the half turn, and whose d in row 3 is the text ``d``."""
     return {"table": f"a1 0 0 θ1\na2 0 0 θ2\n0 0 {d} 0\n0 0 d4 θ4"}
 
 
@@ -232,7 +231,7 @@ def test_the_statistics_count_hints_and_misconceptions_by_attempt(class_: Class)
 def test_a_thief_with_all_hints_gains_nothing_below_their_price(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """In ten rounds, the thief takes hints, and writes the symbols that the hints name."""
+    # In ten rounds, the thief takes hints, and writes the symbols that the hints name.
     class_.assign(hint_prices=[0.01, 0.01, 0.01])
     names = [each.name for each in catalogue["scara"].variables]
     rows = [["7", "7", "7", f"theta{i}"] for i in range(1, 5)]

@@ -1,4 +1,4 @@
-"""A tutor of a course regrades the attempts in this course, and no other attempts."""
+"""A tutor of a course can regrade only the attempts in this course."""
 
 from collections.abc import Mapping
 from dataclasses import replace
@@ -27,7 +27,6 @@ BOTH = pytest.mark.parametrize("class_", KINDS, indirect=True)
 
 
 def set_up(class_: Class) -> Class:
-    """Record an attempt by ada in each of two courses, with the points of an older version."""
     class_.assign()
     exercises = [{"exercise": "scara", "points": 10}]
     new = NewAssignment.model_validate({"id": "homework", "title": "H", "exercises": exercises})
@@ -50,7 +49,6 @@ def set_up(class_: Class) -> Class:
 
 
 def versions(class_: Class) -> dict[str, bool]:
-    """Return whether the attempt in each course was graded by an older version."""
     rows = select(assignments.c.course, attempts.c.version).join_from(attempts, assignments)
     return {course: version == "old" for course, version in class_.do(lambda it: it.execute(rows))}
 
@@ -87,7 +85,7 @@ def test_a_tutor_of_a_course_regrades_only_its_attempts(class_: Class) -> None:
 def test_a_course_leaves_the_queue_of_the_others_alone(
     class_: Class, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """An interrupted regrade of all attempts has left attempts of both courses in the queue."""
+    # An interrupted regrade of all attempts has left attempts of both courses in the queue.
     both = set_up(class_)
     both.do(Regrading(catalogue["scara"], FeedbackLevel.FULL).enqueue)
     assert both.ask("POST", PATH, "tutor", apply=True).json()["regraded"] == 1

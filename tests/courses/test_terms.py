@@ -1,4 +1,4 @@
-"""When an attempt is on time, late, or refused; with and without an extension."""
+"""Test when an attempt is on time, late or refused."""
 
 from datetime import datetime, timedelta
 from types import SimpleNamespace

@@ -1,4 +1,4 @@
-"""Dates in the time zone of a course; expected values are written by hand from the IANA rules."""
+"""Compare dates in a course's time zone with dates written by hand."""
 
 from datetime import UTC, datetime
 from zoneinfo import ZoneInfo

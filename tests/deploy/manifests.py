@@ -1,4 +1,4 @@
-"""The Kubernetes manifests of deploy/kubernetes."""
+"""Read the Kubernetes manifests of deploy/kubernetes."""
 
 from collections.abc import Iterator
 from pathlib import Path
@@ -29,7 +29,6 @@ def the(kind: str, name: str = "grader") -> dict[str, Any]:
 
 
 def pods() -> Iterator[tuple[str, dict[str, Any]]]:
-    """Yield the name and the specification of the pod of each deployment and job."""
     for kind in ("Deployment", "Job"):
         for each in objects(kind):
             yield each["metadata"]["name"], each["spec"]["template"]

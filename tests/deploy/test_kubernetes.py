@@ -1,7 +1,6 @@
-"""The manifests match the schemas of Kubernetes, the settings, the image and each other.
+"""The Kubernetes manifests match their schemas, the settings and the image."""
 
-If kubectl is installed, it builds the overlays as well. The tests need no cluster.
-"""
+# If kubectl is installed, it builds the overlays as well. The tests need no cluster.
 
 import re
 import shutil

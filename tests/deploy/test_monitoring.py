@@ -1,4 +1,4 @@
-"""The alert rules and the dashboard use metrics, labels and routes that the service has."""
+"""The alert rules and the dashboard use only existing metrics and routes."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""deploy/simple and the systemd unit fit the service."""
+"""deploy/simple and the systemd unit match the service."""
 
 import re
 import shutil

@@ -1,4 +1,4 @@
-"""The GitHub Action, the GitLab component and the release workflow; the tests run their scripts."""
+"""Run the scripts of the GitHub Action, the GitLab component and the release workflow."""
 
 import os
 import re

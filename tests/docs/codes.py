@@ -1,10 +1,9 @@
-"""Find the codes of all messages of the program, by reading its source.
+"""Find the codes of all messages of the program, by reading its source."""
 
-A code is the argument ``code`` of a class with a field or parameter of that name (Finding, Note,
-ExpressionError …), or of a function that passes it on to such a class. It must be a string
-constant, or a name to which only string constants are assigned. A code that is composed at run
-time cannot be found, and is refused.
-"""
+# A code is the argument `code` of a class with a field or parameter of that name (Finding, Note,
+# ExpressionError …), or of a function that passes it on to such a class. It must be a string
+# constant, or a name to which only string constants are assigned. A code that is composed at run
+# time cannot be found, and is refused.
 
 import ast
 from collections.abc import Iterable, Iterator, Mapping
@@ -21,7 +20,7 @@ Given = list[tuple[str, ast.expr]]
 
 @dataclass(frozen=True, slots=True)
 class CodeUse:
-    """A code, with the file and line in which it is used."""
+    """A message code, and the file and line that use it."""
 
     code: str
     file: str
@@ -29,7 +28,7 @@ class CodeUse:
 
 
 class HiddenCodeError(Exception):
-    """A code that is not a string constant."""
+    """A message code that is not a string constant."""
 
     def __init__(self, file: str, value: ast.expr) -> None:
         super().__init__(f"{file}:{value.lineno}: not written out: {ast.unparse(value)}")
@@ -44,7 +43,7 @@ def sources(folder: Path) -> dict[str, str]:
 
 
 def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
-    """Return every use of a code in these files. Raises HiddenCodeError."""
+    """Return every use of a message code in these files."""
     trees = {file: ast.parse(text) for file, text in files.items()}
     nodes = {file: list(ast.walk(tree)) for file, tree in trees.items()}
     classes = _classes(chain.from_iterable(nodes.values()))
@@ -67,7 +66,6 @@ def codes_in(files: Mapping[str, str]) -> list[CodeUse]:
 
 
 def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
-    """Return the classes that carry a code, with the position of their argument ``code``."""
     carriers: dict[str, int] = {}
     heirs: list[tuple[str, set[str]]] = []
     for node in nodes:
@@ -95,7 +93,6 @@ def _classes(nodes: Iterable[ast.AST]) -> dict[str, int]:
 
 
 def _functions(nodes: Iterable[ast.AST]) -> Iterator[tuple[str, int]]:
-    """Yield the functions that pass a code on, with the position of their argument ``code``."""
     for node in nodes:
         if isinstance(node, Function) and node.name != "__init__" and CODE in _arguments(node):
             place = _arguments(node).index(CODE)
@@ -116,7 +113,6 @@ def _imported(nodes: Iterable[ast.AST]) -> set[str]:
 
 
 def _given(nodes: Iterable[ast.AST]) -> Given:
-    """Return the names and values of all assignments among these nodes."""
     given: Given = []
     for node in nodes:
         if isinstance(node, ast.Assign):
@@ -128,7 +124,6 @@ def _given(nodes: Iterable[ast.AST]) -> Given:
 
 
 def _calls(tree: ast.Module) -> Iterator[tuple[Function | None, ast.Call]]:
-    """Yield all calls, each with the innermost function around it."""
     waiting: list[tuple[ast.AST, Function | None]] = [(tree, None)]
     while waiting:
         node, around = waiting.pop()
@@ -139,10 +134,6 @@ def _calls(tree: ast.Module) -> Iterator[tuple[Function | None, ast.Call]]:
 
 
 def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None:
-    """Return the argument ``code`` of a call, or None if the call has no such argument.
-
-    If the argument cannot be found, return the call itself.
-    """
     for keyword in call.keywords:
         if keyword.arg == CODE:
             return keyword.value
@@ -159,7 +150,6 @@ def _handed_over(call: ast.Call, carriers: Mapping[str, int]) -> ast.expr | None
 
 
 def _texts(value: ast.expr, function: Function | None, known: Given, file: str) -> list[str]:
-    """Return the codes that an expression may have; none if it only passes a code on."""
     match value:
         case ast.Constant(str(text)):
             # A finding without a code gets that of its record.

@@ -1,6 +1,6 @@
-"""Write the page on the keys of an exercise file from the schema: docs/exercise-fields.md.
+"""Write docs/exercise-fields.md, the page on the keys of an exercise file.
 
-``python -m tests.docs.exercise_fields > docs/exercise-fields.md`` writes it.
+Run ``python -m tests.docs.exercise_fields > docs/exercise-fields.md``.
 """
 
 import ast
@@ -128,10 +128,6 @@ def page() -> str:
 
 
 def _section(heading: str, model: type[BaseModel], text: str = "", first: str = "") -> str:
-    """Return a section on the keys of a model, without the keys of its base class.
-
-    ``first`` is the row of the key ``kind``.
-    """
     schema = model.model_json_schema()
     base = model.__base__
     known = set(base.model_fields) if base and issubclass(base, BaseModel) else set[str]()
@@ -156,7 +152,7 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
 
 
 def meanings(model: type[BaseModel]) -> dict[str, str]:
-    """Return the docstring of each key of a model."""
+    """Return the description of each key of a model."""
     [tree] = ast.parse(textwrap.dedent(inspect.getsource(model))).body
     assert isinstance(tree, ast.ClassDef)
     found = {}
@@ -179,7 +175,6 @@ def _rows(
 
 
 def _markdown(text: str) -> str:
-    """Return the first paragraph of a text, with quoted words and double backticks as code."""
     paragraph = " ".join(text.partition("\n\n")[0].split())
     return re.sub(r'"[\w-]+"', r"`\g<0>`", paragraph.replace("``", "`"))
 
@@ -200,7 +195,6 @@ _NULL: Final = {"type": "null"}
 
 
 def _type(schema: Schema, defs: Mapping[str, Schema], ending: str = "") -> str:
-    """Return the type of a value in words; ``ending`` is "s" for the plural."""
     match schema:
         case {"$ref": str(reference)}:
             return _type(defs[reference.rpartition("/")[2]], defs, ending)

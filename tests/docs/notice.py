@@ -1,6 +1,6 @@
-"""Write the notice of third-party works in the repository: the file NOTICE.
+"""Write NOTICE, the list of third-party works in the repository.
 
-``python -m tests.docs.notice > NOTICE`` writes it.
+Run ``python -m tests.docs.notice > NOTICE``.
 """
 
 import re
@@ -83,7 +83,6 @@ _ARM_FILES: Final = (
 def _joints(
     name: str, folder: str, source: str, rights: str, licence: str, text: str, arms: str
 ) -> Vendored:
-    """Return the third-party work from which the joints of some arms were copied."""
     version = folder.rpartition("-")[2]
     files = tuple(f"{_ARMS}/{folder}/{arm}.urdf" for arm in arms.split())
     title = f"{name}, the joints of arms"

@@ -1,10 +1,12 @@
-"""Write the page of all sentences of messages, each with an example: docs/sentences.md.
+"""Write docs/sentences.md: all sentences of messages, each with an example.
 
-``python -m tests.docs.sentences > docs/sentences.md`` writes it. The examples come from the records
-of misconceptions, docs/messages.md, ``sentence_examples.toml``, the checks in the exercise files,
-and the corpus of formulas. Each example is graded. The page shows each sentence with the first
-example that causes the sentence.
+Run ``python -m tests.docs.sentences > docs/sentences.md``.
 """
+
+# The examples come from the records
+# of misconceptions, docs/messages.md, `sentence_examples.toml`, the checks in the exercise files,
+# and the corpus of formulas. Each example is graded. The page shows each sentence with the first
+# example that causes the sentence.
 
 import sys
 import tomllib
@@ -47,7 +49,7 @@ _LONGEST: Final = 240
 
 @dataclass(frozen=True)
 class Said:
-    """A message that an example causes: its code, sentence and correction, and the answer."""
+    """A message that an example answer causes."""
 
     code: str
     sentence: str
@@ -58,7 +60,7 @@ class Said:
 
 @dataclass(frozen=True)
 class Example:
-    """Answers to parts of an exercise."""
+    """Example answers to parts of an exercise."""
 
     exercise: str
     answers: Mapping[str, Any]
@@ -90,7 +92,6 @@ def pasted_texts() -> Iterator[str]:
 
 
 def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
-    """Yield answers to parts of exercises."""
     for record in all_records():
         if record.example is not None:
             name, part, answer, *unit = record.example
@@ -121,7 +122,6 @@ def _written() -> dict[str, Any]:
 
 
 def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> Iterator[Said]:
-    """Yield the error or the notes on each formula."""
     for text in texts:
         try:
             found = [(note.code, note.message, "") for note in read(text, vocabulary).notes]
@@ -132,7 +132,6 @@ def said_of_formulas(texts: Iterable[str], vocabulary: Vocabulary = ROBOT) -> It
 
 
 def said_of_pasted(texts: Iterable[str], exercise: Exercise) -> Iterator[Said]:
-    """Yield the error or the notes on each pasted text, in the preview."""
     for text in texts:
         for part in ("table", "links", "pose"):
             preview = preview_pasted(text, exercise, part)
@@ -163,7 +162,6 @@ def said_of_answers(
 
 
 def _said_of_points(part: PartReport, example: Example) -> Iterator[Said]:
-    """Yield the sentences that say where points were lost, and why rows are worth little."""
     where = f"{example.exercise}, {part.part}"
     answer = shown(example.answers.get(part.part, ""))
     # The second is the form of the level ``score``.
@@ -186,7 +184,7 @@ def _place(places: tuple[Place, ...]) -> str:
 
 
 def shown(answer: Any) -> str:
-    """Return an answer as short text: rows with semicolons, values with commas."""
+    """Return an answer as short text."""
     match answer:
         case {"rows": [*rows], **rest}:
             head = "".join(f"{name}: {value}; " for name, value in rest.items())
@@ -212,7 +210,6 @@ Known = tuple[Template, frozenset[str]]
 
 
 def known_templates() -> list[Known]:
-    """Return the templates of sentences in the code that reads, judges and explains."""
     codes: dict[str, set[str]] = {}
     for use in messages_page.program():
         codes.setdefault(use.file, set()).add(use.code)
@@ -237,18 +234,17 @@ def all_said() -> Iterator[Said]:
 
 @dataclass(frozen=True)
 class Row:
-    """A line of the page, and the section of docs/messages.md that has its code."""
+    """A line of docs/sentences.md."""
 
     section: str
     said: Said
 
 
 def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], list[Template]]:
-    """Return the first message with each template, and the templates without a message.
-
-    Many sentences may contain a short template. So a short template counts only at the beginning of
-    a sentence, or in a message whose code is in the file of the template.
-    """
+    # Return the first message with each template, and the templates without a message.
+    #
+    # Many sentences may contain a short template. So a short template counts only at the beginning
+    # of a sentence, or in a message whose code is in the file of the template.
     unmet = list(known)
     rows: list[Row] = []
     for each in dict.fromkeys(said):
@@ -328,7 +324,7 @@ def _cell(text: str) -> str:
 
 
 def code_span(text: str) -> str:
-    """Return a text with any characters as code in Markdown; shorten a long text in the middle."""
+    """Return a text as code in Markdown, shortened if it is long."""
     text = text.replace("\n", END)
     if len(text) > _LONGEST:
         text = f"{text[: _LONGEST // 2]} … {text[-_LONGEST // 4 :]}"

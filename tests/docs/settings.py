@@ -1,6 +1,6 @@
-"""Write the page of all environment variables from the settings: docs/settings.md.
+"""Write docs/settings.md, the page of all environment variables.
 
-``python -m tests.docs.settings > docs/settings.md`` writes it.
+Run ``python -m tests.docs.settings > docs/settings.md``.
 """
 
 import sys

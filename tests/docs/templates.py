@@ -1,9 +1,8 @@
-"""Find the sentences of all messages of the program, by reading its source.
+"""Find the sentences of all messages of the program, by reading its source."""
 
-A template is a string of at least two words in the code that reads, judges or explains. Each value
-in an f-string and each ``{name}`` in the template of a sentence is a gap. Texts for programmers
-(docstrings, patterns, the text of a ValueError) are no templates.
-"""
+# A template is a string of at least two words in the code that reads, judges or explains. Each
+# value in an f-string and each `{name}` in the template of a sentence is a gap. Texts for
+# programmers (docstrings, patterns, the text of a ValueError) are no templates.
 
 import ast
 import re
@@ -28,7 +27,7 @@ _WORD: Final = re.compile(r"[^\W\d_]{2,}")
 
 @dataclass(frozen=True, slots=False)
 class Template:
-    """The constant pieces of a sentence in order, and its file."""
+    """A sentence with gaps: its constant pieces in order."""
 
     pieces: tuple[str, ...]
     file: str
@@ -44,7 +43,7 @@ class Template:
         return len(_WORD.findall(self.text)) > 4
 
     def begins(self, sentence: str) -> bool:
-        """True if the sentence begins with the first constant piece of the template."""
+        """True if the sentence begins with the first piece of the template."""
         return bool(self.pieces[0].strip()) and self._pattern.match(sentence) is not None
 
     def is_met_by(self, text: str) -> bool:
@@ -53,12 +52,10 @@ class Template:
 
     @cached_property
     def _longest(self) -> str:
-        """The longest piece without its first letter, which may be upper case in the text."""
         return max(self.pieces, key=len).strip()[1:]
 
     @cached_property
     def _pattern(self) -> re.Pattern[str]:
-        """The pattern of the sentence; its first letter may be upper case."""
         first, *others = [re.escape(piece) for piece in self.text.split(GAP)]
         if first[:1].islower():
             first = f"[{first[0]}{first[0].upper()}]{first[1:]}"
@@ -66,7 +63,7 @@ class Template:
 
 
 def templates_in(files: Mapping[str, str]) -> list[Template]:
-    """Return the templates of these files in order; each template is once per file."""
+    # Return the templates of these files in order; each template is once per file.
     found = [
         Template(pieces, file)
         for file, text in files.items()
@@ -82,7 +79,6 @@ def _is_prose(pieces: tuple[str, ...]) -> bool:
 
 
 def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
-    """Yield the strings below a node, each as the pieces between its gaps."""
     for node in ast.iter_child_nodes(tree):
         match node:
             case ast.Expr(value=ast.Constant()):  # a docstring
@@ -105,7 +101,6 @@ def _pieces(tree: ast.AST) -> Iterator[tuple[str, ...]]:
 
 
 def _of_joined(node: ast.JoinedStr) -> Iterator[tuple[str, ...]]:
-    """Yield the pieces of the strings in an f-string's values, then the f-string's own pieces."""
     pieces = [""]
     for value in node.values:
         if isinstance(value, ast.Constant):
@@ -117,7 +112,6 @@ def _of_joined(node: ast.JoinedStr) -> Iterator[tuple[str, ...]]:
 
 
 def _of_call(call: ast.Call) -> Iterator[tuple[str, ...]]:
-    """Yield the pieces of the templates in a call of ``say``, and of the strings in its values."""
     for each in call.args:
         if isinstance(each, ast.Constant):
             yield _of_sentence(str(each.value))
@@ -127,7 +121,6 @@ def _of_call(call: ast.Call) -> Iterator[tuple[str, ...]]:
 
 
 def _of_sentence(template: str) -> tuple[str, ...]:
-    """Return the pieces between the gaps in a template of ``say``."""
     pieces = [""]
     for text, name, _, _ in Formatter().parse(template):
         pieces[-1] += text

@@ -1,4 +1,4 @@
-"""Each example of docs/answer-kinds.md gets full marks, and every kind has an entry."""
+"""Each example in docs/answer-kinds.md gets full marks."""
 
 import json
 import re

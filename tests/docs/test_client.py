@@ -1,4 +1,4 @@
-"""The examples of docs/client.md print the shown output, on a real server."""
+"""The examples in docs/client.md print the shown output."""
 
 import contextlib
 import io

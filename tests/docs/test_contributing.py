@@ -1,4 +1,4 @@
-"""CONTRIBUTING.md names files, folders and targets that exist; its map has every package."""
+"""CONTRIBUTING.md lists every package, and names only files and targets that exist."""
 
 import re
 from collections.abc import Iterator
@@ -12,7 +12,6 @@ STARTS = (ROOT, SERVICE, SERVICE / "expressions", SERVICE / "grading", SERVICE /
 
 
 def on_the_map() -> Iterator[Path]:
-    """Yield the files and folders of the map; an indented line is inside the folder above it."""
     above: list[tuple[int, Path]] = []
     chart = PAGE[PAGE.index("## The map") : PAGE.index("## Five recipes")]
     for indent, names in re.findall(r"^    ( *)((?:\w+(?:/|\.py) +)+)", chart, re.MULTILINE):

@@ -1,4 +1,4 @@
-"""Every example of docs/expressions.md is read as the page says."""
+"""The program reads every example in docs/expressions.md as the page says."""
 
 import re
 from pathlib import Path
@@ -14,7 +14,6 @@ _COLUMN = re.compile(r"(?<!\\)\|")
 
 
 def rows(*heads: str) -> list[tuple[str, ...]]:
-    """Return the rows of the tables with these column heads, without backticks."""
     found: list[tuple[str, ...]] = []
     inside = False
     for line in PAGE.split("\n"):

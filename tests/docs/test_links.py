@@ -1,4 +1,4 @@
-"""Pages refer to each other by links, and the links have targets."""
+"""Links between pages of docs/ have existing targets."""
 
 import re
 from pathlib import Path
@@ -29,7 +29,7 @@ def test_a_link_leads_to_a_file(page: Path) -> None:
 
 
 def anchors(page: Path) -> set[str]:
-    """Return the anchors that GitHub and GitLab give to the headings of a page."""
+    """Return the anchors that GitHub and GitLab derive from a page's headings."""
     headings = re.findall(r"^#+ (.+)$", prose(page), re.MULTILINE)
     return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in headings}
 

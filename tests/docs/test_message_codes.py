@@ -1,7 +1,6 @@
-"""docs/messages.md lists every code that the program gives, and no other.
+"""docs/messages.md lists exactly the message codes of the program."""
 
-Its tables of slips are made from the records (``tests/docs/misconceptions``).
-"""
+# Its tables of slips are made from the records (`tests/docs/misconceptions`).
 
 import json
 import re
@@ -36,7 +35,7 @@ PASTED_NOTED = "A pasted table or matrix that is read, with a note"
 
 
 class Line(NamedTuple):
-    """A line of a table of codes; ``example`` has the cells that follow the meaning."""
+    """A line of a table of message codes."""
 
     section: str
     code: str
@@ -44,7 +43,7 @@ class Line(NamedTuple):
 
 
 def lines(page: str) -> list[Line]:
-    """Return the lines of all tables whose first column is the code."""
+    """Return the lines of all tables of message codes."""
     found: list[Line] = []
     section, heads = "", ""
     for line in page.split("\n"):
@@ -66,11 +65,9 @@ LINES = lines(PAGE)
 
 @cache
 def program() -> Sequence[CodeUse]:
-    """Return every use of a code in the program, found once because it takes a second.
-
-    Three folders are left out: ``attempts`` only counts the codes of reports, the codes in
-    ``translations`` name languages, and a standard defines the codes in ``lti/handed_files``.
-    """
+    """Return every use of a message code in the program."""
+    # Three folders are left out: `attempts` only counts the codes of reports, the codes in
+    # `translations` name languages, and a standard defines the codes in `lti/handed_files`.
     telling = {
         file: text
         for file, text in sources(ROOT / "service").items()
@@ -103,7 +100,7 @@ def test_a_line_of_the_page_without_its_example() -> None:
 
 
 def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str], set[str]]:
-    """Return the codes of the messages on an answer, at the levels full and score."""
+    """Return the codes of the messages on an answer."""
     full, hints, verdicts, score = (
         all_codes(part(handed_in(exercise, {part_id: answer}, feedback=level), part_id))
         for level in FeedbackLevel
@@ -114,7 +111,6 @@ def codes_of(exercise: Exercise, part_id: str, answer: object) -> tuple[set[str]
 
 
 def examples(*sections: str) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Run a test with each line of these sections that has an example."""
     chosen = [line for line in LINES if line.section in sections and line.example]
     return together("line", chosen)
 

@@ -26,7 +26,7 @@ def test_the_readme_is_one_page() -> None:
 
 
 def test_the_commands_of_the_installation_are_first() -> None:
-    """`make wheel` runs these commands in a fresh clone; see tests/installed."""
+    # `make wheel` runs these commands in a fresh clone; see tests/installed.
     install = ["python3 -m venv .venv", ".venv/bin/pip install .", ".venv/bin/dh-grader serve"]
     assert COMMANDS[:3] == install
 

@@ -1,4 +1,4 @@
-"""Pages whose commands are run from top to bottom, and tests of the helper that runs them."""
+"""Run the commands of the docs pages from top to bottom."""
 
 from pathlib import Path
 

@@ -1,18 +1,17 @@
-"""Run the commands of a page of docs/ from top to bottom, in an empty folder.
+"""Run the commands of a page of docs/ from top to bottom, in an empty folder."""
 
-The words after the three backticks say what a code block does:
-
-    console           each line `$ dh-grader …` is run, and the lines below it are what it prints
-    console exit=1    is run like console; the last command must end with exit code 1
-    toml FILE         is added to the end of the file
-    toml FILE instead replaces the text that the previous toml block has added
-    json FILE         becomes the file, and so does csv FILE; a name with blanks is in quotes
-    csv FILE expected is the text of a file that an earlier command has written
-    toml, json, yaml, sh  is only read
-
-In the output, `…` matches any text within a line. A line with only `…` matches any lines.
-`$ export NAME=VALUE` sets a variable for the commands that follow.
-"""
+# The words after the three backticks say what a code block does:
+#
+#     console           each line `$ dh-grader …` is run, and the lines below it are what it prints
+#     console exit=1    is run like console; the last command must end with exit code 1
+#     toml FILE         is added to the end of the file
+#     toml FILE instead replaces the text that the previous toml block has added
+#     json FILE         becomes the file, and so does csv FILE; a name with blanks is in quotes
+#     csv FILE expected is the text of a file that an earlier command has written
+#     toml, json, yaml, sh  is only read
+#
+# In the output, `…` matches any text within a line. A line with only `…` matches any lines.
+# `$ export NAME=VALUE` sets a variable for the commands that follow.
 
 import json
 import re
@@ -34,7 +33,7 @@ _ANYTHING = "…"
 
 @dataclass(frozen=True, slots=True)
 class Block:
-    """A code block: its language, the words after it, its text, and the number of its line."""
+    """A code block of a page: language, options, text and line number."""
 
     language: str
     words: tuple[str, ...]
@@ -50,7 +49,7 @@ def blocks(page: str) -> Iterator[Block]:
 
 
 class Reader:
-    """Runs the blocks of a page in ``folder``, which is the current folder of the process."""
+    """Runs the code blocks of a page in a folder."""
 
     def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
         self._folder = folder
@@ -60,7 +59,7 @@ class Reader:
         monkeypatch.chdir(folder)
 
     def follow(self, page: str) -> None:
-        """Run all blocks of the page; if a block is wrong, fail with the number of its line."""
+        """Run all blocks of the page; fail at the first wrong block."""
         for block in blocks(page):
             match block.language:
                 case "console":
@@ -116,7 +115,7 @@ class Reader:
 
 
 def matches(expected: str, printed: str) -> bool:
-    """True if the output of a command is as expected; `…` matches any text."""
+    """True if the output of a command is as expected."""
     pattern = ""
     for line in expected.strip("\n").split("\n"):
         if line.strip() == _ANYTHING:

@@ -1,10 +1,9 @@
-"""Compare each robot of the catalogue with a product of exponentials from its statement.
+"""Compare each robot with a product of exponentials that follows from its statement."""
 
-The screw axes and home poses below were written by hand from the words of the statements (where an
-axis passes, which way it points, where the tool is with all joint variables 0), not from the
-tables. T = e^{[S1] q1} … e^{[Sn] qn} M is equation 2.31 of the Robot kinematics lecture notes; the
-exponentials are SciPy's. The statements of real robots are read by ``real.statements``.
-"""
+# The screw axes and home poses below were written by hand from the words of the statements (where
+# an axis passes, which way it points, where the tool is with all joint variables 0), not from the
+# tables. T = e^{[S1] q1} … e^{[Sn] qn} M is equation 2.31 of the Robot kinematics lecture notes;
+# the exponentials are SciPy's. The statements of real robots are read by `real.statements`.
 
 import re
 from collections.abc import Callable, Mapping
@@ -134,7 +133,6 @@ def xarm6(_: Numbers) -> Chain:
 
 
 def metres(name: str) -> list[float]:
-    """Return the lengths (in m) that the statement of an exercise contains, in order."""
     return [
         float(each) for each in re.findall(r"([\d.]+) m\b", shipped_exercises()[name].statement)
     ]
@@ -165,11 +163,9 @@ def vertical_axes(_: Numbers) -> Chain:
 
 
 def in_words(name: str) -> Callable[[Numbers], Chain]:
-    """Return the chain that the statement of a real robot describes.
-
-    If the student may choose directions or the tool, the reference's directions or tool are used.
-    """
-
+    # Return the chain that the statement of a real robot describes.
+    #
+    # If the student may choose directions or the tool, the reference's directions or tool are used.
     def chain(n: Numbers) -> Chain:
         exercise = shipped_exercises()[name]
         assert exercise.reference is not None
@@ -234,7 +230,7 @@ def drawn(exercise: Exercise) -> dict[str, Vector]:
 
 
 def exponentials(exercise: Exercise, values: Mapping[str, Vector]) -> Vector:
-    """Return the product of exponentials T at each sample, ``(SAMPLES, 4, 4)``."""
+    """Return the robot's pose at each sample, as a product of exponentials."""
     poses = np.empty((SAMPLES, 4, 4))
     for lane in range(SAMPLES):
         numbers = {name: float(drawn_values[lane]) for name, drawn_values in values.items()}

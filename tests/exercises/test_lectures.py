@@ -1,9 +1,9 @@
-"""Answers printed in lectures get full marks; a misprint gets the expected points and message.
+"""Answers that lectures print get full marks."""
 
-The LaTeX is copied from the lectures: Robotic Fundamentals (UMFM4X-15-M), *Forward Kinematics*;
-Robotics and Automation, *Direct Kinematics (Part 2)*; MEAM 520, *More Denavit-Hartenberg (DH)*; and
-the Robot kinematics lecture notes. Tables are copied cell by cell with the lecture's own headers.
-"""
+# The LaTeX is copied from the lectures: Robotic Fundamentals (UMFM4X-15-M), *Forward Kinematics*;
+# Robotics and Automation, *Direct Kinematics (Part 2)*; MEAM 520, *More Denavit-Hartenberg (DH)*;
+# and the Robot kinematics lecture notes. Tables are copied cell by cell with the lecture's own
+# headers.
 
 from collections.abc import Mapping
 from typing import Any
@@ -17,12 +17,10 @@ from tests.grading.support.submitting import full_marks, handed_in, not_correct,
 
 
 def pasted(head: str, *rows: str) -> str:
-    """Return a table as text copied from a page: columns separated by tabs."""
     return "\n".join("\t".join(line.split(" ")) for line in (head, *rows))
 
 
 def matrix(*rows: str) -> str:
-    """Return a matrix in the LaTeX of a lecture."""
     return r"\begin{bmatrix} " + r" \\ ".join(rows) + r" \end{bmatrix}"
 
 
@@ -193,7 +191,7 @@ def test_the_pitch_of_the_spatial_arm_is_printed_with_the_wrong_sign(
 def test_the_pitch_by_the_formula_that_the_lecture_prints_with_it(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """For c23 < 0, β = Atan2(−r31, √(r11² + r21²)) leads to other, also correct angles."""
+    # For c23 < 0, β = Atan2(−r31, √(r11² + r21²)) leads to other, also correct angles.
     r11, r21, r31, r32, r33 = "c1 c23", "s1 c23", "s23", "c23", "0"
     beta = f"atan2(-({r31}), sqrt(({r11})^2 + ({r21})^2))"
     by_formula = [
@@ -233,7 +231,7 @@ def test_the_final_stanford_table_of_robotic_fundamentals_has_lost_a_degree_of_f
 def test_the_spherical_wrist_with_the_angle_at_which_it_is_drawn(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """The figure is drawn with θ5 = −90°, but the correct table has no offset."""
+    # The figure is drawn with θ5 = −90°, but the correct table has no offset.
     rows = [("0", "-90", "0", "theta4"), ("0", "90", "0", "theta5"), ("0", "0", "d6", "theta6")]
     assert full_marks(graded(catalogue, "spherical-wrist", "table", table(rows), "degrees"))
     rows[1] = ("0", "90", "0", "theta5 - 90")
@@ -245,7 +243,7 @@ def test_the_spherical_wrist_with_the_angle_at_which_it_is_drawn(
 def test_the_parallel_axes_of_the_lecture_notes_read_literally_are_left_handed(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    """x0 ∥ x1, z0 ∥ y1, y0 ∥ z1: a quarter turn about x0 needs z1 opposite to y0."""
+    # x0 ∥ x1, z0 ∥ y1, y0 ∥ z1: a quarter turn about x0 needs z1 opposite to y0.
     literal = [[1, 0, 0], [0, 0, 1], [0, 1, 0]]
     report = graded(catalogue, "rigid-motion-chain", "parallel-axes", literal)
     assert not_correct(report) == {("2", "3"): Verdict.INCORRECT}

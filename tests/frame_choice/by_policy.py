@@ -4,8 +4,8 @@ A policy says which frames and joint directions a student may choose. The progra
 under all eight policies.
 """
 
-# A valid table must get full marks, and a table with a wrong cell must not. No verdict may depend on
-# the random numbers at which the grader compares poses.
+# A valid table must get full marks, and a table with a wrong cell must not. No verdict may depend
+# on the random numbers at which the grader compares poses.
 
 import argparse
 import os

@@ -1,4 +1,4 @@
-"""The OpenAPI document is true, and has the form that linters and generators of clients need."""
+"""The OpenAPI document is correct, and linters and client generators accept it."""
 
 import copy
 import json
@@ -62,7 +62,6 @@ def operations(document: Schema) -> list[Schema]:
 
 
 def schemas_in(value: Any) -> Iterator[Schema]:
-    """Yield every schema in a value of the document, except for schemas in examples."""
     if isinstance(value, dict):
         if not value.keys().isdisjoint({"type", "$ref", "anyOf", "oneOf", "const"}):
             yield value
@@ -118,7 +117,6 @@ def test_the_examples_fit_their_schemas(document: Schema) -> None:
 
 
 def strictly(document: Schema, schema: Schema) -> Draft202012Validator:
-    """Return a validator that also refuses fields that the schema does not have."""
     components = copy.deepcopy(document["components"])
     for each in components["schemas"].values():
         # Some schemas, such as LinkTransform, repeat the fields of their base class.
@@ -263,7 +261,7 @@ def test_only_two_fields_may_be_null(document: Schema) -> None:
 
 
 def test_there_are_no_titles_and_no_defaults(document: Schema) -> None:
-    """A title repeats a name, and a default makes openapi-typescript require the field."""
+    # A title repeats a name, and a default makes openapi-typescript require the field.
     assert [each for each in schemas_in(document) if {"title", "default"} & each.keys()] == []
 
 

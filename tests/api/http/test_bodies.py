@@ -1,4 +1,4 @@
-"""Invalid request bodies, which every route that reads a body refuses alike."""
+"""Every route refuses invalid request bodies in the same way."""
 
 import json
 
@@ -135,7 +135,7 @@ def test_control_characters_in_names_come_back_escaped(client: httpx.Client) -> 
 def test_only_the_first_of_thousands_of_unknown_fields_are_listed(
     client: httpx.Client, url: str
 ) -> None:
-    """Known fields that follow the unknown fields are not reported as missing."""
+    # Known fields that follow the unknown fields are not reported as missing.
     known: dict[str, object] = {"answers": {}} if url == GRADE else {"text": "q1"}
     response = client.post(url, json={**{f"field{i}": 0 for i in range(12_000)}, **known})
     assert response.status_code == 422

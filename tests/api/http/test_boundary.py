@@ -1,4 +1,4 @@
-"""The behaviour that all routes share: sizes, methods, headers, failures."""
+"""Test what all routes share: size limits, methods, headers and failures."""
 
 import asyncio
 import re
@@ -18,7 +18,6 @@ ClientOf = Callable[[FastAPI], httpx.Client]
 
 
 def scope(headers: list[tuple[bytes, bytes]]) -> dict[str, Any]:
-    """Return the ASGI scope of a POST of answers, as a server passes it to the app."""
     return {
         "type": "http", "asgi": {"version": "3.0"}, "http_version": "1.1", "method": "POST",
         "path": GRADE, "raw_path": GRADE.encode(), "root_path": "", "scheme": "http",

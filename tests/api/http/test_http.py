@@ -26,11 +26,6 @@ def says_so(answer: httpx.Response) -> bool:
 
 
 def silent(guarded: Guarded, credential: str, routes: set[str]) -> tuple[list[str], set[str]]:
-    """Return the routes whose German responses lack language headers.
-
-    Also return the set of all routes with German responses.
-    """
-
     async def answers() -> dict[str, httpx.Response]:
         async with guarded.client(credential) as client:
             return {route: await guarded.send(client, route, "de") for route in sorted(routes)}

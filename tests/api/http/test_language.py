@@ -1,4 +1,4 @@
-"""The choice of a language for a request, with a language that only the tests have."""
+"""Choose the language of a response."""
 
 import pytest
 from starlette.requests import Request

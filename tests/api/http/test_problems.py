@@ -1,4 +1,4 @@
-"""Problems in the language of the reader."""
+"""Error messages of the service are in the reader's language."""
 
 from collections.abc import Mapping
 from datetime import UTC, datetime

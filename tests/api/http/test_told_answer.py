@@ -1,4 +1,4 @@
-"""Responses in the language of the reader: chosen by query, by header, or English."""
+"""The language of a response is that of the query, else of the header, else English."""
 
 import tomllib
 from collections.abc import Callable, Mapping

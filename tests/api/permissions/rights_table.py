@@ -1,6 +1,6 @@
-"""Write the table of routes in docs/keys.md from the rights that the service checks.
+"""Write the table of routes and required rights into docs/keys.md.
 
-``python -m tests.api.permissions.rights_table`` writes it.
+Run ``python -m tests.api.permissions.rights_table``.
 """
 
 from pathlib import Path
@@ -21,7 +21,6 @@ _START: Final = f"| {' | '.join(_HEADINGS)} |\n"
 
 
 def table() -> str:
-    """Return the table: all routes that need a key, in the order of the rights."""
     rows = [_row(route, right) for route, right in RIGHTS.items() if right.scope is not None]
     return "".join([_START, f"|{'---|' * len(_HEADINGS)}\n", *rows])
 
@@ -37,7 +36,6 @@ def _row(route: str, right: Right) -> str:
 
 
 def with_table(page: str) -> str:
-    """Return the page with the current table in place of the old one."""
     before, start, rest = page.partition(_START)
     assert start, "docs/keys.md has no table of routes"
     return before + table() + "\n" + rest.partition("\n\n")[2]

@@ -1,4 +1,4 @@
-"""Only a request from the machine itself has a tutor's rights, whatever a student sends."""
+"""Only a request from the server's own machine has a tutor's rights."""
 
 import asyncio
 from typing import Any
@@ -20,7 +20,6 @@ def answered(
     server: str = "127.0.0.1",
     http_version: str = "1.1",
 ) -> bool:
-    """Return whether a request with these addresses and this HTTP version may see solutions."""
     app = FastAPI()
     access = Access(solutions=solutions)
 

@@ -1,4 +1,4 @@
-"""The table of rights is complete, and docs/keys.md prints it."""
+"""docs/keys.md lists the right that each route requires."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -40,7 +40,7 @@ def test_a_route_without_an_entry_prevents_startup(catalogue: Mapping[str, Exerc
 def test_the_exercise_of_a_right_is_that_of_the_route(
     client_of: Callable[[FastAPI], httpx.Client],
 ) -> None:
-    """If a query names several exercises, both the right and the route use the last exercise."""
+    # If a query names several exercises, both the right and the route use the last exercise.
     app = FastAPI()
 
     @app.get("/{exercise_id}")

@@ -37,8 +37,6 @@ Tutor = Any
 
 @pytest.fixture
 def tutor_of(catalogue: Mapping[str, Exercise], store: AttemptStore) -> Tutor:
-    """Return a function that makes a client of a service, by default at a local address."""
-
     def make(
         read_attempts: bool | None = None, at: str = "http://127.0.0.1:8000", **headers: str
     ) -> httpx.Client:

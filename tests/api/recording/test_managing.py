@@ -1,4 +1,4 @@
-"""The routes with which tutors export, override, delete and regrade attempts."""
+"""Test the routes with which tutors export, change and delete attempts."""
 
 import asyncio
 import csv
@@ -42,7 +42,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Tutor:
-    """A client of a service in this process, by default at a local address."""
+    """A tutor's client of a service in this process."""
 
     def __init__(
         self, exercises: Mapping[str, Exercise], store: AttemptStore | None,
@@ -72,7 +72,6 @@ def tutor(catalogue: Mapping[str, Exercise], store: AttemptStore) -> Tutor:
 
 
 def corrected(folder: Path) -> Mapping[str, Exercise]:
-    """Return the catalogue with another SCARA, in which no axis points down."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     assert text.count('["a2", "180deg",') == 1, "the exercise has changed"
     folder.mkdir()

@@ -35,7 +35,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Course:
-    """Learners who post attempts at one exercise with some rules."""
+    """A course whose learners post attempts at one exercise."""
 
     def __init__(self, client: httpx.Client) -> None:
         self._client = client
@@ -50,8 +50,6 @@ class Course:
 
 @pytest.fixture
 def course_of(catalogue: Mapping[str, Exercise], store: AttemptStore, client_of: Any) -> Any:
-    """Return a function that makes a course whose exercise has other rules."""
-
     def make(levels: tuple[FeedbackLevel, ...] = (FeedbackLevel.HINTS,), **rules: Any) -> Course:
         exercise = replace(
             catalogue["scara"], feedback_by_attempt=levels, attempts=AttemptsSpec(**rules)
@@ -126,7 +124,6 @@ def test_outcomes_have_their_codes_at_every_level(course_of: Any, store: Attempt
 
 @pytest.fixture
 def gradings(monkeypatch: pytest.MonkeyPatch) -> list[FeedbackLevel]:
-    """Return a list to which each later grading of an attempt adds its feedback level."""
     done: list[FeedbackLevel] = []
 
     def counted(exercise: Exercise, submission: Submission) -> GradedAnswers:
@@ -157,7 +154,7 @@ def test_attempts_at_the_same_moment_get_a_number_each_and_none_is_graded_in_vai
     store: AttemptStore,
     gradings: list[FeedbackLevel],
 ) -> None:
-    """Two replicas get twelve attempts at once, and first grade each as the first attempt."""
+    # Two replicas get twelve attempts at once, and first grade each as the first attempt.
     levels = (first, FeedbackLevel.VERDICTS, FeedbackLevel.HINTS)
     exercise = replace(
         catalogue["scara"], feedback_by_attempt=levels, attempts=AttemptsSpec(limit=10)
@@ -259,7 +256,7 @@ def test_no_learner_has_a_character_that_is_not_seen() -> None:
 def test_a_page_of_another_origin_cannot_record(
     catalogue: Mapping[str, Exercise], store: AttemptStore, client_of: Any
 ) -> None:
-    """A browser sends a body of the type text/plain without asking the service first."""
+    # A browser sends a body of the type text/plain without asking the service first.
     course = "https://course.example.edu"
 
     def status(origin: str | None, *allowed: str) -> tuple[int, int]:

@@ -60,7 +60,6 @@ def texts_in(value: Any) -> set[str]:
 
 
 def parameters(exercise: Exercise) -> set[str]:
-    """Return the texts of all cells of the answer that are not 0, in both conventions."""
     assert isinstance(exercise.reference, Robot)
     rows = [row for table in exercise.reference.tables.values() for row in table.rows]
     return {cell.text() for row in rows for cell in row} - {"0"}
@@ -95,7 +94,7 @@ def test_a_mechanism_tells_nothing_that_the_statement_does_not(
 
 
 def test_given_frames_move_with_the_robot(client: httpx.Client) -> None:
-    """Frame {0} does not move. The tool frame is at the tool, with x along link 2 of the arm."""
+    # Frame {0} does not move. The tool frame is at the tool, with x along link 2 of the arm.
     body = {"exercise": "planar-rr", "joints": [[0, 0], [0.4, 0.7]]}
     mechanism = answered(client, body)["mechanism"]
     assert mechanism["frames"] == ["0", "2"]
@@ -115,7 +114,7 @@ def test_given_frames_move_with_the_robot(client: httpx.Client) -> None:
     "hidden", [{"attempts": AttemptsSpec(limit=3)}, {"feedback_by_attempt": (FeedbackLevel.SCORE,)}]
 )
 def test_an_exercise_that_counts_compares_no_frames(hidden: Mapping[str, Any]) -> None:
-    """A gap of 0 would say that a table is correct."""
+    # A gap of 0 would say that a table is correct.
     exercise = replace(SHIPPED["planar-rr"], **hidden)
     app = application({exercise.id: exercise})
     with httpx.Client(transport=InProcess(app), base_url="http://service") as own:
@@ -123,7 +122,7 @@ def test_an_exercise_that_counts_compares_no_frames(hidden: Mapping[str, Any]) -
 
 
 def test_another_choice_of_frames_gives_the_same_mechanism(client: httpx.Client) -> None:
-    """Two exercises on one arm have different conventions, and therefore different frames."""
+    # Two exercises on one arm have different conventions, and therefore different frames.
     answers = [answered(client, {"exercise": name}) for name in ("rrrp", "rrrp-proximal")]
     one, other = (answer["mechanism"]["configurations"][0] for answer in answers)
     assert one["tool"] == pytest.approx(other["tool"])

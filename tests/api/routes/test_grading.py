@@ -1,4 +1,4 @@
-"""POST /v1/exercises/{id}/grade."""
+"""Test the route POST /v1/exercises/{id}/grade."""
 
 import json
 from collections.abc import Callable, Mapping

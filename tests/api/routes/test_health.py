@@ -1,4 +1,4 @@
-"""Responses to a supervisor's health checks with a real database, and their database queries."""
+"""Test the health checks of a service with a real database."""
 
 import asyncio
 import logging
@@ -26,8 +26,6 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 def asked(app: FastAPI, path: str, times: int = 1) -> list[httpx.Response]:
-    """Return the responses to several simultaneous requests."""
-
     async def ask() -> list[httpx.Response]:
         transport = httpx.ASGITransport(app)
         async with httpx.AsyncClient(transport=transport, base_url="http://service") as client:

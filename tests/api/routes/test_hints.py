@@ -1,4 +1,4 @@
-"""Hints over HTTP, and the pictures of rules."""
+"""Test the routes for hints, and for the pictures that explain rules."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -68,7 +68,7 @@ def test_other_hints_are_refused(
 
 
 def test_more_feedback_does_not_change_a_hint(client: httpx.Client) -> None:
-    """A report at the level full groups messages differently, but the hints are the same."""
+    # A report at the level full groups messages differently, but the hints are the same.
     body = {**ASKED, "step": 3}
     full = client.post(PATH, json={**body, "feedback": str(FeedbackLevel.FULL)})
     assert full.json() == client.post(PATH, json=body).json()

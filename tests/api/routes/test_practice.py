@@ -1,4 +1,4 @@
-"""Generated robots over HTTP: dealt, shown, drawn, graded, and solved for tutors."""
+"""Test the routes for generated robots."""
 
 import httpx
 import pytest

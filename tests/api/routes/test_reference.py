@@ -69,7 +69,7 @@ def test_the_framework_s_own_pages_are_off(client: httpx.Client, path: str) -> N
 
 
 def test_the_files_are_those_that_were_published() -> None:
-    """The checksums were taken from the npm package when the files were copied."""
+    # The checksums were taken from the npm package when the files were copied.
     lines = (FOLDER / "SHA256SUMS").read_text(encoding="utf-8").splitlines()
     assert len(lines) == 2
     for line in lines:

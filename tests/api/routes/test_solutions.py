@@ -1,4 +1,4 @@
-"""Model solutions over HTTP: off by default, given for right answers, never blocking others."""
+"""Test the routes for model solutions, which are off by default."""
 
 import asyncio
 import subprocess
@@ -101,8 +101,7 @@ def test_a_changed_exercise_has_a_solution_of_its_own(
 def test_the_event_loop_runs_while_a_solution_is_computed(
     catalogue: Mapping[str, Exercise], figure: Callable[[str], None]
 ) -> None:
-    """Only the interpreter's switch between threads delays the loop, by some milliseconds."""
-
+    # Only the interpreter's switch between threads delays the loop, by some milliseconds.
     arm = catalogue["baxter-left-arm"]
 
     async def watched() -> tuple[float, float, int]:
@@ -142,7 +141,6 @@ REWORDED = "a1, 0, 0, q1 + 360°\na2, 0, 0, q2"
 
 
 def own_answers(exercise: Exercise, *without: str) -> dict[str, object]:
-    """Return the model answers to all parts but the parts ``without``."""
     return {each.part: each.answer for each in solved(exercise).parts if each.part not in without}
 
 

@@ -32,7 +32,6 @@ from tests.guards import ANSWER, STALL
 
 @pytest.fixture
 def corrected(catalogue: Mapping[str, Exercise]) -> Exercise:
-    """Another version of the exercise, in which the table is worth twice as much."""
     scara = catalogue["scara"]
     table, *others = scara.parts
     parts = (table.model_copy(update={"points": 2 * table.points}), *others)
@@ -77,7 +76,7 @@ def test_a_corrected_exercise_changes_points_and_keeps_the_reports_before(
 def test_a_regrade_does_not_raise_the_feedback_level(
     sqlite_url: str, catalogue: Mapping[str, Exercise], corrected: Exercise
 ) -> None:
-    """The service may have had a ceiling that the regrading process does not know."""
+    # The service may have had a ceiling that the regrading process does not know.
     store = AttemptStore.open(sqlite_url)
     under_a_ceiling = replace(catalogue["scara"], feedback_by_attempt=(FeedbackLevel.SCORE,))
     low = recorded(store, under_a_ceiling, "ada", NO_TWIST)

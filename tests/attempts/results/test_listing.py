@@ -93,7 +93,7 @@ def test_an_attempt_has_its_answers(store: AttemptStore, catalogue: Mapping[str,
 
 
 def test_a_list_reads_no_report(store: AttemptStore) -> None:
-    """Reports are a hundred times larger than the listed columns."""
+    # Reports are a hundred times larger than the listed columns.
     statements: list[str] = []
     event.listen(store.engine, "before_cursor_execute", lambda *given: statements.append(given[2]))
     with store.engine.connect() as connection:

@@ -25,7 +25,6 @@ GERMAN = german({
 
 @pytest.fixture
 def report(catalogue: Mapping[str, Exercise]) -> Report:
-    """Return a report with sentences of all forms, a formula, and a plain text with braces."""
     graded = grade(catalogue["planar-rr"], Submission({}))
     first = graded.parts[0]
     exchange = say("Exchange {cells}.", cells=say("{first} and {last}", first="a", last="α"))

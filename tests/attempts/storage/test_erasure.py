@@ -1,4 +1,4 @@
-"""Deleted data is in no file of SQLite any more; otherwise, the caller learns about it."""
+"""Deleted data is in no file of an SQLite database any more."""
 
 import random
 import time
@@ -98,7 +98,7 @@ def test_a_store_finishes_an_erasure_when_it_starts(
 def test_no_data_is_left_of_learners_whose_rows_were_rewritten(
     sqlite_url: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """Regrade, override and delete rows of many sizes in random order."""
+    # Regrade, override and delete rows of many sizes in random order.
     store = AttemptStore.open(sqlite_url)
     scara, draw = catalogue["scara"], random.Random(4)
     learners = [f"learner-{number:03}" for number in range(40)]

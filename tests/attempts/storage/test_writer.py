@@ -1,4 +1,4 @@
-"""The writer thread: which jobs share a transaction."""
+"""Test which jobs of the writer thread share a transaction."""
 
 import asyncio
 import threading
@@ -23,7 +23,6 @@ def engine(tmp_path: Path) -> Iterator[Engine]:
 
 @pytest.fixture
 def commits(engine: Engine) -> list[Connection]:
-    """A list of connections that grows with each commit."""
     counted: list[Connection] = []
     event.listen(engine, "commit", counted.append)
     return counted

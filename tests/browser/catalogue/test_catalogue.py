@@ -1,4 +1,4 @@
-"""The start page: levels, search, and check marks for exercises that are done."""
+"""Test the start page: levels, search, and check marks at solved exercises."""
 
 import re
 from collections.abc import Callable

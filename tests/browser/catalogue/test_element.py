@@ -1,4 +1,4 @@
-"""The exercise element on pages of other sites: colours, read-only answers, messages, parts."""
+"""Test the exercise element that other sites embed in their pages."""
 
 import re
 from collections.abc import Callable
@@ -28,7 +28,6 @@ def course(origin: Origin, service: str, attributes: str, style: str = "") -> st
 
 
 def colour(page: Page, selector: str, name: str = "backgroundColor") -> tuple[float, ...]:
-    """Return the red, green and blue of the first element that matches a selector."""
     text: Any = page.locator(selector).first.evaluate(f"each => getComputedStyle(each).{name}")
     return tuple(float(each) for each in re.findall(r"[\d.]+", text)[:3])
 

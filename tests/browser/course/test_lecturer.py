@@ -1,4 +1,4 @@
-"""A lecturer runs a course in the browser: sign-in, class list, links, assignment, gradebook."""
+"""A lecturer runs a whole course in the browser."""
 
 import csv
 import json
@@ -35,7 +35,6 @@ u4,Alan Turing,alan@example.edu
 
 
 def administrator(database: str) -> str:
-    """Return a new key for all courses."""
     store, text, now = AttemptStore.open(database), new_key_text(), datetime.now(UTC)
     digest, until = Secret(SECRET).key_digest(text), now + timedelta(days=1)
     in_transaction(
@@ -46,7 +45,6 @@ def administrator(database: str) -> str:
 
 
 def hand_in(link: str, address: str) -> None:
-    """Submit the correct table with the key from a personal link."""
     body = json.dumps({"exercise": "scara", "answers": {"table": RIGHT}}).encode()
     headers = {"Authorization": f"Bearer {link.partition('#')[2]}", "Idempotency-Key": "1"}
     path = f"{address}/v1/courses/robots/assignments/homework-1/attempts"
@@ -167,7 +165,6 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
 
 
 def _delete(page: Page, said: str, check: Callable[[], None]) -> None:
-    """Delete the course or assignment of this page; the page must first say what it deletes."""
     page.get_by_text("Delete", exact=True).click()
     page.get_by_role("button", name="Delete the").click()
     expect(page.get_by_text(said)).to_be_visible()
@@ -178,7 +175,6 @@ def _delete(page: Page, said: str, check: Callable[[], None]) -> None:
 
 
 def _refused_homework(page: Page) -> None:
-    """Try to set an assignment with a wrong id and without an exercise."""
     expect(page.get_by_text("only if Closes is after Due")).to_be_visible()
     page.get_by_label("Id").fill("HW 9")
     page.get_by_label("Title").first.fill("Homework 9")
@@ -188,7 +184,6 @@ def _refused_homework(page: Page) -> None:
 
 
 def _set_homework(page: Page) -> None:
-    """Set an assignment of one exercise with 20 points, due in 2030."""
     page.get_by_label("Id").fill("homework-1")
     page.get_by_label("Title").first.fill("Homework 1")
     page.get_by_label("Exercise", exact=True).select_option("scara")

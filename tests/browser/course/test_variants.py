@@ -1,4 +1,4 @@
-"""A tutor gives each learner a variant of an exercise, looks at it, and deals another one."""
+"""A tutor gives each learner a personal variant of an exercise."""
 
 from collections.abc import Callable
 from pathlib import Path

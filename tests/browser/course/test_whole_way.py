@@ -1,4 +1,4 @@
-"""A whole course: class list, links, a hand-in, a late hand-in, gradebook, and regrade."""
+"""Test a whole course in the browser, from the class list to the gradebook."""
 
 import csv
 from collections.abc import Callable
@@ -22,19 +22,17 @@ LATE_BEFORE, LATE_AFTER = "3.13", "4"
 
 
 def day(days: int) -> str:
-    """Return the present time of day ``days`` days from now, in the format of a form field."""
     return f"{datetime.now(ZoneInfo('Europe/Berlin')) + timedelta(days=days):%Y-%m-%dT%H:%M}"
 
 
 def correct(folder: Path) -> None:
-    """Change the exercise, but not its checks, so that the correct table has no half turn."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     changed = text.replace('["a2", "180deg",', '["a2", "0",')
     (folder / "scara.toml").write_text(changed, encoding="utf-8")
 
 
 def set_up(tutor: Page, address: str, key: str) -> None:
-    """Sign in; make a course with a class list and an assignment that is due tomorrow."""
+    """Create a course with a class list, and an assignment that is due tomorrow."""
     tutor.goto(f"{address}/tutor/courses")
     tutor.get_by_label("Your key").fill(key)
     tutor.get_by_role("button", name="Sign in").click()
@@ -54,7 +52,7 @@ def set_up(tutor: Page, address: str, key: str) -> None:
 
 
 def links(tutor: Page, file: Path) -> dict[str, str]:
-    """Download the personal links; return each link by the learner's name."""
+    """Download the personal links; return them by the learners' names."""
     with tutor.expect_download() as downloading:
         tutor.get_by_role("button", name="Download links").click()
     downloading.value.save_as(file)

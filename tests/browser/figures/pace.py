@@ -1,8 +1,7 @@
-"""Measure the work of a page for each picture of an animation.
+"""Measure how much work a page does for each picture of an animation."""
 
-The work is the number of passes over the styles, and the processor time of scripts. The number of
-pictures per second depends on other programs on the machine, so this number is only printed.
-"""
+# The work is the number of passes over the styles, and the processor time of scripts. The number of
+# pictures per second depends on other programs on the machine, so this number is only printed.
 
 from typing import Final, NamedTuple
 
@@ -35,13 +34,11 @@ class Pace(NamedTuple):
 
 
 def pace(element: Locator, move: str | None = None) -> Pace:
-    """Measure the page's work while it draws pictures for one second.
-
-    Args:
-        element: An element of the page.
-        move: A JavaScript function that changes the element before each picture. It gets the
-            element and the seconds since the start.
-    """
+    """Measure the page's work while it draws pictures for one second."""
+    # Args:
+    #     element: An element of the page.
+    #     move: A JavaScript function that changes the element before each picture. It gets the
+    #         element and the seconds since the start.
     session = element.page.context.new_cdp_session(element.page)
     session.send("Performance.enable", {"timeDomain": "threadTicks"})
 

@@ -1,4 +1,4 @@
-"""On a phone, the page of an exercise shows the figure at the size for which it is drawn."""
+"""On a phone, the figure of an exercise is not scaled down."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""The 3D view plays the moves of a row: keyboard, captions, and reduced motion."""
+"""The 3D view animates the moves of a table row."""
 
 import gzip
 import re
@@ -118,6 +118,6 @@ def test_a_row_of_seven_joints_moves_smoothly(
 
 
 def test_the_scripts_of_the_3d_view_are_small() -> None:
-    """The limit is for the compressed scripts, because the service compresses them."""
+    # The limit is for the compressed scripts, because the service compresses them.
     files = (FOLDER / "robot").rglob("*.js")
     assert sum(len(gzip.compress(file.read_bytes())) for file in files) < MOST

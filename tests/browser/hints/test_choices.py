@@ -1,4 +1,4 @@
-"""After full marks, a student looks at other valid choices of frames."""
+"""A student with full marks looks at other valid choices of frames."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Pages in the pseudo-language: every text is translatable, and longer texts fit on the screen."""
+"""Every text of the pages is translatable, and longer texts fit on the screen."""
 
 from collections.abc import Callable, Iterator
 
@@ -43,7 +43,6 @@ OVERFLOW = "document.documentElement.scrollWidth - document.documentElement.clie
 
 @pytest.fixture(scope="module")
 def pseudo(tmp_path_factory: pytest.TempPathFactory, other_origin: Origin) -> Iterator[str]:
-    """Return the address of a service that offers the pseudo-language."""
     folder = tmp_path_factory.mktemp("pseudo")
     variables = {"DH_GRADER_CORS_ORIGINS": other_origin.address}
     with served(folder, module="tests.translations.pseudo", **variables) as server:

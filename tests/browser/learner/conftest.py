@@ -1,4 +1,4 @@
-"""A service with a course and the learner Ada, and the course site of docs/embedding.md."""
+"""Fixtures: a service with a course and a learner, and the course's own site."""
 
 import re
 import threading
@@ -44,7 +44,7 @@ ASSIGNMENTS: Mapping[str, dict[str, Any]] = {
 
 @dataclass(frozen=True)
 class Course:
-    """A service with the course ``robotics-2026``, Ada's link, and the course's own site."""
+    """A service with a course, a learner's link, and the course's own site."""
 
     address: str
     link: str
@@ -53,7 +53,6 @@ class Course:
 
 @pytest.fixture(scope="session")
 def site() -> Iterator[tuple[str, dict[str, Any]]]:
-    """Run the course site of docs/embedding.md; return its address and the program's variables."""
     text = (ROOT / "docs" / "embedding.md").read_text(encoding="utf-8")
     [example] = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
     names: dict[str, Any] = {"__name__": "course_site"}

@@ -65,10 +65,8 @@ def fill(page: Page, texts: list[str]) -> None:
 
 
 def lose_the_answer(route: Route) -> None:
-    """Let the service record a request, but send no response to the page.
-
-    If the page reloads meanwhile, the page cancels the request itself.
-    """
+    """Let the service record a request, but send no response to the page."""
+    # If the page reloads meanwhile, the page cancels the request itself.
     with suppress(Error):
         route.fetch()
         route.abort()

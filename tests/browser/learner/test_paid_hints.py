@@ -1,4 +1,4 @@
-"""After hand-ins, a learner takes hints, sees their price, and opens the model solution."""
+"""A learner takes hints that cost points, and opens the model solution."""
 
 from collections.abc import Callable
 

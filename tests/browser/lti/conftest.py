@@ -1,4 +1,4 @@
-"""A platform's course in Chromium, which blocks third-party cookies in frames."""
+"""Fixtures: an LTI platform in a Chromium that blocks third-party cookies."""
 
 import asyncio
 import os
@@ -34,7 +34,7 @@ CONTROLS = {
 
 @dataclass
 class Course:
-    """A platform on localhost, whose pages show the service on 127.0.0.1 in a frame."""
+    """An LTI platform whose pages show the service in a frame."""
 
     platform: Platform
     context: BrowserContext
@@ -54,7 +54,7 @@ class Course:
 def course(
     request: pytest.FixtureRequest, started_browser: Started, chromium: Chromium, tmp_path: Path
 ) -> Iterator[Course]:
-    """The course; with the parameter ``bypass_csp``, the browser ignores content policies."""
+    # The course; with the parameter `bypass_csp`, the browser ignores content policies.
     environment = {"DH_GRADER_DATABASE": str(tmp_path / "lti.db"), "DH_GRADER_SECRET": SECRET}
     platform = Platform(host="localhost")
     with served(tmp_path, **environment) as server, running(platform.app()) as port:

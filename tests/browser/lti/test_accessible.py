@@ -1,4 +1,4 @@
-"""The pages of LTI in light, dark and forced colours, as axe-core sees them."""
+"""The LTI pages are accessible in light, dark and forced colours."""
 
 import time
 from datetime import UTC, datetime, timedelta
@@ -28,11 +28,9 @@ def without_exercises(claims: dict[str, Any]) -> None:
 
 
 def framed(page: Page, text: str) -> Frame:
-    """Return the frame of the service as soon as it shows this text.
-
-    The frame moves to another process while it opens. A locator that began in the old process may
-    wait for ever, so this function polls the frames.
-    """
+    """Return the frame of the service as soon as it shows this text."""
+    # The frame moves to another process while it opens. A locator that began in the old process may
+    # wait for ever, so this function polls the frames.
     while True:
         for each in page.frames:
             if each.name == "tool" and each.get_by_text(text).first.is_visible():

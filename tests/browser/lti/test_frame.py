@@ -1,4 +1,4 @@
-"""Launches in a frame of another site, while the browser blocks third-party cookies."""
+"""LTI launches in a frame, while the browser blocks third-party cookies."""
 
 import jwt
 import pytest
@@ -14,7 +14,6 @@ KEPT = """() => {
 
 
 def sent_keys(course: Course) -> set[str]:
-    """Return a set that will contain all keys that the pages of the course send from now on."""
     keys: set[str] = set()
 
     def note(request: Request) -> None:

@@ -1,4 +1,4 @@
-"""The names that a student reads as plain text, such as theta1 or phi_2, on any page."""
+"""Find names such as theta1 that a page shows as plain text instead of as formulas."""
 
 import re
 from typing import Final
@@ -26,5 +26,5 @@ _TEXTS: Final = """() => {
 
 
 def typed_names(page: Page) -> list[str]:
-    """Return the texts of a page that contain a name such as theta1 without typesetting."""
+    """Return the texts of a page that contain a name such as theta1 as plain text."""
     return [text.strip() for text in page.evaluate(_TEXTS) if _TYPED.search(text)]

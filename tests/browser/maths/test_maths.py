@@ -1,4 +1,4 @@
-"""What a student reads is typeset: no plain theta1, x0, phi_2 or {0} outside of inputs and code."""
+"""Pages show symbols as formulas, and never as plain text such as theta1."""
 
 import re
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""The page of generated robots: solve one, take another, share it."""
+"""Test the page of generated robots."""
 
 import re
 from collections.abc import Callable
@@ -24,7 +24,6 @@ def robot(page: Page) -> str:
 
 
 def model_cells(service: str, exercise: str) -> list[str]:
-    """Return the cells of the model solution, which a tutor on this machine may see."""
     answered = httpx.get(f"{service}/v1/exercises/{exercise}/solution").raise_for_status()
     rows: list[dict[str, Any]] = answered.json()["parts"][0]["answer"]["rows"]
     return [str(row[name]) for row in rows for name in ("a", "alpha", "d", "theta")]
@@ -81,7 +80,7 @@ def test_a_student_solves_a_robot_and_takes_another(
 
 @pytest.mark.long
 def test_back_is_followed_though_a_robot_has_just_loaded(visit: Opening, service: str) -> None:
-    """A robot may be ready after the address has changed, but before the page is notified of it."""
+    # A robot may be ready after the address has changed, but before the page is notified of it.
     page = visit().page
     page.goto(f"{service}/practice#practice-1-standard~5")
     expect(page.locator("#title")).to_have_text("Practice robot 5, level 1")

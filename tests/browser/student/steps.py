@@ -1,4 +1,4 @@
-"""Steps of the tests of the student's form."""
+"""Helpers for tests of the student's form."""
 
 from typing import Any, Final
 

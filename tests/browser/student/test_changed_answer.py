@@ -1,4 +1,4 @@
-"""If a student changes a checked answer, the page removes verdicts that may be out of date."""
+"""If a student changes a checked answer, the page removes outdated verdicts."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""The page of an exercise says if its convention differs from that of the previous exercise."""
+"""The page of an exercise says if its convention differs from the previous one."""
 
 from collections.abc import Callable
 

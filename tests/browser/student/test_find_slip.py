@@ -1,4 +1,4 @@
-"""A student marks and mends a slip: by keyboard, on a phone, and with names for screen readers."""
+"""A student marks and corrects a slip by keyboard and on a phone."""
 
 from collections.abc import Callable
 

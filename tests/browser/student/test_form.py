@@ -1,4 +1,4 @@
-"""The student's form: proposed repairs, a box for a whole table, and texts that stay visible."""
+"""Test the student's form: suggested corrections, and whole tables in one box."""
 
 from collections.abc import Callable
 

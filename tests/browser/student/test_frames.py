@@ -1,4 +1,4 @@
-"""The form in which a student places frames offers names; every step works by keyboard."""
+"""Test the form in which a student places frames."""
 
 from collections import Counter
 from collections.abc import Callable
@@ -161,7 +161,6 @@ def click_mark(page: Page, value: str, *, tap: bool = False) -> None:
 
 
 def place_by_clicks(page: Page, row: int, frame: tuple[str, ...], *, tap: bool = False) -> None:
-    """Click a joint axis, a dot and an arrow; check that the cells then have the frame's texts."""
     joint, z, *origin, x = frame
     boxes = [cells(page).nth(6 * row + i) for i in range(6)]
     told = page.locator("dh-exercise p.aloud[role=status]")

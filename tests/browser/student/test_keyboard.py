@@ -1,4 +1,4 @@
-"""The form of an exercise by keyboard: from an empty page to full marks, and to the first slip."""
+"""A student fills in the form of an exercise by keyboard only."""
 
 import re
 from collections.abc import Callable, Mapping

@@ -1,4 +1,4 @@
-"""The form of an exercise on a phone: taps, keys for symbols, and boxes to paste."""
+"""A student fills in the form of an exercise on a phone."""
 
 from collections.abc import Callable, Mapping
 
@@ -57,7 +57,6 @@ def test_the_stanford_arm_is_tapped_from_an_empty_page_to_full_marks(
 
 
 def write(page: Page, cell: Locator, text: str) -> None:
-    """Write a text: a symbol with its key, all else with the phone's own keyboard."""
     if text in NAMES:
         page.get_by_role("toolbar", name="Symbols").get_by_text(NAMES[text], exact=True).tap()
         expect(cell).to_be_focused()

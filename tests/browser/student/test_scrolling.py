@@ -1,4 +1,4 @@
-"""Areas that scroll sideways have an arrow at each edge that hides something."""
+"""An area that scrolls sideways shows an arrow at each edge with hidden content."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""DH in ten minutes: six screens by keyboard, links to the screens, and tables with given rows."""
+"""Test the page "DH in ten minutes"."""
 
 import re
 from collections.abc import Callable

@@ -12,10 +12,8 @@ from tests.browser.fixtures import Visit
 def choose_before_scripts(
     page: Page, address: str, field: str, chosen: Path, *pressed: str
 ) -> None:
-    """Choose a file and press buttons while the page waits for its scripts, then let them through.
-
-    A button has no effect before the scripts arrive.
-    """
+    """Choose a file and press buttons before the page's scripts arrive."""
+    # A button has no effect before the scripts arrive.
     held: list[Route] = []
     is_chosen = False
 

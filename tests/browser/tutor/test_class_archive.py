@@ -1,4 +1,4 @@
-"""The report on a class from the zip file of a platform: gradebook and feedback pages."""
+"""Upload a platform's zip file of a class, and see the report."""
 
 import csv
 import re
@@ -22,7 +22,6 @@ MOODLE = {
 
 
 def saved(page: Page, button: str, folder: Path) -> Path:
-    """Return the file that a button lets the browser save."""
     with page.expect_download() as downloading:
         page.get_by_role("button", name=button).click()
     file = folder / downloading.value.suggested_filename

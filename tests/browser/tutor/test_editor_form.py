@@ -1,4 +1,4 @@
-"""The editor shows the form that students get, with the 3D view, before anything is saved."""
+"""The editor shows the student's form before anything is saved."""
 
 from collections.abc import Callable
 

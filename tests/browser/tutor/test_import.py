@@ -1,4 +1,4 @@
-"""A lecturer makes a checked exercise from the URDF file of a UR5e, in the editor."""
+"""A lecturer imports the URDF file of a UR5e in the editor."""
 
 from collections.abc import Callable
 from pathlib import Path

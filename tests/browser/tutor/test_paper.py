@@ -1,4 +1,4 @@
-"""An exercise on paper: statement, drawing, tables and report, without bars and buttons."""
+"""An exercise is printed on paper without bars and buttons."""
 
 from collections.abc import Callable
 
@@ -13,7 +13,6 @@ PAPER = {"width": 688, "height": 975}
 
 
 def shown(page: Page, selector: str) -> int:
-    """Return the number of visible elements in the exercise."""
     return len([each for each in page.locator(selector).all() if each.is_visible()])
 
 

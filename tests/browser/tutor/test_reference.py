@@ -1,4 +1,4 @@
-"""The page /docs has the colours of the other pages, and is accessible."""
+"""The page /docs is accessible, and has the colours of the other pages."""
 
 from collections.abc import Callable
 from typing import Final

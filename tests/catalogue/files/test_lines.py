@@ -1,4 +1,4 @@
-"""The line number of each value in an exercise file."""
+"""Find the line number of each value in an exercise file."""
 
 import re
 import tomllib

@@ -1,4 +1,4 @@
-"""The messages for unknown values in an exercise file."""
+"""Test the messages about unknown values in an exercise file."""
 
 from pathlib import Path
 

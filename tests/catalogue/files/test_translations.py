@@ -1,4 +1,4 @@
-"""The texts of an exercise in other languages."""
+"""Test translated texts in an exercise file."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Checks of the formulas of parts and robots."""
+"""Test the checks of formulas in exercise files."""
 
 from collections.abc import Callable, Mapping
 
@@ -215,7 +215,7 @@ def test_an_exercise_without_a_robot(make_exercise: Make) -> None:
 
 
 def test_the_pose_of_a_robot_given_by_screws(make_exercise: Make) -> None:
-    """Joint 1 turns by q1, and joint 2 slides by q2: the tool is at (l + q2) c1, (l + q2) s1."""
+    # Joint 1 turns by q1, and joint 2 slides by q2: the tool is at (l + q2) c1, (l + q2) s1.
     exercise = make_exercise(HEAD + SCREWS + PART)
     robot = exercise.reference
     assert isinstance(robot, ScrewRobot)
@@ -246,7 +246,7 @@ def test_the_frames_of_a_robot_given_by_a_table(make_exercise: Make) -> None:
 def test_screws_and_table_give_the_same_pose(
     exercise_id: str, catalogue: Mapping[str, Exercise]
 ) -> None:
-    """The product of exponentials of the table's screw axes equals the table's pose."""
+    # The product of exponentials of the table's screw axes equals the table's pose.
     exercise = catalogue[exercise_id]
     rng = np.random.default_rng(12)
     values = {v.name: rng.uniform(v.low, v.high, 5) for v in exercise.variables}

@@ -1,4 +1,4 @@
-"""Several exercises at once: `dh-grader grade --assignment` and `dh-grader assignments check`."""
+"""Test `dh-grader grade --assignment` and `dh-grader assignments check`."""
 
 import json
 from pathlib import Path

@@ -15,7 +15,6 @@ from tests.cli.conftest import Run
 def course(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, catalogue: Mapping[str, Exercise]
 ) -> list[str]:
-    """Record a correct and a wrong attempt by ada, and a wrong one by grace; return their ids."""
     file = tmp_path / "attempts.db"
     monkeypatch.setenv("DH_GRADER_DATABASE", str(file))
     store = AttemptStore.open(str(file))
@@ -157,7 +156,6 @@ def test_gradebooks_contain_only_the_attempt_that_counts(
 
 @pytest.fixture
 def corrected(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Change the marking rule of the exercise, so that a regrade gives other points."""
     text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
     text = text.replace('kind = "dh_table"\n', 'kind = "dh_table"\nmarking = "rows"\n', 1)
     text = text.partition("[[checks]]")[0]  # they give the points of the other rule

@@ -1,4 +1,4 @@
-"""`dh-grader courses`: counts, readable refusals, and the note that links lead to this machine."""
+"""Test `dh-grader courses`: counts, error messages and links."""
 
 from pathlib import Path
 
@@ -14,7 +14,7 @@ def run(*words: str) -> Result:
 
 @pytest.fixture
 def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
-    """Return the id of a course, in a new database."""
+    """Create a course in a new database, and return its id."""
     monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "attempts.db"))
     monkeypatch.setenv("DH_GRADER_SECRET", "0123456789abcdef" * 2)
     assert run("new", "robots", "--title", "Robots", "--zone", "UTC").exit_code == 0
@@ -22,7 +22,6 @@ def course(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
 
 
 def learners(course: str, file: Path, *names: str) -> str:
-    """Import a class list; return what the command prints."""
     file.write_text("\n".join(["name,email", *(f"{n},{n}@example.edu" for n in names)]), "utf-8")
     return run("learners", "import", course, str(file)).stdout
 

@@ -1,4 +1,4 @@
-"""`dh-grader keys`, and the service's refusal to start without keys."""
+"""Test `dh-grader keys`, and that the service does not start without keys."""
 
 import re
 import shutil
@@ -35,7 +35,6 @@ def run(*arguments: str) -> Result:
 
 
 def refused(host: str | None = "0.0.0.0", **options: Any) -> str:
-    """Return the reason for which the service does not start, or "" if it starts."""
     try:
         installed_app(load_settings(**options), host)
     except SettingsError as error:

@@ -1,4 +1,4 @@
-"""`grade --shard` and `merge`: several machines grade one class."""
+"""Test `grade --shard` and `merge`: several machines grade one class."""
 
 import json
 from collections.abc import Callable
@@ -15,7 +15,6 @@ GRADE = ("grade", "--exercise", "planar-rrr", "--part", "table", "--format", "js
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with seven submissions: correct, wrong and empty ones, and one with two files."""
     folder = tmp_path / "class"
     folder.mkdir()
     for name in ("ada", "ben", "cem", "dan", "eva"):

@@ -1,4 +1,4 @@
-"""`dh-grader exercises new` and `check`: a new exercise file, and its checks in a course's CI."""
+"""Test `dh-grader exercises new` and `check`."""
 
 import os
 import subprocess
@@ -132,7 +132,7 @@ def test_the_environment_may_name_several_folders(
 
 @pytest.mark.long
 def test_in_a_pipe_lines_are_plain_and_not_wrapped(arm: Path) -> None:
-    """The continuous integration of a course reads the output in a pipe."""
+    # The continuous integration of a course reads the output in a pipe.
     changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))
     result = subprocess.run(
         [sys.executable, "-m", "service", "exercises", "check", str(arm)],

@@ -18,7 +18,6 @@ ELBOW = [
 
 @pytest.fixture
 def file(tmp_path: Path) -> Path:
-    """Return a URDF file of an elbow arm."""
     made = tmp_path / "elbow.urdf"
     made.write_bytes(urdf(ELBOW, 4))
     return made

@@ -1,4 +1,4 @@
-"""Variants on the command line: check and deploy many, show one, and grade one."""
+"""Test the commands for variants of an exercise."""
 
 import json
 import re

@@ -1,4 +1,4 @@
-"""A command writes its output folder completely or not at all, and leaves foreign files alone."""
+"""A command writes its whole output folder, or nothing."""
 
 import os
 from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""Backup, restore, doctor, and the data of one learner."""
+"""Test the commands for operators: backup, restore, doctor, and a learner's data."""
 
 import json
 import sqlite3
@@ -43,7 +43,6 @@ def record(connection: Any, learner: str, at: datetime, number: int) -> None:
 
 @pytest.fixture
 def database(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """A database with a course, in which ada's attempt is new and grace's is two years old."""
     path = tmp_path / "attempts.db"
     monkeypatch.setenv("DH_GRADER_DATABASE", str(path))
     monkeypatch.setenv("DH_GRADER_SECRET", SECRET)

@@ -1,4 +1,4 @@
-"""``dh-grader grade --server`` with a real server process; one test kills the server in a run."""
+"""Test ``dh-grader grade --server`` with a real server process."""
 
 import json
 import signal
@@ -35,7 +35,6 @@ id = "stanford-arm"
 
 @pytest.fixture
 def homework(tmp_path: Path) -> Path:
-    """A folder with correct, wrong, unreadable, unusable and missing answers."""
     folder = tmp_path / "class"
     folder.mkdir()
     entries = [*POSITION, "q1", "a1 c1 +", "1/0", "0", 0]

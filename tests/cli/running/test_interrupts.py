@@ -1,4 +1,4 @@
-"""A signal always ends a run, even if Python drops the exception that the signal raises."""
+"""A signal always ends a command."""
 
 import os
 import signal
@@ -14,7 +14,6 @@ pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no signals between 
 
 @pytest.fixture(autouse=True)
 def _interrupts_enabled() -> Iterator[None]:
-    """Handle interrupts as in a terminal, because a test run in the background ignores them."""
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     yield
     signal.signal(signal.SIGINT, before)
@@ -22,7 +21,7 @@ def _interrupts_enabled() -> Iterator[None]:
 
 @pytest.fixture
 def lose(monkeypatch: pytest.MonkeyPatch) -> Callable[[int], None]:
-    """A function that sends this process a signal whose exception Python drops."""
+    # A function that sends this process a signal whose exception Python drops.
     monkeypatch.setattr(sys, "unraisablehook", lambda _: None)
 
     def lose(number: int) -> None:

@@ -1,4 +1,4 @@
-"""A course in a new database, and learners who repeat each hand-in until it is confirmed."""
+"""A course whose learners repeat each hand-in until it is confirmed."""
 
 import asyncio
 import json
@@ -28,7 +28,7 @@ TRIES: Final = 1200
 
 @dataclass(frozen=True)
 class HandIn:
-    """A hand-in of a learner, ``at`` seconds after the start; ``body`` names the exercise."""
+    """A learner's hand-in, ``at`` seconds after the start."""
 
     learner: str
     assignment: str
@@ -39,7 +39,7 @@ class HandIn:
 
 @dataclass
 class Outcome:
-    """The responses to hand-ins: waits in seconds, and ids of attempts by idempotency key."""
+    """The waiting times in seconds, and the ids of the attempts."""
 
     waits: list[float] = field(default_factory=list)
     attempts: dict[str, str] = field(default_factory=dict)
@@ -49,13 +49,12 @@ class Outcome:
     lost_connections: int = 0
 
     def quantile(self, share: float) -> float:
-        """Return the quantile of the waits for a share between 0 and 1, in seconds."""
         ordered = sorted(self.waits)
         return ordered[min(int(len(ordered) * share), len(ordered) - 1)]
 
 
 def enrol(url: str, learners: Sequence[str]) -> dict[str, str]:
-    """Make the course with these learners in a database; return the keys in their links."""
+    """Create the course with these learners; return the keys in their links."""
     engine, now = open_database(url), datetime.now(UTC)
 
     def work(connection: Connection) -> dict[str, str]:
@@ -71,7 +70,6 @@ def enrol(url: str, learners: Sequence[str]) -> dict[str, str]:
 
 
 def assign(url: str, name: str, exercises: Sequence[str], **fields: Any) -> None:
-    """Add an assignment of these exercises, with ten points each, to the course."""
     chosen = [{"exercise": each, "points": 10} for each in exercises]
     new = NewAssignment.model_validate({"id": name, "title": name, "exercises": chosen, **fields})
     engine = open_database(url)
@@ -80,13 +78,11 @@ def assign(url: str, name: str, exercises: Sequence[str], **fields: Any) -> None
 
 
 class Learners:
-    """Learners with the keys in their links.
+    """Simulated learners who hand in over HTTP."""
 
-    Each learner has a separate address, and each hand-in has a separate connection. If the
-    connection breaks, the learner sends the hand-in again with the same key, to the next of the
-    ``ports``.
-    """
-
+    # Each learner has a separate address, and each hand-in has a separate connection. If the
+    # connection breaks, the learner sends the hand-in again with the same key, to the next of the
+    # `ports`.
     def __init__(self, ports: Sequence[int], keys: Mapping[str, str], outcome: Outcome) -> None:
         self._ports = ports
         self._keys = keys
@@ -96,7 +92,7 @@ class Learners:
         self._sources = {each: f"127.2.{i // 250}.{i % 250 + 1}" for i, each in addresses}
 
     async def all_hand_in(self, hand_ins: Sequence[HandIn]) -> None:
-        """Send each hand-in at its moment, until it is confirmed or refused."""
+        """Send each hand-in at its time, and repeat it until the service answers."""
         began = time.perf_counter()
         await asyncio.gather(*(self._hand_in(each, began + each.at) for each in hand_ins))
 

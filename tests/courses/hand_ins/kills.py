@@ -1,4 +1,4 @@
-"""Learners hand in while processes of the service are killed, again and again."""
+"""Processes of the service are killed while learners hand in."""
 
 import asyncio
 import json
@@ -34,7 +34,7 @@ OTHERS = 10
 
 
 class Fleet:
-    """Services over one database. A killed service is started again."""
+    """Services with one database; a killed service is started again."""
 
     def __init__(self, url: str, folder: Path, kind: str) -> None:
         self._settings = {"DH_GRADER_DATABASE": url, "DH_GRADER_SECRET": SECRET}
@@ -54,7 +54,6 @@ class Fleet:
         self.ports[number] = self._running[number].port
 
     def kill_worker(self, number: int, choose: random.Random) -> None:
-        """Kill a worker of a service; the service then starts another worker."""
         running = self._running[number]
         started = running.log.count("startup complete")
         os.kill(choose.choice(self._worker_pids(number)), signal.SIGKILL)
@@ -62,7 +61,6 @@ class Fleet:
             time.sleep(0.02)
 
     def close(self) -> None:
-        """End all services."""
         for each, stack in zip(self._running, self._stacks, strict=True):
             assert each.end() == 0
             stack.close()
@@ -84,14 +82,12 @@ class Fleet:
 
 @contextmanager
 def fleet(url: str, folder: Path, kind: str) -> Iterator[Fleet]:
-    """Run as many services as tests use with this kind of database."""
     made = Fleet(url, folder, kind)
     yield made
     made.close()
 
 
 async def _round(fleet: Fleet, learners: Learners, number: int, choose: random.Random) -> None:
-    """Let one learner hand in 50 times, and other learners once; kill a process meanwhile."""
     drawn = tables(number, 0.5, (EXERCISE,))
 
     def hand_in(learner: str, assignment: str, i: int) -> HandIn:
@@ -110,7 +106,6 @@ async def _round(fleet: Fleet, learners: Learners, number: int, choose: random.R
 
 
 def killed(url: str, folder: Path, kind: str, rounds: int) -> tuple[Outcome, list[str]]:
-    """Kill a process in each round; return the responses and sentences about failures."""
     names = [f"greedy{i}" for i in range(rounds)] + [f"u{i}" for i in range(OTHERS)]
     keys, outcome, choose = enrol(url, names), Outcome(), random.Random(rounds)
     assign(url, "homework", [EXERCISE])
@@ -138,7 +133,6 @@ def killed(url: str, folder: Path, kind: str, rounds: int) -> tuple[Outcome, lis
 
 
 def _counted(url: str, assignment: str) -> Counter[str]:
-    """Return the number of counted attempts of each learner in an assignment."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = connection.execute(

@@ -1,9 +1,11 @@
-"""`python -m tests.courses.hand_ins.last_minute`: a class hands in just before it is due.
+"""`python -m tests.courses.hand_ins.last_minute`: a class hands in just before the due date.
 
-150 learners submit three exercises each within 20 seconds, most of them near the due date. Half of
-the tables have slips. Print the waiting times. Exit with 1 if a response is a failure, or if a
-hand-in is late, lost or recorded twice.
+Print the waiting times. Exit with 1 if a response is a failure, or if a hand-in is late, lost or
+recorded twice.
 """
+
+# 150 learners submit three exercises each within 20 seconds, most of them near the due date. Half
+# of the tables have slips.
 
 import argparse
 import asyncio
@@ -44,7 +46,6 @@ PROCESSES: Final = {"sqlite": (1, 2), "postgresql": (2, 1)}
 
 
 def hand_ins(learners: Sequence[str], exercises: Sequence[str], seconds: float) -> list[HandIn]:
-    """Return one hand-in of each learner at each exercise, most of them near the end."""
     choose = random.Random(1)
     drawn = {name: tables(1, 0.5, (name,)) for name in exercises}
     return [
@@ -68,10 +69,6 @@ def last_minute(
     seconds: float,
     spare: float = SPARE,
 ) -> tuple[Outcome, list[str]]:
-    """Let a class hand in; return the responses and sentences about failures.
-
-    The last learner hands in ``spare`` seconds before the due date.
-    """
     names = [f"u{i}" for i in range(learners)]
     planned = hand_ins(names, exercises, seconds)
     keys, outcome = enrol(url, names), Outcome()
@@ -102,7 +99,6 @@ def last_minute(
 
 
 def graded(url: str) -> int:
-    """Return the number of entries in the gradebook."""
     engine = open_database(url)
     with engine.connect() as connection:
         rows = gradebook(connection, COURSE).rows
@@ -111,7 +107,6 @@ def graded(url: str) -> int:
 
 
 def main() -> int:
-    """Let a class hand in with each kind of database; return the exit code."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--learners", type=int, default=150)
     parser.add_argument("--seconds", type=float, default=20.0)

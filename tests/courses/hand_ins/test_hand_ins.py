@@ -1,4 +1,4 @@
-"""A class hands in over HTTP: just before the due date, and while processes are killed."""
+"""A class hands in over HTTP while processes of the service are killed."""
 
 import sys
 from collections.abc import Callable
@@ -18,7 +18,6 @@ Figure = Callable[[str], None]
 
 @pytest.fixture(params=KINDS)
 def database(request: pytest.FixtureRequest) -> tuple[str, str]:
-    """A kind of database, and the URL of an empty database of this kind."""
     is_sqlite = request.param == "sqlite"
     folder: Path = request.getfixturevalue("tmp_path")
     url = str(folder / "attempts.db") if is_sqlite else request.getfixturevalue("postgresql_url")

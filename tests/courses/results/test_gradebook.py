@@ -1,4 +1,4 @@
-"""The gradebook query uses its index, also in a database without statistics."""
+"""The database query of the gradebook uses an index."""
 
 from typing import Any
 

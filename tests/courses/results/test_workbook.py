@@ -1,4 +1,4 @@
-"""The gradebook as a workbook, read back with the standard library."""
+"""Read the gradebook's workbook with the standard library."""
 
 import io
 import re
@@ -31,7 +31,7 @@ FORMULA = '=HYPERLINK("https://evil.example";"Grade")'
 
 
 def sheets(content: bytes) -> dict[str, list[list[str | float | None]]]:
-    """Return the cells of each sheet of a workbook; no cell may be a formula or a link."""
+    """Return the cells of each sheet of a workbook."""
     with zipfile.ZipFile(io.BytesIO(content)) as file:
         parts = {name: ElementTree.fromstring(file.read(name)) for name in file.namelist()}
     texts = ["".join(each.itertext()) for each in parts["xl/sharedStrings.xml"]]
@@ -59,7 +59,6 @@ def _row(row: ElementTree.Element, texts: list[str]) -> list[str | float | None]
 
 
 def as_tutor(class_: Class, course: str | None = "robots") -> Class:
-    """Return the class with the key of a tutor, by default a tutor of the course robots."""
     text, until = new_key_text(), NOW + timedelta(days=1)
     digest = SECRET.key_digest(text)
     class_.do(lambda it: add_key(it, "", digest, {Scope.TUTOR}, None, NOW, until, course))
@@ -68,7 +67,6 @@ def as_tutor(class_: Class, course: str | None = "robots") -> Class:
 
 @pytest.fixture
 def graded(class_: Class) -> Any:
-    """A class in which ada has handed in twice, and the learner grace has a formula as name."""
     class_.assign(due=days(1))
     for key in "ab":
         assert class_.hand_in(key).status_code == 201

@@ -1,13 +1,15 @@
-"""Write lists of codes, made from the records of misconceptions, into pages of docs/.
+"""Write lists of the codes of misconceptions into pages of docs/.
 
-``python -m tests.docs.misconceptions.records`` writes the lists between comments::
-
-    <!-- records: WrongPosition -->
-    <!-- end -->
-
-A comment names the kinds of cases whose codes are listed: ``records`` lists the codes in a table
-with meanings and examples, ``codes`` lists the codes in a line.
+Run ``python -m tests.docs.misconceptions.records``.
 """
+
+# The lists are written between comments:
+#
+#     <!-- records: WrongPosition -->
+#     <!-- end -->
+#
+# A comment names the kinds of cases whose codes are listed: `records` lists the codes in a table
+# with meanings and examples, `codes` lists the codes in a line.
 
 import re
 from collections.abc import Iterator
@@ -43,7 +45,7 @@ def records_in(names: list[str]) -> list[Record]:
 
 
 def written(page: str) -> str:
-    """The page with the current lists between its comments."""
+    """Return the page with the current lists of codes."""
     return _MARKED.sub(lambda found: f"{found[1]}{_LISTS[found[2]](_names(found))}{found[4]}", page)
 
 
@@ -62,7 +64,6 @@ def _table(names: list[str]) -> str:
 
 
 def _example(records: list[Record], code: str) -> str:
-    """Return the first example that causes the code and is short enough for a table."""
     for record in records:
         if record.example is not None and _causes(record.example, code, record.codes):
             exercise, part, answer, *unit = record.example
@@ -78,7 +79,6 @@ def _causes(example: Example, code: str, codes: tuple[str, ...]) -> bool:
 
 
 def shown_example(answer: object) -> tuple[str, str]:
-    """Return the place in the model answer that an example changes, if only one, and its text."""
     if isinstance(answer, dict) and all("/" in place for place in answer):
         if len(answer) == 1:
             [(place, text)] = answer.items()

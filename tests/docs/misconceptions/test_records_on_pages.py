@@ -1,4 +1,4 @@
-"""The lists of codes that are made from the records are current, and leave no record out."""
+"""The lists of misconceptions in docs/ are complete and current."""
 
 from collections import Counter
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""``python -m tests.exercises.real --tables 1000``: random tables of every real robot."""
+"""``python -m tests.exercises.real --tables 1000``: grade random tables of every real robot."""
 
 import argparse
 import os
@@ -12,7 +12,6 @@ from tests.shipped import REAL_ROBOTS
 
 
 def main() -> int:
-    """Print the counts of each robot; return 1 if a table was misjudged."""
     parser = argparse.ArgumentParser(prog="python -m tests.exercises.real", description=__doc__)
     parser.add_argument("--tables", type=int, default=1000, help="valid and wrong ones each")
     parser.add_argument("--seed", type=int, default=1)

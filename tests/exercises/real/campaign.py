@@ -1,9 +1,8 @@
-"""Grade random tables of the real robots: valid tables in other frames, and wrong tables.
+"""Grade random tables of the real robots, valid and wrong."""
 
-``python -m tests.exercises.real`` draws 1,000 valid and 1,000 wrong tables of every robot; the
-suite draws a few. Base frame, tool frame and joint directions vary if the exercise leaves them to
-the student.
-"""
+# `python -m tests.exercises.real` draws 1,000 valid and 1,000 wrong tables of every robot; the
+# suite draws a few. Base frame, tool frame and joint directions vary if the exercise leaves them to
+# the student.
 
 import zlib
 from collections import Counter
@@ -25,13 +24,12 @@ VALID, ACCEPTED, WRONG, REFUSED = "valid", "accepted", "wrong", "refused"
 
 @dataclass
 class Found:
-    """Counts of tables by kind and judgement, and the misjudged tables."""
+    """Counts of graded tables, and the misjudged tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)
 
     def try_whole(self, table: Table) -> None:
-        """Grade a valid table and count the judgement."""
         self.counts[VALID] += 1
         try:
             found = graded(table)
@@ -44,7 +42,6 @@ class Found:
             self.misses.append(f"valid, not accepted: {table.texts}")
 
     def try_wrong(self, table: Table) -> None:
-        """Grade a wrong table and count the judgement."""
         self.counts[WRONG] += 1
         try:
             found = graded(table)
@@ -58,7 +55,6 @@ class Found:
 
 
 def policy_of(exercise: Exercise) -> Policy:
-    """Return which of base, tool and joint directions the exercise leaves to the student."""
     [spec] = [part for part in exercise.parts if isinstance(part, DhTableSpec)]
     free = tuple(each == "free" for each in (spec.base, spec.tool, spec.directions))
     [policy] = [each for each in POLICIES if (each.base, each.tool, each.directions) == free]
@@ -72,7 +68,6 @@ def convention_of(exercise: Exercise) -> str:
 
 
 def run(name: str, tables: int, seed: int) -> Found:
-    """Return the judgements on ``tables`` valid and ``tables`` wrong tables of a robot."""
     exercise = shipped_exercises()[name]
     robot: Robot = robot_of(exercise)
     policy, convention = policy_of(exercise), convention_of(exercise)

@@ -1,8 +1,9 @@
-"""List the real robots whose makers publish URDF files, and compare tables with these files.
+"""Compare the tables of real robots with the URDF files of their makers.
 
-``python -m tests.exercises.real.makers FOLDER`` compares the exercises with files of your own, such
-as ``FOLDER/ur16e.urdf``: expand the xacro file of the maker's repository first.
+``python -m tests.exercises.real.makers FOLDER`` compares them with files of your own.
 """
+
+# FOLDER has files such as `ur16e.urdf`: expand the xacro file of the maker's repository first.
 
 import sys
 from collections.abc import Mapping, Sequence
@@ -17,13 +18,11 @@ ARMS = Path(__file__).parents[2] / "importing" / "arms"
 
 
 class Maker(NamedTuple):
-    """The URDF file of a robot's maker, and the source of the file.
+    """The URDF file of a robot's maker, and the source of the file."""
 
-    ``signs`` has -1 for each joint that the file counts in the other direction. ``zeros`` are the
-    file's joint values, in degrees, at the home configuration of the exercise. Both are empty if
-    file and exercise agree. ``tip`` is the link at the tool.
-    """
-
+    # `signs` has -1 for each joint that the file counts in the other direction. `zeros` are the
+    # file's joint values, in degrees, at the home configuration of the exercise. Both are empty if
+    # file and exercise agree. `tip` is the link at the tool.
     file: str
     source: str
     tip: str = "tool0"
@@ -67,7 +66,7 @@ ROUNDED_MM = {"kinova-gen3": 0.75}
 
 
 def differences(name: str, file: Path) -> list[Difference]:
-    """Return the differences between a robot's table in each convention and the robot's file."""
+    """Return the differences between a robot's tables and its URDF file."""
     exercise, maker = shipped_exercises()[name], MAKERS[name]
     count = len(exercise.joints)
     signs, zeros = maker.signs or (1,) * count, maker.zeros or (0,) * count
@@ -79,7 +78,6 @@ def differences(name: str, file: Path) -> list[Difference]:
 
 
 def main(folder: Path) -> None:
-    """Print the differences between the exercises and the files in a folder."""
     for name, maker in MAKERS.items():
         file = folder / f"{maker.file}.urdf"
         if not file.exists():

@@ -1,4 +1,4 @@
-"""Read the joint axes and the tool frame in the home position from a real robot's statement."""
+"""Read the joint axes and the tool frame from a real robot's statement."""
 
 import re
 from collections.abc import Iterator, Mapping
@@ -26,12 +26,10 @@ _TERM = re.compile(r"([+-]?) ?([a-z]\d|\d+(?:\.\d+)?)")
 
 @dataclass(frozen=True)
 class HomeAxis:
-    """A joint axis in the home position.
+    """A joint axis in the home position."""
 
-    ``point`` is None if the joint slides. ``signed`` is False if the student may choose the
-    positive direction.
-    """
-
+    # `point` is None if the joint slides. `signed` is False if the student may choose the positive
+    # direction.
     point: Vector | None
     direction: Vector
     signed: bool
@@ -39,17 +37,14 @@ class HomeAxis:
 
 @dataclass(frozen=True)
 class Home:
-    """A robot in the home position.
+    """A robot in the home position."""
 
-    ``tool`` is ``(origin, x, z)``, or None if the statement does not say where the tool frame is.
-    """
-
+    # `tool` is `(origin, x, z)`, or None if the statement does not say where the tool frame is.
     axes: tuple[HomeAxis, ...]
     tool: tuple[Vector, Vector, Vector] | None
 
 
 def home_of(exercise: Exercise, numbers: Mapping[str, float]) -> Home:
-    """Return the robot that the statement describes, with numbers for its letters."""
     words = " ".join(exercise.statement.split())
     tool = _TOOL.search(words)
     frame = None
@@ -70,7 +65,6 @@ def _axes(words: str, numbers: Mapping[str, float]) -> Iterator[HomeAxis]:
 
 
 def _point(words: str, numbers: Mapping[str, float]) -> Vector:
-    """Return a point, each of whose coordinates is a sum of numbers and letters."""
     return np.array(
         [
             sum(

@@ -1,4 +1,4 @@
-"""Tables of the real robots in random frames: a sample of ``python -m tests.exercises.real``."""
+"""Grade a few random tables of the real robots."""
 
 import pytest
 

@@ -1,7 +1,4 @@
-"""Compare tables of real robots with those URDF files of their makers that the repository has.
-
-``python -m tests.exercises.real.makers`` compares tables with other files.
-"""
+"""Compare tables of real robots with the URDF files in the repository."""
 
 from collections.abc import Sequence
 
@@ -34,7 +31,6 @@ def test_nine_of_the_robots_are_compared_here() -> None:
 
 
 def of_ur5e(name: str, signs: Sequence[int]) -> Difference:
-    """Return the difference of a robot's table from the URDF file of the UR5e."""
     exercise = shipped_exercises()[name]
     return difference(exercise, Convention.STANDARD, FILES["ur5e"], signs, (0,) * 6, "tool0")
 

@@ -1,9 +1,8 @@
-"""Compare the tables of the real robots with other published tables of the same robots.
+"""Compare the tables of the real robots with other published tables."""
 
-Sources choose different frames, signs and home configurations. But they must agree in |a|, in α
-modulo 180°, and in |d|, because these are distances and angles between neighbouring joint axes.
-Each table below was typed from its source, not from the exercise.
-"""
+# Sources choose different frames, signs and home configurations. But they must agree in |a|, in α
+# modulo 180°, and in |d|, because these are distances and angles between neighbouring joint axes.
+# Each table below was typed from its source, not from the exercise.
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -28,7 +27,7 @@ class Published(NamedTuple):
 
 
 def universal_robots(d1: float, a2: float, a3: float, d4: float, d5: float, d6: float) -> Published:
-    """Return the table of all arms of Universal Robots, with lengths from a configuration file."""
+    """Return the table of an arm of Universal Robots."""
     return Published(
         "UniversalRobots/Universal_Robots_ROS2_Description",
         (0, a2, a3, 0, 0, 0), (90, 0, 0, 90, -90, 0), (d1, 0, 0, d4, d5, d6),
@@ -89,13 +88,12 @@ PUBLISHED: Mapping[str, Published] = {
 
 
 def mechanism(a: Numbers, alpha: Numbers, d: Numbers) -> Numbers:
-    """Return |a|, α as an angle of 0 to 90°, and |d| of each row, ``(rows, 3)``."""
+    # Return |a|, α as an angle of 0 to 90°, and |d| of each row, `(rows, 3)`.
     angle = np.abs((np.rad2deg(alpha) + 90) % 180 - 90)
     return np.stack([np.abs(a), angle, np.abs(d)], axis=1)
 
 
 def written(exercise: Exercise) -> Numbers:
-    """Return the mechanism of an exercise's standard table, with all joint variables 0."""
     values = {v.name: np.zeros(1) for v in exercise.variables}
     robot = exercise.robot
     rows = robot.tables[robot.convention].values(values, 1)[..., 0]

@@ -1,4 +1,4 @@
-"""Compare a robot's table with a URDF file, by plain rotations instead of the tested code."""
+"""Compare a robot's table with a URDF file, without the tested code."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -17,12 +17,10 @@ POSES = 100
 
 @dataclass(frozen=True)
 class Difference:
-    """How far the poses of a table and of a URDF file differ at most.
+    """The largest difference between the poses of a table and of a URDF file."""
 
-    The comparison ignores that table and file may use other base and tool frames. ``base_apart``
-    and ``tool_apart`` are the distances (in mm) between these frames.
-    """
-
+    # The comparison ignores that table and file may use other base and tool frames. `base_apart`
+    # and `tool_apart` are the distances (in mm) between these frames.
     millimetres: float
     degrees: float
     base_apart: float
@@ -37,10 +35,8 @@ def difference(
     zeros: Sequence[float],
     tip: str,
 ) -> Difference:
-    """Compare a table with a file at random joint values.
-
-    ``zeros`` are the file's joint values at the home configuration of the exercise.
-    """
+    """Compare a table with a URDF file at random joint values."""
+    # `zeros` are the file's joint values at the home configuration of the exercise.
     names = [joint.variable for joint in exercise.joints]
     values = np.random.default_rng(29).uniform(-np.pi, np.pi, (len(names), POSES))
     of_file = np.array(signs)[:, None] * values + np.radians(zeros)[:, None]
@@ -59,7 +55,7 @@ def difference(
 def table_poses(
     exercise: Exercise, convention: Convention, values: Mapping[str, Numbers]
 ) -> Numbers:
-    """Return the poses that follow from the table, ``(poses, 4, 4)``."""
+    """Return the poses that follow from the table."""
     found = np.broadcast_to(np.eye(4), (POSES, 4, 4))
     for row in exercise.robot.tables[convention].rows:
         a, alpha, d, theta = (
@@ -103,13 +99,12 @@ def file_poses(file: Path, tip: str, values: Numbers) -> Numbers:
 
 
 def words(element: ElementTree.Element | None, name: str, default: str) -> Numbers:
-    """Return the numbers in an attribute of an element, or the numbers in ``default``."""
     text = default if element is None else element.get(name, default)
     return np.array([float(word) for word in text.split()])
 
 
 def turned(axis: Sequence[float] | Numbers, angles: Numbers) -> Numbers:
-    """Return the rotations about a unit vector by the formula of Rodrigues, ``(poses, 3, 3)``."""
+    """Return the rotations about a unit vector, by Rodrigues' formula."""
     x, y, z = axis
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     sines, cosines = np.sin(angles)[:, None, None], np.cos(angles)[:, None, None]
@@ -124,10 +119,9 @@ def moved(rotations: Numbers, places: Numbers) -> Numbers:
 
 
 def fitted(reference: Numbers, poses: Numbers) -> tuple[Numbers, Numbers, Numbers]:
-    """Find the constant transforms for which ``base @ poses @ tool`` is closest to ``reference``.
-
-    Return ``base``, ``poses`` (unchanged) and ``tool``.
-    """
+    # Find the constant transforms for which `base @ poses @ tool` is closest to `reference`.
+    #
+    # Return `base`, `poses` (unchanged) and `tool`.
     a = reference @ np.linalg.inv(reference[0])
     b = poses @ np.linalg.inv(poses[0])
     u, _, v = np.linalg.svd(turning_axes(a).T @ turning_axes(b))
@@ -145,7 +139,7 @@ def fitted(reference: Numbers, poses: Numbers) -> tuple[Numbers, Numbers, Number
 
 
 def turning_axes(poses: Numbers) -> Numbers:
-    """Return the axis of each turn; its length is twice the sine of the turn's angle."""
+    # Return the axis of each turn; its length is twice the sine of the turn's angle.
     r = poses[:, :3, :3]
     return np.stack(
         [r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]], axis=1
