@@ -56,7 +56,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark most cases of sampled tests as long; shuffle all tests with ``--shuffle``."""
+    """Mark most cases of large tests as long, and shuffle tests on request."""
     # In a test with the marker `sampled(n)`, every n-th case is in the sample. All processes use
     # the same order of tests.
     places: Counter[str] = Counter()
@@ -83,12 +83,12 @@ def pytest_collection() -> Generator[None, object, object]:
 
 @pytest.fixture
 def figure(record_property: Callable[[str, object], None]) -> Callable[[str], None]:
-    """Return a function that records a measured figure. The run prints all figures at its end."""
+    """Return a function that records a measurement."""
     return lambda line: record_property(FIGURE, line)
 
 
 def pytest_terminal_summary(terminalreporter: pytest.TerminalReporter) -> None:
-    """Print the measured figures of all processes."""
+    """Print the recorded measurements of all processes."""
     figures = [
         str(value)
         for reports in terminalreporter.stats.values()

@@ -7,7 +7,7 @@ from _pytest.mark import ParameterSet
 
 
 def one_in(count: int, cases: Iterable[object]) -> list[ParameterSet]:
-    """Return test parameters, of which the suite runs one in ``count``."""
+    """Return test parameters; the suite runs only one in ``count``."""
     # A case with several parameters is a tuple.
     return [
         pytest.param(

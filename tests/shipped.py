@@ -33,7 +33,7 @@ def without_most_real_robots(ids: Iterable[str]) -> list[str]:
 
 
 def sampled(ids: Iterable[str], one_in: int = 1) -> list[ParameterSet]:
-    """Return parameters of a costly test, which the suite runs for one id in ``one_in``."""
+    """Return parameters of a costly test; the suite runs only one in ``one_in``."""
     # The campaign runs it for all other ids, and for most of the real robots.
     ids = list(ids)
     kept = set(without_most_real_robots(ids)[::one_in])

@@ -107,7 +107,7 @@ def imported_names(tree: ast.Module) -> Iterator[str]:
 
 @cache
 def imports() -> Mapping[str, frozenset[str]]:
-    """Return for each module of service/ the modules of service/ that it imports."""
+    """Return the imports between the modules of service/."""
     modules = trees()
     found = {}
     for module, tree in modules.items():

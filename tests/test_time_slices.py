@@ -1,4 +1,4 @@
-"""Reports are the same if gradings take turns."""
+"""Reports stay the same if gradings interrupt each other."""
 
 import asyncio
 import threading

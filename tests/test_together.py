@@ -1,4 +1,4 @@
-"""If one of many cases in a test fails, the test fails and names this case."""
+"""A failing case fails the whole test, and the error names the case."""
 
 import pytest
 

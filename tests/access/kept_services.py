@@ -27,7 +27,7 @@ class KeptServices:
     def empty(
         self, kind: str, catalogue: object, build: Build
     ) -> tuple[Any, AttemptStore, KeyRing]:
-        """Return the application, store and keys of a service with empty tables."""
+        """Return the application, store and keys of a service with empty database tables."""
         # The application must keep the catalogue alive, because Python's id of the catalogue is
         # used to find the application again.
         place = kind, id(catalogue)

@@ -1,4 +1,4 @@
-"""Find the client to which a request belongs, from the address of the request."""
+"""Identify a client by the address of its requests."""
 
 import pytest
 

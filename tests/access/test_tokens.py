@@ -1,4 +1,4 @@
-"""Accept or refuse signed tokens, whatever they contain."""
+"""Any signed token is either read or refused with a reason."""
 
 import base64
 import hmac

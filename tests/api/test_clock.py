@@ -36,7 +36,7 @@ ATTEMPTS = "/v1/exercises/scara/attempts"
 
 
 class Clock:
-    """The clock of the whole program: the real time plus ``ahead``."""
+    """A clock that is ``ahead`` of the real time."""
 
     def __init__(self) -> None:
         self.ahead = timedelta()

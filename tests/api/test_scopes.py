@@ -1,4 +1,4 @@
-"""Each route gives each kind of caller the expected status."""
+"""Each route returns the expected status to each kind of caller."""
 
 import asyncio
 import gzip

@@ -55,27 +55,27 @@ class Sum(NamedTuple):
 
 
 class Product(NamedTuple):
-    """Two or more factors."""
+    """A product of two or more factors."""
 
     factors: "tuple[Tree, ...]"
 
 
 class Quotient(NamedTuple):
-    """A numerator over a denominator."""
+    """A fraction of two formulas."""
 
     top: "Tree"
     bottom: "Tree"
 
 
 class Power(NamedTuple):
-    """A base with an integer exponent."""
+    """A power with an integer exponent."""
 
     base: "Tree"
     exponent: int
 
 
 class Call(NamedTuple):
-    """A function of one value, or atan2 of two."""
+    """A call of a function such as sin or atan2."""
 
     function: str
     arguments: "tuple[Tree, ...]"

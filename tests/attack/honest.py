@@ -18,7 +18,7 @@ GRADE = f"/v1/exercises/{EXERCISE}/grade"
 
 @dataclass
 class Waits:
-    """The waiting times for responses in seconds, and the failures of requests."""
+    """The waiting times in seconds, and the failed requests."""
 
     seconds: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
@@ -39,7 +39,7 @@ class Waits:
 def watched(
     running: Service, pause: float = 0.0, source: str = "127.0.0.2"
 ) -> Iterator[tuple[Waits, Waits]]:
-    """Run honest clients during the block, and yield their waiting times."""
+    """Run honest clients in the ``with`` block, and yield their waiting times."""
     # Each client pauses for `pause` seconds after each response.
     submissions, health = Waits(), Waits()
     over = threading.Event()

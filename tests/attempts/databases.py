@@ -103,5 +103,5 @@ def postgresql_url(postgresql: Any) -> str:
 
 
 def migrated_database(postgresql: Any) -> str:
-    """Create a database with migrated, empty tables on the server; return its URL."""
+    """Create a database with empty tables on the server; return its URL."""
     return new_database(postgresql, f"attempts{next(_number)}", TEMPLATE)

@@ -1,4 +1,4 @@
-"""Migrations may be killed, run at once, or run beside an old version of the program."""
+"""Migrations may be interrupted, and may run at the same time."""
 
 import multiprocessing
 import os

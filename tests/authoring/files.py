@@ -1,4 +1,4 @@
-"""Exercise files for tests of the remarks about faulty files."""
+"""Write exercise files for tests, and return the remarks about them."""
 
 from collections.abc import Callable
 

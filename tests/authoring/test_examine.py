@@ -1,4 +1,4 @@
-"""Test each remark about a faulty exercise file."""
+"""Test each warning about a faulty exercise file."""
 
 from collections.abc import Mapping
 

@@ -1,1 +1,1 @@
-"""Measure the program and compare it with its budgets: ``python -m tests.benchmarks``."""
+"""Measure the program's speed and compare it with limits: ``python -m tests.benchmarks``."""

@@ -99,7 +99,7 @@ def in_process() -> dict[str, float]:
 
 
 def print_budgets(*, with_server: bool) -> None:
-    """Print each measured time of this checkout with its budget."""
+    """Print each measured time of this checkout with its limit."""
     floor = floor_seconds()
     printed = Table("what", "here", "asked", "", "milliseconds")
     printed.add_row(

@@ -79,7 +79,7 @@ def standing_still() -> list[list[str]]:
 
 
 def distinct(texts: list[list[str]], i: int, point: str = ".") -> list[list[str]]:
-    """Make each text of the matrix new to all caches."""
+    """Make each text of the matrix different, so that no cache contains it."""
     # The numbers are decimals, or integers if `point` is empty. The grader tries to explain a wrong
     # entry with decimals as a rounded one; with integers it does not.
     return [

@@ -1,4 +1,4 @@
-"""Poses of the Stanford arm in numpy, to whose time the benchmarks compare."""
+"""Compute poses of the Stanford arm in numpy, as a reference for the benchmarks' times."""
 
 import numpy as np
 from numpy.typing import NDArray

@@ -218,7 +218,7 @@ async def _per_second(port: int, messages: list[bytes]) -> float:
 
 
 def first_answer_seconds() -> float:
-    """Return the seconds from the start of the process to its first report."""
+    """Return the seconds from the server's start to its first report."""
     start = time.perf_counter()
     with running_server(module="service") as port:
         asyncio.run(post_all(port, [request(GRADE, tables_and_poses(1))], time.perf_counter() + 10))

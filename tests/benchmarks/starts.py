@@ -34,7 +34,7 @@ def seconds(*arguments: str) -> float:
 
 
 def start_seconds() -> dict[str, float]:
-    """Return the processor time of numpy's import and of each command: the least of some rounds."""
+    """Return the processor time of importing numpy and of each command."""
     measured = {"python -c 'import numpy'": NUMPY, **COMMANDS}
     rounds = [
         {what: seconds(*command) for what, command in measured.items()} for _ in range(ROUNDS)

@@ -1,4 +1,4 @@
-"""Measure processor time as a multiple of a fixed numpy computation (the floor)."""
+"""Measure processor time in units of a fixed numpy computation."""
 
 # Other programs do not count in processor time. Calls alternate with the floor, so that both are
 # affected if the machine is slow for a while.
@@ -14,7 +14,7 @@ WARM_UP = 3
 
 
 def floor() -> object:
-    """Do the fixed computation to whose time others are compared."""
+    """Do the fixed computation that serves as the unit of time."""
     return floors.stanford_pose(32)
 
 
@@ -31,7 +31,7 @@ def floor_seconds() -> float:
 
 
 def multiple(action: Callable[[], object]) -> float:
-    """Return the median time of a call, divided by that of the fixed computation."""
+    """Return the median time of a call in units of the fixed computation."""
     return multiple_of_each(lambda _: action())
 
 

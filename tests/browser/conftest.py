@@ -16,7 +16,7 @@ from tests.browser.hostile import HOSTILE_EXERCISE
 
 @dataclass
 class Origin:
-    """A web server of another origin; ``pages`` maps paths to the texts of its pages."""
+    """A web server on another origin, with its pages by path."""
 
     address: str
     pages: dict[str, str] = field(default_factory=dict)

@@ -54,7 +54,7 @@ class Recording:
         expect(page.get_by_role("heading", level=1)).to_have_text("For tutors")
 
     def record(self, learner: str, table: Any) -> str:
-        """Record an attempt as a course does, and return its id."""
+        """Record an attempt and return its id."""
         body = json.dumps({"learner": learner, "answers": {"table": table}}).encode()
         headers = {"Content-Type": "application/json", "Authorization": f"Bearer {self.key}"}
         asked = Request(f"{self.address}/v1/exercises/scara/attempts", body, headers)

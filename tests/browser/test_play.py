@@ -1,4 +1,4 @@
-"""Test free play: a table of the student's own, its robot in 3D, and its pose."""
+"""Test free play: a student's table, its robot in 3D, and its pose."""
 
 from collections.abc import Callable
 

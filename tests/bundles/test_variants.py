@@ -1,4 +1,4 @@
-"""A bundle always gives a student the same variant."""
+"""A bundle for a grading platform always gives a student the same variant."""
 
 import json
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""Drafts of exercises are limited in number and time."""
+"""The number and the lifetime of exercise drafts are limited."""
 
 from itertools import count
 from pathlib import Path

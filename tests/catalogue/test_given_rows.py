@@ -1,4 +1,4 @@
-"""Test the messages about faulty given rows in an exercise file."""
+"""Test the messages about faulty table rows that an exercise file gives to students."""
 
 from pathlib import Path
 

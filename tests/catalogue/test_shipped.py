@@ -84,7 +84,7 @@ def test_both_conventions_of_a_robot_reach_the_same_pose(
 def elementary(
     convention: Convention, a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers
 ) -> Numbers:
-    """Return the link transforms of rows as products of elementary motions."""
+    """Return the link transforms of rows as products of elementary transforms."""
     z = np.tile(np.eye(4), (len(a), 1, 1))
     z[:, 0, 0] = z[:, 1, 1] = np.cos(theta)
     z[:, 1, 0] = np.sin(theta)

@@ -1,4 +1,4 @@
-"""Grade a class folder in several processes; broken files affect only themselves."""
+"""Grade a class folder in several processes, even if some files are broken."""
 
 import json
 import os

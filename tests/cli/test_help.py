@@ -1,4 +1,4 @@
-"""The help of all commands shows square brackets, which Rich takes for markup."""
+"""The help of all commands shows square brackets."""
 
 import re
 from collections.abc import Iterator

@@ -34,7 +34,7 @@ TABLES = (
 
 
 def rows(class_: Class) -> dict[str, int]:
-    """Return the number of rows of each table that is not empty."""
+    """Return the row counts of the database tables that are not empty."""
 
     def counted(connection: Any) -> dict[str, int]:
         found = {

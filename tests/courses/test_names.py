@@ -19,7 +19,7 @@ def test_learners_of_one_name_are_told_apart() -> None:
 
 @dataclass
 class Person:
-    """A learner of a course, as a row of the database has it."""
+    """A learner of a course, as in the database."""
 
     name: str
     family_name: str | None = None

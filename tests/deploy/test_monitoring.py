@@ -27,7 +27,7 @@ OF_PROMETHEUS = {"instance", "job", "le"}
 
 
 def samples() -> dict[str, set[str]]:
-    """Return the names of all metrics that the service reports, each with its labels."""
+    """Return the names and labels of all metrics of the service."""
     endings = {
         "counter": ("_total",),
         "gauge": ("",),

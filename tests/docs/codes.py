@@ -35,7 +35,7 @@ class HiddenCodeError(Exception):
 
 
 def sources(folder: Path) -> dict[str, str]:
-    """Return the texts of all Python files below a folder, by their paths in it."""
+    """Return the texts of all Python files in a folder, by path."""
     return {
         file.relative_to(folder).as_posix(): file.read_text(encoding="utf-8")
         for file in sorted(folder.rglob("*.py"))

@@ -152,7 +152,7 @@ def _section(heading: str, model: type[BaseModel], text: str = "", first: str = 
 
 
 def meanings(model: type[BaseModel]) -> dict[str, str]:
-    """Return the description of each key of a model."""
+    """Return the description of each field of a model."""
     [tree] = ast.parse(textwrap.dedent(inspect.getsource(model))).body
     assert isinstance(tree, ast.ClassDef)
     found = {}

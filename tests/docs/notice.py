@@ -169,7 +169,7 @@ _RIGHTS: Final = re.compile(
 
 
 def looks_vendored(file: Path) -> bool:
-    """True if a file is probably the work of others."""
+    """True if a file probably comes from a third party."""
     return bool(
         _VERSIONED.search(f"{file.parent.name}/{file.name}") or _RIGHTS.search(file.read_bytes())
     )

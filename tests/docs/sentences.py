@@ -71,7 +71,7 @@ class Example:
 
 
 def formulas() -> Iterator[str]:
-    """Yield formulas for the robot of docs/expressions.md."""
+    """Yield example formulas."""
     for line in messages_page.LINES:
         if line.section in (messages_page.UNREAD, messages_page.NOTED) and line.example:
             yield line.example[0]
@@ -82,7 +82,7 @@ def formulas() -> Iterator[str]:
 
 
 def pasted_texts() -> Iterator[str]:
-    """Yield pasted tables and matrices for the planar RR arm."""
+    """Yield example tables and matrices to paste."""
     sections = (messages_page.PASTED_UNREAD, messages_page.PASTED_NOTED)
     for line in messages_page.LINES:
         if line.section in sections and line.example:

@@ -1,4 +1,4 @@
-"""The README is one page, and its commands and targets are right."""
+"""The README is one page, and its commands work."""
 
 import html
 import re

@@ -1,4 +1,4 @@
-"""Compare each robot with a product of exponentials that follows from its statement."""
+"""Compare each robot's pose with a product of exponentials."""
 
 # The screw axes and home poses below were written by hand from the words of the statements (where
 # an axis passes, which way it points, where the tool is with all joint variables 0), not from the

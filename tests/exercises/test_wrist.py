@@ -1,4 +1,4 @@
-"""The rotation of the spherical wrist is exactly ZYZ Euler."""
+"""The rotation of the spherical wrist equals that of ZYZ Euler angles."""
 
 from collections.abc import Mapping
 

@@ -25,7 +25,7 @@ ALLOWED = {
 
 
 def found(source: str) -> list[str]:
-    """Return the forbidden calls and imports in `source`."""
+    """Return the forbidden calls and imports in Python code."""
     calls = []
     for node in ast.walk(ast.parse(source)):
         match node:

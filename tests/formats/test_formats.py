@@ -1,4 +1,4 @@
-"""Test every report format: its name, and its output without build-system commands."""
+"""Test every report format."""
 
 import re
 import unicodedata

@@ -72,7 +72,7 @@ def _with_progress(todo: Sequence[Task], found: Iterable[Tally]) -> Iterator[Tal
 
 
 def total(found: Sequence[Tally]) -> Tally:
-    """Return the sum of all tallies."""
+    """Return the sum of all counts."""
     everything = Tally()
     for tally in found:
         everything.add(tally)

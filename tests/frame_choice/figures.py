@@ -1,4 +1,4 @@
-"""Write the results of the campaign as lines of a table."""
+"""Write the results as lines of a table."""
 
 from statistics import median
 

@@ -56,7 +56,7 @@ def reassignment(
     rng: np.random.Generator,
     boldness: float | None = None,
 ) -> tuple[Table, int]:
-    """Return a random valid table, and the number of failed attempts before it."""
+    """Return a random valid table, and the number of failed attempts."""
     # `boldness` is the share of choices that differ from the reference's frames, random if None.
     for failed in range(200):
         try:

@@ -94,7 +94,7 @@ def factors(table: Numbers, convention: str) -> Numbers:
 
 
 def forward(table: Numbers, convention: str) -> Numbers:
-    """Return the pose of the last frame in the first one, ``(..., 4, 4)``."""
+    """Return the pose of the last frame relative to the first frame."""
     return reduce(np.matmul, factors(table, convention))
 
 

@@ -1,4 +1,4 @@
-"""Count how often reports name each misconception, for all robots."""
+"""For each misconception, count how often reports name it."""
 
 # A table is left out if independent forward kinematics find it correct despite the misconception.
 

@@ -71,7 +71,7 @@ def can_repair(
 
 
 def repairing_cells(robot: Robot, texts: Texts, convention: str) -> set[tuple[int, int]]:
-    """Return the cells that can each alone repair the table."""
+    """Return each cell that can repair the table on its own."""
     # A cell belongs to one factor of the pose. This factor must be F = A⁻¹ T_reference C⁻¹, where A
     # and C are the products of the factors before and after it. The cell repairs the table if some
     # value of the cell gives F at every sample. The value may contain the joint variable only in

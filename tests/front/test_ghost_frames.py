@@ -1,4 +1,4 @@
-"""The animated frame in the 3D view moves as numpy's matrix products do."""
+"""Compare the animated frame in the 3D view with numpy's matrix products."""
 
 import json
 from collections.abc import Sequence

@@ -1,4 +1,4 @@
-"""One slip in a table costs one cell, and the report names the slip."""
+"""One slip in a table costs the points of one cell."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""An unreadable or empty cell affects only itself."""
+"""An unreadable or empty cell does not affect other cells."""
 
 import random
 from collections.abc import Iterator, Mapping

@@ -1,4 +1,4 @@
-"""Test the limit on the work for explanations."""
+"""The search for explanations stops at a limit."""
 
 from collections.abc import Iterator, Mapping
 

@@ -39,7 +39,7 @@ NAMES = sorted(file.stem for file in ARMS.glob("*/*.urdf"))
 
 
 def file_of(name: str) -> Path:
-    """Return the file of an arm."""
+    """Return the URDF file of an arm."""
     [file] = ARMS.glob(f"*/{name}.urdf")
     return file
 

@@ -11,7 +11,7 @@ from service.kinematics.dh import Convention, standard_link
 
 
 def robot(seed: int) -> HomeRobot:
-    """Return a random robot, sometimes with a fixed tool row."""
+    """Return a random robot."""
     rng = np.random.default_rng(seed)
     structure = "".join(rng.choice(["R", "R", "P"], size=rng.integers(1, 7)))
     rows = len(structure) + int(rng.random() < 0.5)

@@ -20,7 +20,7 @@ class Part:
 
 
 def urdf(parts: Sequence[Part], decimals: int = 9) -> bytes:
-    """Return the file of a chain of joints l0 → l1 → …."""
+    """Return the URDF file of a chain of joints."""
 
     def words(numbers: Sequence[float]) -> str:
         return " ".join(f"{number:.{decimals}f}" for number in numbers)

@@ -76,7 +76,7 @@ def other_pythons() -> list[str]:
 
 
 def unpack(archive: Path, folder: Path) -> None:
-    """Unpack a zip file with the modes of its files, as unzip does."""
+    """Unpack a zip file, and keep the modes of its files."""
     with zipfile.ZipFile(archive) as files:
         for entry in files.infolist():
             Path(files.extract(entry, folder)).chmod(entry.external_attr >> 16)

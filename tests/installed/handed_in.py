@@ -1,4 +1,4 @@
-"""Write submissions to a platform into a folder: correct, wrong, unreadable and hostile files."""
+"""Write sample submissions into a folder: correct, wrong, unreadable and hostile."""
 
 import json
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""Poses of whole robots equal closed forms."""
+"""Compare the poses of whole robots with closed formulas."""
 
 from dataclasses import dataclass
 from typing import Any

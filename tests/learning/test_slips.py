@@ -1,4 +1,4 @@
-"""Every misconception about a table can be drawn as a slip, or there is a reason why not."""
+"""Test which misconceptions about a table can be drawn as slips."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -67,7 +67,7 @@ def _models(names: tuple[str, ...] | None) -> list[tuple[Exercise, str, Any]]:
 
 
 def tables(seed: int, wrong: float, names: tuple[str, ...] | None = None) -> Iterator[Body]:
-    """Yield tables of exercises without end, many of them wrong."""
+    """Yield tables for exercises endlessly, many of them wrong."""
     # `names` are the ids of the exercises; by default all shipped exercises.
     choose, models = random.Random(seed), _models(names)
     while True:

@@ -72,7 +72,7 @@ def rsa_key(bits: int = 2048) -> rsa.RSAPrivateKey:
 
 
 def public_jwk(key: Any, key_id: str, **more: Any) -> dict[str, Any]:
-    """Return the public part of a key as platforms publish it."""
+    """Return the public key as a JSON Web Key."""
     jwk = RSAAlgorithm.to_jwk(key.public_key(), as_dict=True)
     return {**jwk, "kid": key_id, "alg": "RS256", "use": "sig", **more}
 

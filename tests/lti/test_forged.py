@@ -184,7 +184,7 @@ def tokens(platform: Platform, begun: Begun) -> list[tuple[str, str, str]]:
 
 
 def reason(page: Any) -> str:
-    """Return the code on the page of a refused launch."""
+    """Return the error code on the page of a refused launch."""
     assert page.status_code in (403, 503), page.status_code
     assert "Reference number" in page.text
     assert "data-key" not in page.text

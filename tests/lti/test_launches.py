@@ -1,4 +1,4 @@
-"""Test launches of learners, tutors and visitors."""
+"""Test LTI launches of learners, tutors and visitors."""
 
 import re
 from typing import Any

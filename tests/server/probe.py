@@ -69,7 +69,7 @@ def seconds_until_closed(port: int, client: str) -> float | None:
 
 
 def listens(port: int) -> bool:
-    """True if something accepts connections on the port."""
+    """True if a server listens on the port."""
     with suppress(OSError), socket.create_connection(("127.0.0.1", port), 1.0):
         return True
     return False

@@ -1,4 +1,4 @@
-"""In solutions of robots given in numbers, each constant is one correct number."""
+"""Test model solutions of robots that are given in numbers."""
 
 from collections.abc import Callable
 

@@ -114,7 +114,7 @@ def catalogue(code: str, domain: str) -> Catalog:
 
 
 def updated(code: str, domain: str) -> Catalog:
-    """Return the catalogue with exactly the sentences of the source."""
+    """Return the catalogue, updated with the sentences of the source."""
     old = catalogue(code, domain)
     new = Catalog(locale=code, domain=domain, charset="utf-8", fuzzy=False)
     for message in extracted(domain):

@@ -1,4 +1,4 @@
-"""Translate a ``Sentence`` into another language."""
+"""Translate a message (``Sentence``) into another language."""
 
 import copy
 import pickle

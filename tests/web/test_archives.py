@@ -1,4 +1,4 @@
-"""The service refuses archives among a class's files, and never unpacks them."""
+"""The service refuses archives among the files of a class, and never unpacks them."""
 
 import base64
 import gzip

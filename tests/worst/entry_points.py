@@ -62,7 +62,7 @@ def forget() -> None:
 
 
 def floor_seconds() -> float:
-    """Return the processor time for one pose in NumPy, to which costs are compared."""
+    """Return the processor time for one pose, the unit of all costs."""
     times = []
     for _ in range(20):
         start = time.process_time()

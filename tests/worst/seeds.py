@@ -69,7 +69,7 @@ def cells() -> list[str]:
 
 
 def answers_of(exercise: Exercise) -> Iterator[dict[str, Any]]:
-    """Yield the answers of the checks in the exercise file."""
+    """Yield the sample answers in the exercise file."""
     for check in exercise.checks:
         yield dict(check.answers)
 
@@ -110,7 +110,7 @@ def _free_frames(name: str) -> Iterator[Attack]:
 
 
 def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
-    """Yield the first bodies of the search."""
+    """Yield the request bodies with which the search begins."""
     choose = random.Random(seed)
     for name, exercise in exercises.items():
         bodies = [*answers_of(exercise), *(each for each in _spread(exercise, choose) if each)]

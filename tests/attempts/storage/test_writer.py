@@ -1,4 +1,4 @@
-"""Test which jobs of the writer thread share a transaction."""
+"""Test how the writer thread groups its work into transactions."""
 
 import asyncio
 import threading

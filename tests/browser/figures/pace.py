@@ -1,4 +1,4 @@
-"""Measure how much work a page does for each picture of an animation."""
+"""Measure the work of a page that draws an animation."""
 
 # The work is the number of passes over the styles, and the processor time of scripts. The number of
 # pictures per second depends on other programs on the machine, so this number is only printed.

@@ -1,4 +1,4 @@
-"""A learner submits on the page of a personal link, and on a course site of another origin."""
+"""A learner submits on the service's page and on a course's own site."""
 
 import re
 from collections.abc import Callable

@@ -1,4 +1,4 @@
-"""LTI launches in a frame, while the browser blocks third-party cookies."""
+"""Open the service in a frame of another site, without third-party cookies."""
 
 import jwt
 import pytest

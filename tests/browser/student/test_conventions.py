@@ -1,4 +1,4 @@
-"""The page of an exercise says if its convention differs from the previous one."""
+"""The page says if an exercise uses another convention than the previous exercise."""
 
 from collections.abc import Callable
 

@@ -34,7 +34,7 @@ OTHERS = 10
 
 
 class Fleet:
-    """Services with one database; a killed service is started again."""
+    """Several services on one database."""
 
     def __init__(self, url: str, folder: Path, kind: str) -> None:
         self._settings = {"DH_GRADER_DATABASE": url, "DH_GRADER_SECRET": SECRET}

@@ -18,7 +18,7 @@ Numbers = NDArray[np.float64]
 
 
 class Published(NamedTuple):
-    """A standard table: lengths in metres, α in degrees."""
+    """A published table in the standard convention (metres and degrees)."""
 
     source: str
     a: Sequence[float]

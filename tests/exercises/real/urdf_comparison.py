@@ -68,7 +68,7 @@ def table_poses(
 
 
 def joints_to(file: Path, tip: str) -> list[ElementTree.Element]:
-    """Return the joints from the root of a file's tree to a link."""
+    """Return the joints from the root of a URDF file to a link."""
     joints = ElementTree.parse(file).getroot().findall("joint")
     above = {link.get("link"): joint for joint in joints for link in joint.findall("child")}
     path: list[ElementTree.Element] = []
@@ -80,7 +80,7 @@ def joints_to(file: Path, tip: str) -> list[ElementTree.Element]:
 
 
 def file_poses(file: Path, tip: str, values: Numbers) -> Numbers:
-    """Return the poses of the link ``tip`` that follow from a URDF file."""
+    """Return the poses of the link ``tip`` from a URDF file."""
     found, left = np.broadcast_to(np.eye(4), (POSES, 4, 4)), list(values)
     for joint in joints_to(file, tip):
         origin, axis = joint.find("origin"), joint.find("axis")

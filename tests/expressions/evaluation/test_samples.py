@@ -1,4 +1,4 @@
-"""Evaluate formulas at all samples at once."""
+"""Evaluate formulas for many values of their symbols at once."""
 
 from math import cos, isinf, isnan
 

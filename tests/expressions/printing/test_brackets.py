@@ -1,4 +1,4 @@
-"""Test where the three printers of formulas write brackets."""
+"""Test where printed formulas have brackets."""
 
 import re
 import xml.etree.ElementTree as ET

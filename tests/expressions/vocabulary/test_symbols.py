@@ -1,4 +1,4 @@
-"""Test vocabularies of declared symbols."""
+"""Test vocabularies: the symbols that an exercise declares."""
 
 import pytest
 

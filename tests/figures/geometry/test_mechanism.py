@@ -1,4 +1,4 @@
-"""Drawn points move with the robot."""
+"""The points in a figure move with the robot."""
 
 # The drawing uses screw axes; the tests use the link transforms of the table, or SciPy's matrix
 # exponential if a robot has no table.

@@ -1,4 +1,4 @@
-"""``python -m tests.frame_choice.rows.careless``: like ``blanking``, but whole rows are wrong."""
+"""``python -m tests.frame_choice.rows.careless``: empty cells in tables with wrong rows."""
 
 # The robots are put together from the rows of textbook arms. Their tables have the reference's
 # frames or reversed x axes. Whole rows are wrong: rows are exchanged, in degrees, extra, missing or

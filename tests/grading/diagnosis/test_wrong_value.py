@@ -1,4 +1,4 @@
-"""Explain wrong numbers only by hypotheses that fit them."""
+"""Test the explanations of wrong numbers."""
 
 import numpy as np
 

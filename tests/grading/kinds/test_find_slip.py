@@ -1,4 +1,4 @@
-"""Marking the place of a slip earns half of the points, correcting it the other half."""
+"""Marking the wrong cell earns half of the points, correcting the table the other half."""
 
 from collections.abc import Mapping
 from typing import Any

@@ -1,4 +1,4 @@
-"""Numbers that a script gives to letters replace the letters."""
+"""Replace letters by the numbers that a script assigns to them."""
 
 from collections.abc import Mapping
 

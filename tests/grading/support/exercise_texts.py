@@ -46,7 +46,7 @@ def one_part(kind: str, fields: str, setting: str = ANGLES) -> str:
 
 
 def graded(exercise: Exercise, answer: object, angle_unit: AngleUnit = "radians") -> PartReport:
-    """Grade an answer to the part "it" and return the report on the part."""
+    """Grade an answer to the exercise's only part, and return the report on the part."""
     return part(handed_in(exercise, {"it": answer}, angle_unit), "it")
 
 

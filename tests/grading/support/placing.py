@@ -201,7 +201,7 @@ def drawn_frames(home: Home, rng: Generator) -> list[Placed]:
 
 
 def broken(home: Home, frames: list[Placed], rng: Generator) -> tuple[int, list[Placed]]:
-    """Break one rule in one frame; return its index and all frames."""
+    """Break one rule; return the index of the wrong frame, and all frames."""
     i = int(rng.integers(len(frames)))
     frame = frames[i]
     z, x = unit(frame.z), unit(frame.x)

@@ -1,4 +1,4 @@
-"""Generate all kinds of slips in a table cell, with their codes."""
+"""Generate all kinds of slips in a table cell, with the codes of their messages."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

@@ -1,4 +1,4 @@
-"""Sentences around a pasted table are removed only if they cannot change it."""
+"""Remove sentences around a pasted table, unless they could change it."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Read a robot that a toolbox prints as a table."""
+"""Read the table of a robot that a toolbox prints."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Every candidate row leads to its target frame."""
+"""Every proposed table row leads to the intended axis or frame."""
 
 import numpy as np
 import pytest

@@ -1,4 +1,4 @@
-"""The valid table nearest to a table with a slip is the table without the slip."""
+"""Find the valid table that is nearest to a table with a slip."""
 
 from dataclasses import replace
 

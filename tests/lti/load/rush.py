@@ -45,7 +45,7 @@ _LIMITS: Final = httpx.Limits(max_connections=6)
 
 @dataclass
 class Rush:
-    """The results of a class: seconds from login to view, failures, and the number of requests."""
+    """The waiting times, failures and number of requests of a class."""
 
     waits: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)

@@ -124,7 +124,7 @@ class Journey:
         return most
 
     def rows(self) -> list[Row[Any]]:
-        """Return the rows of the outbox."""
+        """Return the rows of the outbox (the queued scores)."""
         ordered = select(tables.scores).order_by(tables.scores.c.sub)
         found: list[Row[Any]] = self.tool.do(lambda it: it.execute(ordered).all())
         return found

@@ -1,4 +1,4 @@
-"""Test the notes on ambiguous formulas, and the places of these notes."""
+"""Test the notes on ambiguous formulas."""
 
 import pytest
 

@@ -18,7 +18,7 @@ ANGLES = np.random.default_rng(12).uniform(0.2, 1.4, (3, COUNT))
 
 
 def turn(axis: str, angles: Numbers) -> Numbers:
-    """Return the turns ``(COUNT, 3, 3)`` by ``angles`` about "x", "y" or "z"."""
+    """Return the rotations by ``angles`` about "x", "y" or "z"."""
     return np.asarray(Rotation.from_euler(axis, angles[:, None]).as_matrix())
 
 

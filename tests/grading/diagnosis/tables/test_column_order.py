@@ -1,4 +1,4 @@
-"""Recognise tables whose columns are in another order."""
+"""Recognise tables whose columns are in an unexpected order."""
 
 from collections.abc import Mapping, Sequence
 from itertools import permutations

@@ -1,4 +1,4 @@
-"""Recognise joints that the student has numbered differently."""
+"""Recognise joint numbers that differ from the expected ones."""
 
 from collections.abc import Mapping, Sequence
 

@@ -1,4 +1,4 @@
-"""Recognise tables whose lengths are in another unit."""
+"""Recognise tables whose lengths are in the wrong unit."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""An empty entry never earns more than any text in its place."""
+"""An empty entry never earns more than a wrong entry."""
 
 import json
 import random

@@ -1,4 +1,4 @@
-"""Find the link that the name of a matrix means."""
+"""Find the link to which the name of a matrix refers."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""A table in the wrong convention is compared with the table that the student intended."""
+"""A table in the wrong convention is compared with the intended table."""
 
 from collections.abc import Mapping
 
