@@ -13,7 +13,7 @@ SHOWN = 20
 def together(
     names: str | tuple[str, ...], cases: Iterable[Any]
 ) -> Callable[[Callable[..., None]], Callable[..., None]]:
-    """Run all cases in one test, and report each failed case."""
+    """Run all test cases in one test, and report each failed case."""
     # Use this function like `pytest.mark.parametrize`. A case with several parameters is a tuple.
     # All cases share the fixtures, so no case may change them.
     parameters = (names,) if isinstance(names, str) else names

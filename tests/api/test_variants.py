@@ -1,4 +1,4 @@
-"""All routes accept the id of an exercise's variant, ``<exercise>~<seed>``."""
+"""All routes accept ``<exercise>~<seed>``, the id of a variant of an exercise."""
 
 from typing import Any
 

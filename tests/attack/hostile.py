@@ -75,7 +75,7 @@ class Found:
 
 
 def cases(count: int, seed: str) -> Iterator[Case]:
-    """Yield random texts, grids and requests; the same seed gives the same ones."""
+    """Yield random texts, grids and requests."""
     random = Random(seed)
     single = texts(count, random.getrandbits(60))
     for _ in range(count):

@@ -26,12 +26,12 @@ def seconds(action: Callable[[], object]) -> float:
 
 
 def floor_seconds() -> float:
-    """Return the median processor time of the fixed computation."""
+    """Return the median processor time of ``floor()``."""
     return median(seconds(floor) for _ in range(1000))
 
 
 def multiple(action: Callable[[], object]) -> float:
-    """Return the median time of a call in units of the fixed computation."""
+    """Return the median time of a call, divided by that of ``floor()``."""
     return multiple_of_each(lambda _: action())
 
 

@@ -16,7 +16,7 @@ def open_exercise(page: Page, service: str, exercise: str, fragment: str = "") -
 
 
 def cells(page: Page, part: int = 0) -> Locator:
-    """Return the inputs of a part."""
+    """Return the input fields of a part of the exercise."""
     return page.locator(".part").nth(part).locator("input")
 
 
@@ -59,7 +59,7 @@ def type_with_tab(page: Page, texts: Sequence[str]) -> None:
 
 
 def answer(page: Page, part: PartSpec, place: int, texts: Sequence[str]) -> None:
-    """Answer a part by keyboard, beginning at its first cell."""
+    """Answer a part of the exercise by keyboard, beginning at its first cell."""
     # Matrices are pasted, in the notation of MATLAB; all other answers are typed.
     if part.kind not in _MATRICES:
         return type_with_tab(page, texts)

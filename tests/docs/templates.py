@@ -47,7 +47,7 @@ class Template:
         return bool(self.pieces[0].strip()) and self._pattern.match(sentence) is not None
 
     def is_met_by(self, text: str) -> bool:
-        """True if a text contains the sentence, with any text in each gap."""
+        """True if a text contains the sentence with its gaps filled."""
         return self._longest in text and self._pattern.search(text) is not None
 
     @cached_property

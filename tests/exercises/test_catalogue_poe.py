@@ -29,7 +29,7 @@ ORIGIN = np.zeros(3)
 
 @dataclass(frozen=True)
 class Axis:
-    """The screw axis (ω; v) of a joint in the home pose."""
+    """The screw axis (ω; v) of a joint when all joint variables are 0."""
 
     turning: Vector
     velocity: Vector

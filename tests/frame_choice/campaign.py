@@ -44,7 +44,7 @@ class Task:
 
 
 def tasks(robots: Sequence[Robot], *, only_given: bool, tables: int, seed: int) -> list[Task]:
-    """Return a task for each robot and convention."""
+    """Divide the tables into tasks, one for each robot and convention."""
     policy = GIVEN if only_given else POLICIES[-1]
     return [
         Task(robot, convention, only_given, tables, seed)
@@ -122,7 +122,7 @@ FREE_FIGURES = (
 
 
 def figures(given: Tally, free: Tally) -> Iterator[Figure]:
-    """Yield the results as shares of tables."""
+    """Yield each result of the campaign as a ``Figure``."""
     for tally, rows in ((given, GIVEN_FIGURES), (free, FREE_FIGURES)):
         for name, part, whole, least in rows:
             yield Figure(name, tally.counts[part], tally.counts[whole], least)

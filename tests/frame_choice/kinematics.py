@@ -53,7 +53,7 @@ def _value(node: ast.expr, values: Mapping[str, Numbers]) -> Numbers:
 
 
 def cell_values(rows: Sequence[Sequence[str]], values: Mapping[str, Numbers]) -> Numbers:
-    """Return the cells of a table as numbers."""
+    """Return a table of formulas as numbers."""
     shape = np.broadcast_shapes(*(np.shape(value) for value in values.values()))
     table = np.empty((len(rows), 4, *shape))
     for i, row in enumerate(rows):

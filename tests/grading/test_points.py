@@ -1,4 +1,4 @@
-"""Points add up, and each marking scheme works as documented."""
+"""The points in a report add up, and each marking scheme works as documented."""
 
 from collections.abc import Callable, Mapping
 

@@ -1,4 +1,4 @@
-"""Below the level ``full``, a report reveals no correct values."""
+"""Unless the feedback level is ``full``, a report reveals no correct values."""
 
 # No message at the lower levels contains the correct value of a cell.
 

@@ -1,4 +1,4 @@
-"""A slip gets one message, and its consequences get none."""
+"""A slip gets one message, and errors that it causes elsewhere get none."""
 
 from collections.abc import Mapping
 

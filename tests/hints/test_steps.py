@@ -1,4 +1,4 @@
-"""The steps of a hint name the axes of a table row."""
+"""A hint names the axes of a table row."""
 
 from collections.abc import Mapping
 from dataclasses import replace

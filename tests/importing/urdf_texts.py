@@ -36,7 +36,7 @@ def urdf(parts: Sequence[Part], decimals: int = 9) -> bytes:
 
 
 def quaternion(axis: Sequence[float], angle: float) -> Numbers:
-    """Return the quaternion (w, x, y, z) of a turn about an axis."""
+    """Return the quaternion (w, x, y, z) of a rotation about an axis."""
     unit = np.asarray(axis, dtype=float) / np.linalg.norm(axis)
     return np.array([np.cos(angle / 2), *(np.sin(angle / 2) * unit)])
 
@@ -48,7 +48,7 @@ def times(p: Numbers, q: Numbers) -> Numbers:
 
 
 def turned(q: Numbers, vector: Sequence[float]) -> Numbers:
-    """Return a vector turned by a quaternion."""
+    """Return a vector rotated by a quaternion."""
     conjugate = q * [1, -1, -1, -1]
     return times(times(q, np.array([0.0, *vector])), conjugate)[1:]
 

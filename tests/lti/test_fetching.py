@@ -1,4 +1,4 @@
-"""The service fetches data only from public addresses, and limits its size."""
+"""The service fetches only data of limited size from public addresses."""
 
 import gzip
 import json

@@ -1,4 +1,4 @@
-"""Submit answers that follow from a wrong table, and check that the report names the slip."""
+"""Submit answers computed from a wrong table, and check that the report names the slip."""
 
 import re
 import tempfile
@@ -42,7 +42,7 @@ def exercise_of(robot: SpoiltRobot) -> Exercise:
 
 
 def answer_to(kind: str, robot: SpoiltRobot, rows: list[list[sp.Expr]]) -> Any:
-    """Return the answer that follows from a table."""
+    """Return the answer of a student who computes it from this table."""
     if kind == "links":
         return [printed(link(row, robot.convention)) for row in rows]
     reached = pose(rows, robot.convention)

@@ -1,4 +1,4 @@
-"""Offer German with a few translations to tests."""
+"""A German translation of a few sentences, for tests."""
 
 from collections.abc import Mapping
 from gettext import NullTranslations

@@ -26,7 +26,7 @@ _TERM = re.compile(r"([+-]?) ?([a-z]\d|\d+(?:\.\d+)?)")
 
 @dataclass(frozen=True)
 class HomeAxis:
-    """A joint axis in the home position."""
+    """A joint axis when all joint variables are 0."""
 
     # `point` is None if the joint slides. `signed` is False if the student may choose the positive
     # direction.
@@ -37,7 +37,7 @@ class HomeAxis:
 
 @dataclass(frozen=True)
 class Home:
-    """A robot in the home position."""
+    """A robot whose joint variables are all 0."""
 
     # `tool` is `(origin, x, z)`, or None if the statement does not say where the tool frame is.
     axes: tuple[HomeAxis, ...]

@@ -55,7 +55,7 @@ def difference(
 def table_poses(
     exercise: Exercise, convention: Convention, values: Mapping[str, Numbers]
 ) -> Numbers:
-    """Return the poses that follow from the table."""
+    """Return the poses computed from the table."""
     found = np.broadcast_to(np.eye(4), (POSES, 4, 4))
     for row in exercise.robot.tables[convention].rows:
         a, alpha, d, theta = (

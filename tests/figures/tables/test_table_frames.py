@@ -1,4 +1,4 @@
-"""Test the frames that follow from students' tables."""
+"""Test the frames computed from students' tables."""
 
 import numpy as np
 import pytest

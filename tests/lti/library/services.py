@@ -59,7 +59,7 @@ class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
 
 
 class Launch(LTIAdvantageMessageLaunchAbstract):  # type: ignore[misc]
-    """A launch that returns the fields of its form instead of a page."""
+    """An LTI launch that returns form fields instead of a page."""
 
     def render_launch_form(self, launch_data: dict[str, Any], **_: Any) -> Any:
         return launch_data
@@ -154,7 +154,7 @@ class OtherPlatform:
 
 
 class Grades(AssignmentsGradesService):  # type: ignore[misc]
-    """The platform's gradebook (AGS)."""
+    """The platform's gradebook (the LTI service AGS)."""
 
     def __init__(self, platform: OtherPlatform, request: Called) -> None:
         items, makes_items = f"{platform.address}/items", platform.makes_items
@@ -202,7 +202,7 @@ class Grades(AssignmentsGradesService):  # type: ignore[misc]
 
 
 class Roster(NamesRoleProvisioningService):  # type: ignore[misc]
-    """The platform's roster (NRPS)."""
+    """The platform's class list (the LTI service NRPS)."""
 
     def __init__(self, platform: OtherPlatform, request: Called) -> None:
         url = f"{platform.address}/members"

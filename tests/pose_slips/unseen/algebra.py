@@ -110,7 +110,7 @@ def _term(factor: float, letters: tuple[str, ...], function: str) -> str:
 
 
 def numeric_link(row: Row, convention: str, values: Mapping[str, float]) -> np.ndarray:
-    """Return the link transform in numbers."""
+    """Return the numeric link transform of a row."""
 
     def size(cell: Cell, unit: float) -> float:
         return sum(

@@ -140,5 +140,5 @@ def _moves_freely(arm: Arm, random: Random) -> bool:
 
 
 def links_at(arm: Arm, values: dict[str, float]) -> list[np.ndarray]:
-    """Return the link transforms in numbers."""
+    """Return the numeric link transforms of an arm."""
     return [numeric_link(row, arm.convention, values) for row in arm.table]

@@ -94,7 +94,7 @@ def said_of(exercise: Exercise, kind: str, answer: Any) -> Said:
 
 
 class Slipped:
-    """The slips of an arm, and the answers that follow from them."""
+    """The slips in an arm's table, and the wrong answers that they cause."""
 
     def __init__(self, kind: str, arm: Arm, slips: Sequence[ArmSlip]) -> None:
         self.kind, self.arm, self.slips = kind, arm, slips

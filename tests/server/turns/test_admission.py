@@ -80,7 +80,7 @@ class Application:
 
 
 def busy(seconds: float) -> None:
-    """Use a number of seconds of processor time."""
+    """Use processor time for some seconds."""
     end = time.thread_time() + seconds
     while time.thread_time() < end:
         pass

@@ -103,7 +103,7 @@ def form(exercise: Exercise) -> tuple[object, ...]:
 
 
 def share(exercise: Exercise, answer: object) -> float:
-    """Return the share of the exercise's points that an answer earns."""
+    """Return the fraction of the exercise's points that an answer earns."""
     report = grade(exercise, Submission({"table": answer}))
     return report.points / report.max_points
 

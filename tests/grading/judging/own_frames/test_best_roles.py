@@ -1,4 +1,4 @@
-"""Test rows that may belong to several joints."""
+"""Choose the joint of a table row if several are possible."""
 
 from collections.abc import Mapping
 
