@@ -230,7 +230,7 @@ def drawn(exercise: Exercise) -> dict[str, Vector]:
 
 
 def exponentials(exercise: Exercise, values: Mapping[str, Vector]) -> Vector:
-    """Return the robot's pose at each sample, as a product of exponentials."""
+    """Return the robot's poses at these joint values, as products of exponentials."""
     poses = np.empty((SAMPLES, 4, 4))
     for lane in range(SAMPLES):
         numbers = {name: float(drawn_values[lane]) for name, drawn_values in values.items()}

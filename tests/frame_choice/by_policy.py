@@ -32,7 +32,7 @@ MISJUDGED, EXACT, UNSTEADY = "misjudged", "blamed on its cell", "changed by the 
 
 @dataclass
 class Counts:
-    """Counts of graded tables, and the misjudged tables."""
+    """Counts of graded tables, and the tables that were graded wrongly."""
 
     counts: Counter[tuple[str, str, str]] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)

@@ -81,7 +81,7 @@ def total(found: Sequence[Tally]) -> Tally:
 
 @dataclass(frozen=True)
 class Figure:
-    """A share of tables, such as the correctly graded ones, and its lower limit."""
+    """A fraction of tables, such as the correctly graded ones, with its lower limit."""
 
     name: str
     part: int

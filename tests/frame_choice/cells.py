@@ -1,4 +1,4 @@
-"""Table cells as a student would write them: sums of joint variables, letters and constants."""
+"""Table cells as students write them: sums of joint variables, lengths and constants."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
@@ -17,7 +17,7 @@ class NotExpressibleError(Exception):
 
 @dataclass(frozen=True)
 class Term:
-    """A formula that is not a sum of letters, such as a root."""
+    """A formula that is not a sum of lengths, such as a root."""
 
     text: str
     values: Numbers
@@ -25,7 +25,7 @@ class Term:
 
 @dataclass(frozen=True)
 class Cell:
-    """A table cell: a constant plus multiples of joint variables and letters."""
+    """A table cell: a constant plus multiples of joint variables and lengths."""
 
     angle: bool
     constant: float = 0.0

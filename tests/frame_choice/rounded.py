@@ -149,7 +149,7 @@ def least_error(table: Table) -> float:
 
 @dataclass
 class RoundedCounts:
-    """Counts of graded tables, and the misjudged tables."""
+    """Counts of graded tables, and the tables that were graded wrongly."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""Tables that were once misjudged, with the correct verdict."""
+"""Tables that were once graded wrongly, with the correct verdict."""
 
 import pytest
 

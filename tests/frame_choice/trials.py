@@ -124,7 +124,7 @@ def _joins_parallel_axes(table: Table, link: int) -> bool:
 
 @dataclass(frozen=True)
 class Miss:
-    """A misjudged table."""
+    """A table that was graded wrongly."""
 
     what: str
     table: Table
@@ -149,7 +149,7 @@ class Miss:
 
 @dataclass
 class Tally:
-    """Counts of graded tables, grading times, and misjudged tables."""
+    """Counts of graded tables, grading times, and wrongly graded tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     right_ms: list[float] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""The general rules in hints contain no value of an exercise."""
+"""Rules in hints never contain values from an exercise."""
 
 import re
 from gettext import NullTranslations

@@ -1,4 +1,4 @@
-"""The robots whose slips are tried."""
+"""The robots for tests of slips in tables."""
 
 import re
 import tomllib

@@ -1,4 +1,4 @@
-"""Before its script has arrived, a form does nothing or is sent by POST."""
+"""Before its script arrives, a form never puts its fields into the address."""
 
 import re
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The request bodies with which the search begins."""
+"""The first request bodies in the search for costly requests."""
 
 import random
 from collections.abc import Iterator, Mapping
@@ -110,7 +110,7 @@ def _free_frames(name: str) -> Iterator[Attack]:
 
 
 def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
-    """Yield the request bodies with which the search begins."""
+    """Yield the first request bodies of the search."""
     choose = random.Random(seed)
     for name, exercise in exercises.items():
         bodies = [*answers_of(exercise), *(each for each in _spread(exercise, choose) if each)]

@@ -24,7 +24,7 @@ VALID, ACCEPTED, WRONG, REFUSED = "valid", "accepted", "wrong", "refused"
 
 @dataclass
 class Found:
-    """Counts of graded tables, and the misjudged tables."""
+    """Counts of graded tables, and the tables that were graded wrongly."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""Write shares and scores in per cent."""
+"""Write fractions and scores in per cent."""
 
 import pytest
 

@@ -70,7 +70,7 @@ class WrongRow:
 
 @dataclass
 class Found:
-    """Counts of correctly and wrongly judged tables."""
+    """Counts of correctly and wrongly graded tables."""
 
     counts: Counter[str] = field(default_factory=Counter)
     misses: list[str] = field(default_factory=list)

@@ -1,4 +1,4 @@
-"""Grade three Euler angles: all triples that give the rotation are correct."""
+"""Grade Euler angles: every triple that gives the rotation is correct."""
 
 # A slip costs as few of the angles as possible.
 

@@ -1,4 +1,4 @@
-"""Find the places of cells in a pasted text."""
+"""Find the positions of cells in a pasted text."""
 
 from service.grids import read_grid
 from tests.grids.writers import FORMATS, POSE

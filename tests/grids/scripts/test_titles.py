@@ -1,4 +1,4 @@
-"""Remove sentences around a pasted table, unless they could change it."""
+"""Remove sentences around a pasted table."""
 
 import pytest
 

@@ -184,7 +184,7 @@ def test_a_request_keeps_the_moment_of_its_arrival_while_it_waits() -> None:
 
 
 class ManyGradings(Application):
-    """A fake application that pauses between an attacker's ten gradings."""
+    """A fake application that lets others run while it serves an attacker."""
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
         if scope["client"][0] == "attacker":
