@@ -89,7 +89,7 @@ def resident(process: int | None = None) -> float:
 
 @dataclass
 class MemoryUse:
-    """The memory (MB) before and after the requests, and the number of server errors."""
+    """The memory (MB) after the warm-up and at the end, and the number of server errors."""
 
     count: int
     warm: float

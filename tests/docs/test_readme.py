@@ -1,4 +1,4 @@
-"""The README is one page, and its commands work."""
+"""The README is one page, and names only targets that exist."""
 
 import html
 import re

@@ -32,7 +32,7 @@ def correct(folder: Path) -> None:
 
 
 def set_up(tutor: Page, address: str, key: str) -> None:
-    """Create a course with a class list, and an assignment that is due tomorrow."""
+    """Sign in, and create a course with an assignment that is due tomorrow."""
     tutor.goto(f"{address}/tutor/courses")
     tutor.get_by_label("Your key").fill(key)
     tutor.get_by_role("button", name="Sign in").click()

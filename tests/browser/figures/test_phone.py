@@ -1,4 +1,4 @@
-"""On a phone, the figure of an exercise is not scaled down."""
+"""On a phone, the figures of exercises are shown large enough."""
 
 from collections.abc import Callable
 

@@ -1,4 +1,4 @@
-"""Each joint axis restricts the choice of a base frame."""
+"""Test how each joint axis restricts the choice of a base frame."""
 
 import numpy as np
 
