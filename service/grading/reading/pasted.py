@@ -4,6 +4,7 @@ import re
 from collections.abc import Sequence
 from dataclasses import replace
 from functools import reduce
+from itertools import islice
 from typing import Final
 
 from service.expressions.characters.decimal_comma import with_points
@@ -30,6 +31,9 @@ _INDEX: Final = re.compile(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]
 _IN_UNIT: Final = re.compile(
     r"(?<![^\W\d_])(?:in|en|and|und|y|et) ([^\W\d_]{1,12})(?![^\W\d_])", re.IGNORECASE
 )
+# A unit in a header: a [mm], alpha (deg).
+_HEADED_UNIT: Final = re.compile(r"[\[(]\s?([^\W\d_]{1,12}|°)\s?[\])]")
+_MOST_UNITS: Final = 40
 _JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
 
 
@@ -68,11 +72,17 @@ def _prepared(text: str, reader: Reader) -> str:
 
 def _without_own_units(text: str, reader: Reader) -> str:
     # "in radians" in "all angles in radians" becomes blanks if that is the unit. Every character
-    # keeps its place. Another unit stays, and such a sentence is refused.
+    # keeps its place. Another unit stays, and such a sentence is refused; so is a sentence that
+    # contradicts a header with another unit.
+    length = METRES.get(reader.length_unit or "", 0)
+    headed = {unit[1].lower() for unit in islice(_HEADED_UNIT.finditer(text), _MOST_UNITS)}
+    own: set[str] = set()
+    for units, wanted in ((ANGLE_UNITS, reader.angle_unit), (METRES, length)):
+        if all(units.get(unit, wanted) == wanted for unit in headed):
+            own.update(unit for unit, meant in units.items() if meant == wanted)
+
     def without_unit(found: re.Match[str]) -> str:
-        unit, length = found[1].lower(), METRES.get(reader.length_unit or "", 0)
-        is_own = ANGLE_UNITS.get(unit) == reader.angle_unit or METRES.get(unit) == length
-        return " " * len(found[0]) if is_own else found[0]
+        return " " * len(found[0]) if found[1].lower() in own else found[0]
 
     return _IN_UNIT.sub(without_unit, text)
 

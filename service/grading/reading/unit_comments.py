@@ -11,7 +11,7 @@ from service.grading.reading.tables.words import ANGLE_UNITS, METRES, in_plain_w
 from service.grids import GridError
 from service.translations import say
 
-_COMMENT: Final = re.compile(r"(?:[%#]{1,3}|//)[ \t]{0,40}([^\n%#]{2,80})")
+_COMMENT: Final = re.compile(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,80})")
 _CAPTION: Final = re.compile(
     r"\\caption\s{0,4}\{([^{}]{2,200})\}|<caption[^<>]{0,80}>([^<>]{2,200})</caption>",
     re.IGNORECASE,

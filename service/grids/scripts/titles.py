@@ -1,7 +1,7 @@
 """Remove sentences and code fences around a pasted table or matrix.
 
 A line with words but without a separator of cells is a sentence. A sentence that names a unit is an
-error, because the unit may apply to the table.
+error, because the unit may apply to the table. So is a sentence that may correct the table.
 """
 
 import re
@@ -54,7 +54,21 @@ _FREEDOM: Final = re.compile(
 UNIT: Final = re.compile(
     r"(?<![^\W\d_])(?:deg(?:rees?)?|degrés?|grad|grados?|gradi|rad(?:ian\w{0,4})?|bogenma(?:ß|ss)"
     r"|[cmd]m|(?:milli|centi|mili|zenti)?m(?:et(?:er|re|ro)s?|ètres?)|inch(?:es)?)(?![^\W\d_])"
-    r"|°|弧度|度|毫米|厘米|米",
+    r"|°|弧度|度|毫米|厘米|米|(?<!\w)(?:in|en) m(?!\w)",
+    re.IGNORECASE,
+)
+# Words of a sentence that corrects a table: columns or signs are exchanged …
+_EXCHANGES: Final = re.compile(
+    r"swapp|exchang|interchang|vertausch|échang|invers[ée]|intercambi|invertid|交换|互换|颠倒",
+    re.IGNORECASE,
+)
+# … or, after the table, something should be different.
+_CORRECTS: Final = re.compile(
+    r"correction|erratum|typo|mistake|wrong|(?:should|must)(?: \w+){0,3} be(?!\w)|instead"
+    r"|rather than|(?<!\w)not (?:0|[+-]?\d|[a-zαθ]_?\w?(?!\w))"
+    r"|korrektur|korrigier|berichtig|falsch|fehler|stattdessen|(?<!\w)statt(?!\w)|sollte|muss(?!\w)"
+    r"|erreur|corrig|au lieu|devrait|faute|faux"
+    r"|errata|corrección|correg|en (?:lugar|vez) de|debería|equivoc|更正|纠正|错误|应为|应该|改为",
     re.IGNORECASE,
 )
 
@@ -74,8 +88,7 @@ def without_fence(source: SourceText) -> SourceText:
     around = [*lines[:first], *lines[last + 1 :]]
     if first + 1 == last or any(line.text.strip() and not _is_prose(line.text) for line in around):
         return source
-    for line in around:
-        _check_units(line)
+    _check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first + 1], lines[last - 1])
 
 
@@ -94,8 +107,7 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     around = [*lines[:first], *lines[last + 1 :]]
     if not around or not all(_is_prose(line.text.strip(_PADDING)) for line in around):
         return source, ()
-    for line in around:
-        _check_units(line)
+    _check_sentences(lines[:first], lines[last + 1 :])
     message = say("The sentences before and after the table were ignored.")
     note = Note("text_left_aside", message, around[0].whole)
     return _between(source, lines[first], lines[last]), (note,)
@@ -150,17 +162,29 @@ def _is_few_words(line: str) -> bool:
     return bool(_FEW_WORDS.fullmatch(line)) and not _PARAMETER.search(line.lower())
 
 
-def _check_units(line: SourceText) -> None:
-    """Raise GridError for a sentence with the name of a unit."""
-    # The unit may apply to the table.
-    if UNIT.search(_FREEDOM.sub("", line.text)):
+def _check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
+    """Raise GridError if a sentence before or after the table may change its meaning."""
+    for line in (*before, *after):
+        # The unit may apply to the table.
+        if UNIT.search(_FREEDOM.sub("", line.text)):
+            raise GridError(
+                "text_around",
+                say(
+                    "This line names a unit, but not its columns. Delete the line, and write the "
+                    "units into the headers, such as theta [deg]."
+                ),
+                line.whole,
+            )
+    corrections = [line for line in (*before, *after) if _EXCHANGES.search(line.text)]
+    corrections += [line for line in after if _CORRECTS.search(line.text)]
+    if corrections:
         raise GridError(
             "text_around",
             say(
-                "This line names a unit, but not its columns. Delete the line, and write the "
-                "units into the headers, such as theta [deg]."
+                "This sentence may correct the table. Write the correction into the table, and "
+                "delete the sentence."
             ),
-            line.whole,
+            corrections[0].whole,
         )
 
 

@@ -73,6 +73,39 @@ def test_a_sentence_with_a_unit_is_refused(unit: str) -> None:
 
 
 @pytest.mark.parametrize(
+    "line",
+    [
+        "**Correction:** in the second row the offset should of course be d2 and not 0.",
+        "Sorry, the twist of link 1 is wrong.",
+        "Korrektur: in Zeile 2 muss der Winkel positiv sein.",
+        "En la fila 2 debería ser negativo.",
+        "La deuxième ligne est fausse, une erreur de signe.",
+    ],
+)
+def test_a_sentence_that_corrects_the_table_above_it_is_refused(line: str) -> None:
+    for text in (f"{TABLE}\n\n{line}", f"```\n{TABLE}\n```\n{line}"):
+        with pytest.raises(GridError) as caught:
+            read_grid(text)
+        assert caught.value.code == "text_around"
+        assert text[slice(*caught.value.span)] == line
+
+
+@pytest.mark.parametrize(
+    "line",
+    ["Die Spalten sind bei mir vertauscht.", "I have swapped two of the columns.", "两列互换了"],
+)
+def test_a_sentence_on_exchanged_columns_is_refused(line: str) -> None:
+    for text in (f"{TABLE}\n{line}", f"{line}\n{TABLE}"):
+        with pytest.raises(GridError):
+            read_grid(text)
+
+
+@pytest.mark.parametrize("line", ["Here is the corrected table:", "This table should be right:"])
+def test_a_sentence_above_the_table_may_say_that_it_is_corrected(line: str) -> None:
+    assert cells(f"{line}\n{TABLE}") == cells(TABLE)
+
+
+@pytest.mark.parametrize(
     "line", ["theta d", "3", "l3 0 0 q3", "where l1 = l2", "Joint theta alpha", "pi"]
 )
 def test_a_line_that_may_be_a_row_stays(line: str) -> None:

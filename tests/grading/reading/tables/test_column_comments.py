@@ -41,6 +41,17 @@ def test_a_comment_names_the_columns_and_their_units(comment: str, arm: Exercise
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        "dh = {(* theta, d, a, alpha *) {q1, l1, l2, 0}, {q2, 0, l3, Pi}, {q3, l4, 0, 0}};",
+        "{ /* theta, d, a, alpha */\n  {q1, l1, l2, 0},\n  {q2, 0, l3, Pi},\n  {q3, l4, 0, 0} }",
+    ],
+)
+def test_a_comment_in_brackets_names_the_columns(text: str, arm: Exercise) -> None:
+    assert first_row(preview_pasted(text, arm, "table")) == ["l2", "0", "l1", "q1"]
+
+
+@pytest.mark.parametrize(
     "comment", ["% lengths in mm", "% angles in degrees", "# Winkel in Grad", "% [mm, deg]"]
 )
 def test_a_unit_without_columns_is_refused(comment: str, arm: Exercise) -> None:

@@ -100,6 +100,14 @@ def test_a_number_is_converted(head: str, cell: str, metres: float, arm: Exercis
     assert first.values[0] == pytest.approx(metres, rel=1e-12)
 
 
+def test_a_sentence_with_another_unit_than_a_header_is_refused(arm: Exercise) -> None:
+    note = "\n\nNote: all lengths in m"
+    assert read(arm, table("a (m)", "0.25") + note).rows[0].values[0] == pytest.approx(0.25)
+    with pytest.raises(UnreadableAnswerError) as caught:
+        read(arm, table("a [mm]", "250") + note)
+    assert caught.value.finding.code == "text_around"
+
+
 @pytest.mark.parametrize("head", ["a [mm]", "a (m)"])
 @pytest.mark.parametrize("cell", ["l1", "2*l1 - l2/3", "l1*cos(q1)", "sqrt(l1^2 + l2^2)", "-l2"])
 def test_letters_are_not_converted(head: str, cell: str, arm: Exercise) -> None:
