@@ -39,7 +39,7 @@ _NUMERO: Final = re.compile(r"(?<![a-z])n\.?\s?°")
 _OF: Final = re.compile(r"(?<=no|ro)\s(?:de\s)?[dl]['’](?=[a-z]{3})")
 _STYLE: Final = re.compile(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf"
-    r"|makecell|thead)(?![a-z])|\\[,;:! ]"
+    r"|boldmath|bfseries|itshape|makecell|thead)(?![a-z])|\\[,;:! ]"
 )
 # A unit of the package siunitx: \si{\milli\metre}.
 _SIUNITX: Final = re.compile(r"\\(?:si|unit)\s?\{([\\a-z ]{1,30})\}")

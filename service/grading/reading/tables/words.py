@@ -46,6 +46,9 @@ FILLERS: Final = frozenset(
 )
 ASIDES: Final = re.compile(
     r"(?:joint )?(?:type|var\.?|variables?|range|limits?)|comments?|notes?|remarks?"
+    # Limits of a joint, and numbers that follow from an angle.
+    r"|(?:(?:q|theta|d|joint|lower|upper)(?: ?i)? ?)?(?:min|max|limit|bound)(?: ?i)?"
+    r"|(?:cos|sin)[ (]{1,2}(?:alpha|theta)(?: ?i)?[ )]{0,2}"
     r"|home(?: position)?|dynamics|mass(?: [(\[]kg[)\]])?|cent(?:er|re) of mass"
     # The joint type of Khalil and the Robotics Toolbox: 0 turns, 1 slides.
     r"|sigma(?: [ijn])?|σ(?: ?[ijn])?"

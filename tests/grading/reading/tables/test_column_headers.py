@@ -34,7 +34,8 @@ SPELLINGS = {
         "Corps", "Articulación", "Eslabón", "N.º de eslabón", "连杆", "关节", "连杆 i",
         "连杆号", "行",
     ],
-    "aside": ["type", "Joint type", "variable", "joint variable", "comment", "limits", "home"],
+    "aside": ["type", "Joint type", "variable", "joint variable", "comment", "limits", "home",
+        "q_min [deg]", "θ_max", "max", "lower limit", "upper bound", "cos(alpha)", "sin(α_i)"],
 }  # fmt: skip
 CASES = [(text, column) for column, texts in SPELLINGS.items() for text in texts]
 
