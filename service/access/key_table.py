@@ -79,9 +79,9 @@ def link_keys(connection: Connection, course: str) -> list[Key]:
 def keys_at(
     connection: Connection, places: Collection[tuple[str, str]]
 ) -> dict[tuple[str, str], Key]:
-    """Return the keys with these ids or digests; unknown keys are left out.
+    """Return the keys with these ids or digests; leave out unknown ones.
 
-    Each of ``places`` is a column (``id`` or ``digest``) and a value.
+    ``places`` has pairs: a column (``id`` or ``digest``) and its value.
     """
     columns: dict[str, list[str]] = {column: [] for column, _ in places}
     for column, value in places:

@@ -29,9 +29,10 @@ class CredentialError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Key:
-    """An API key. ``exercises`` are the exercises that it may use, None for all.
+    """An API key.
 
-    A key with a ``course`` is for this course only. A key with a ``learner`` is a personal link.
+    ``exercises`` are the exercises that the key may use; None means all exercises. A key with a
+    ``course`` is for this course only. A key with a ``learner`` is a personal link.
     """
 
     id: str
@@ -114,7 +115,7 @@ class Secret:
 
     @property
     def check(self) -> str:
-        """A digest that shows whether two secrets are the same."""
+        """A digest of the secret; equal secrets have equal digests."""
         return self._derived("check").hex()
 
     @property

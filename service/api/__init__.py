@@ -1,1 +1,1 @@
-"""The HTTP interface. Its routes read requests, call the other packages, and send responses."""
+"""The HTTP interface: routes that read requests and send responses."""

@@ -24,7 +24,8 @@ CLIENT: Final = "dh_grader.client"
 class Client(NamedTuple):
     """The client that sent a request.
 
-    A client gets one share of the processor for each of its requests, but at most ``most_shares``.
+    A client with several requests at once gets more processor time: up to ``most_shares`` times as
+    much.
     """
 
     # A course's server or a university's address may have several shares, because it sends the
@@ -35,7 +36,7 @@ class Client(NamedTuple):
 
     @property
     def is_trusted(self) -> bool:
-        """True if the client may have any number of shares."""
+        """True if the client's part of the processor time has no limit."""
         return self.most_shares == math.inf
 
 

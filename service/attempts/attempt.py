@@ -14,7 +14,7 @@ MOST_ON_A_PAGE: Final = 100
 def hint_points(price: float, max_points: float) -> float:
     """Return the points that hints cost, at most ``max_points``.
 
-    ``price`` is their price as a share of ``max_points``.
+    ``price`` is the price of the hints as a fraction of ``max_points``.
     """
     return round(min(price, 1.0) * max_points, 6)
 

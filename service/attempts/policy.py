@@ -18,7 +18,7 @@ class AttemptRefusedError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Ruling:
-    """The number of an accepted attempt, and the factor ``worth`` for its points.
+    """An accepted attempt: its number (1, 2, …), and the factor ``worth`` for its points.
 
     The factor is 1 for an attempt in time, and less for a late attempt.
     """

@@ -118,7 +118,7 @@ def standing(
 
 
 def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> RecordedAttempt | None:
-    """Write the attempt. Return None if its number or its idempotency key is already taken."""
+    """Write the attempt; return None if its number or idempotency key is already taken."""
     values: dict[str, Any] = {name: getattr(new, name) for name in _WRITTEN}
     values["id"] = secrets.token_hex(16)
     statement = _NEW_ATTEMPT[connection.dialect.name]

@@ -139,7 +139,7 @@ class AttemptStore:
         return await self.read(lambda connection: page(connection, wanted, cursor, most))
 
     async def history(self, attempt_id: str) -> AttemptHistory | None:
-        """Return an attempt with its answers, its reports, and points given by tutors, if known."""
+        """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
         return await self.read(lambda connection: history(connection, attempt_id))
 
     async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:

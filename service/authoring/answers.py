@@ -1,4 +1,4 @@
-"""Checks that grade answers: model answers, the file's own checks, and duplicate parts."""
+"""Check an exercise file by grading: its model answers, its checks, and duplicate parts."""
 
 import math
 from collections import Counter

@@ -16,7 +16,7 @@ MOST_OF_A_POSE: Final = 0.5
 
 
 def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
-    """Return the share of points that only zeros and joint variables earn, by part id."""
+    """Return the fraction of points that zeros and joint variables alone earn, by part id."""
     from service.solutions.kinds import LAZY
 
     return {
@@ -42,7 +42,7 @@ def summary(exercise: Exercise) -> Sentence:
 
 
 def lazy_answers(exercise: Exercise) -> Iterator[Remark]:
-    """Yield a warning for each part in which only zeros and joint variables earn much."""
+    """Yield a warning for each part in which zeros and joint variables alone earn many points."""
     shares = lazy_shares(exercise)
     for i, part in enumerate(exercise.parts):
         share = shares[part.id]

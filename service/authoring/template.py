@@ -24,7 +24,7 @@ class UnusableIdError(ValueError):
 
 
 def template(exercise_id: str, like: Path | None = None) -> str:
-    """Return the text of a new exercise file; with ``like``, the text of that file.
+    """Return the text of a new exercise file, or a copy of the file ``like``.
 
     Raises UnusableIdError.
     """

@@ -20,7 +20,7 @@ class UnknownStudentError(ValueError):
 
 @dataclass(frozen=True, slots=True)
 class BundleVariants:
-    """The secret of a bundle, and the allowed seeds of each exercise with variants."""
+    """The secret of a bundle, and the allowed seeds (short texts) of each exercise."""
 
     secret: str = field(repr=False)
     deployed: Mapping[str, Sequence[str]]
@@ -33,7 +33,7 @@ class BundleVariants:
         }
 
     def some(self, exercise: str) -> Sequence[str]:
-        """Return seeds to choose from for an exercise."""
+        """Return the possible seeds for an exercise: the deployed ones, or random ones."""
         drawn = (seed_of(self.secret, f"variant {i}", exercise, 0) for i in range(DRAWN))
         return self.deployed[exercise] or tuple(drawn)
 

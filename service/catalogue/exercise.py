@@ -26,7 +26,7 @@ _UNTRANSLATED_PART: Final = PartTextsSpec()
 
 @dataclass(frozen=True, slots=True)
 class Exercise:
-    """One exercise of the catalogue, or a variant of one with other numbers."""
+    """An exercise of the catalogue, or a variant with changed numbers."""
 
     id: str
     # The version changes with every field that affects grading.

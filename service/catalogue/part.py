@@ -67,7 +67,7 @@ class PartSpec(StrictModel, ABC):
     def check_reference(self, field: str, reference: Reference | None) -> None:
         """Raise FieldError if the right answer cannot be computed from the robot.
 
-        ``field`` is the place of the part in the file.
+        ``field`` is the path of the part in the file.
         """
         if reference is None:
             raise FieldError(

@@ -103,7 +103,7 @@ def grade(
     echo: bool = False,
     idempotency_key: str | None = None,
 ) -> HttpCall[Report]:
-    """Grade answers, given by the ids of the exercise's parts; return the report.
+    """Grade answers, which are given by part id; return the report.
 
     Calls with the same ``idempotency_key`` count as one submission. Raises
     pydantic.ValidationError.

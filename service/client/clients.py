@@ -81,11 +81,11 @@ class _Methods:
 
 
 class GraderClient(_Methods):
-    """Calls a DH Grader; several threads may share it. Every method raises GraderClientError.
+    """Calls a DH Grader; several threads may use the same client.
 
-    ``server`` is the address of the service. ``timeout`` is in seconds, for one response.
-    ``transport`` is an httpx transport, for your own certificates or proxies. Raises ValueError for
-    an invalid address or key.
+    Every method raises GraderClientError. ``server`` is the address of the service. ``timeout`` is
+    in seconds, for one response. ``transport`` is an httpx transport, for your own certificates or
+    proxies. Raises ValueError for an invalid address or key.
     """
 
     def __init__(
@@ -156,7 +156,7 @@ class GraderClient(_Methods):
 
 
 class AsyncGraderClient(_Methods):
-    """The client for asyncio, with the options of GraderClient; several tasks may share it."""
+    """The client for asyncio, with the options of GraderClient; tasks may use the same client."""
 
     def __init__(
         self,

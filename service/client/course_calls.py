@@ -125,7 +125,7 @@ def change_assignment(
 
 
 def extend(course: str, assignment: str, extension: Extension) -> HttpCall[CourseAssignment]:
-    """Give a learner other dates or another limit."""
+    """Change the dates or the limit of attempts of an assignment for one learner."""
     path = _path(course, "assignments", assignment, "extensions")
     return _sending(path, extension, CourseAssignment)
 
@@ -137,7 +137,7 @@ def variants(course: str, assignment: str, learner: str) -> HttpCall[LearnerVari
 
 
 def deal_variant(course: str, assignment: str, wanted: DealRequest) -> HttpCall[LearnerVariant]:
-    """Give a learner another variant of an exercise."""
+    """Replace a learner's variant of an exercise by a new variant."""
     return _sending(_path(course, "assignments", assignment, "variants"), wanted, LearnerVariant)
 
 

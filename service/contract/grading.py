@@ -1,4 +1,4 @@
-"""The bodies of requests about grading: many submissions, hints, and other choices of frames."""
+"""The bodies of requests about grading, about hints, and about alternatives to a correct table."""
 
 from typing import Annotated, Literal
 
@@ -75,14 +75,14 @@ class ChoicesRequest(BaseModel):
 
 
 class ValidTable(BaseModel):
-    """Another valid table."""
+    """A correct table that differs from the submitted one in one frame."""
 
     change: ToldText = Field(description="What is different in it, as a sentence.")
     rows: list[TableRow]
 
 
 class FrameChoices(BaseModel):
-    """Other valid tables, at most three; none if the frames are given or the table is not right."""
+    """At most three alternatives to a correct table; none if the frames are given."""
 
     choices: list[ValidTable]
 

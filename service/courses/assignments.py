@@ -75,7 +75,7 @@ def change_assignment(
 def extend(
     connection: Connection, course: str, assignment: str, extension: Extension
 ) -> CourseAssignment:
-    """Give a learner other dates or another limit of attempts. Raises CourseError.
+    """Change the dates or the limit of attempts for one learner. Raises CourseError.
 
     An empty extension ends the learner's extension.
     """

@@ -135,9 +135,9 @@ def closed_practice(
     alike: Collection[str],
     now: datetime,
 ) -> tuple[LearnerTerms, str] | None:
-    """Return an assignment that forbids practice now and the exercise in it, or None.
+    """Return an assignment that forbids practice now, and the exercise's name in it; or None.
 
-    ``alike`` are exercises with the same correct table.
+    ``alike`` are the exercises with the same correct table as ``exercise``.
     """
     # If no assignment has the exercise itself, assignments with one of ``alike`` decide.
     for terms, name in _assigned(connection, learner, only, exercise, alike):
@@ -157,7 +157,7 @@ def hides_solution(
 ) -> bool:
     """True if an assignment hides the solution of the exercise from the learner now.
 
-    ``alike`` are exercises with the same correct table.
+    ``alike`` are the exercises with the same correct table as ``exercise``.
     """
     return any(
         not terms.shows_solution(
@@ -186,7 +186,7 @@ def has_priced_hints(
 ) -> bool:
     """True if hints on the exercise have a price in an open assignment of the learner.
 
-    ``alike`` are exercises with the same correct table.
+    ``alike`` are the exercises with the same correct table as ``exercise``.
     """
     return any(
         terms.hint_prices(exercise) is not None and terms.state(now) in ("open", "late")

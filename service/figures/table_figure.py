@@ -1,6 +1,6 @@
 """The figure of a student's table: its frames, drawn over the mechanism or alone.
 
-It replaces the 3D view in browsers that cannot draw it.
+The figure replaces the 3D view in browsers without 3D graphics.
 """
 
 # It shows one configuration. It contains no text from the student: its only texts are the names of

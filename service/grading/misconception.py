@@ -72,7 +72,7 @@ class Record:
 
     @property
     def code(self) -> str:
-        """The first of the codes."""
+        """The first code of the misconception."""
         return self.codes[0]
 
     def meaning(self, code: str) -> str:
@@ -112,9 +112,9 @@ def register(
     name: str = "",
     **known: Any,
 ) -> Record:
-    """Add a misconception or a check to the list of all, and return its record.
+    """Add a misconception or a check to the list of all records, and return its record.
 
-    ``known`` has values for other fields of the record.
+    ``known`` has values for more fields of the record.
     """
     # Without a function, the record only documents a code; other functions make findings with this
     # code.

@@ -26,7 +26,7 @@ _CELL = 40
 
 @dataclass(frozen=True, slots=True)
 class StudentChain:
-    """A student's answer as a chain of links, for judging later answers by it."""
+    """A student's answer as a chain of links, with which later answers can be compared."""
 
     # (k + 1, SAMPLES, 4, 4), from the base to the tool, in the base frame.
     frames: Matrices
@@ -37,7 +37,7 @@ class StudentChain:
     nearest_links: Matrices | None = None
 
     def tool_at(self, samples: Samples) -> Matrices:
-        """Return the tool's frame at other samples, ``(samples, 4, 4)``."""
+        """Return the tool's frame at these samples, ``(samples, 4, 4)``."""
         tool: Matrices = self.frames_at(samples)[-1]
         return tool
 

@@ -165,8 +165,8 @@ class LittleWorth:
 class PartReport:
     """One part: its rows share its points.
 
-    The points of ``lost`` sum to ``max_points`` - ``points``. It is empty in reports of versions
-    that did not have it. ``little_worth`` is present if a right row of zeros earned little.
+    The points of ``lost`` sum to ``max_points`` - ``points``. In reports of older versions,
+    ``lost`` is empty. ``little_worth`` is present if a right row of zeros earned few points.
     """
 
     part: str

@@ -1,4 +1,4 @@
-"""Other valid tables of a robot, made by choosing a frame of a correct table differently.
+"""Alternatives to a correct table: valid tables with one frame chosen differently.
 
 The x or z axis of a frame may point the other way. If the next axis is parallel, the frame may
 slide along its z axis. The grader decides which of these changes the exercise allows.
@@ -30,7 +30,7 @@ Cells = Mapping[str, str]
 
 @dataclass(frozen=True, slots=True)
 class FrameChoice:
-    """A valid table, and what is different in it."""
+    """An alternative to a correct table, and how the two tables differ."""
 
     change: str
     rows: tuple[Cells, ...]
@@ -39,7 +39,7 @@ class FrameChoice:
 def other_choices(
     exercise: Exercise, part: DhTableSpec, rows: Sequence[Cells], submission: Submission
 ) -> list[FrameChoice]:
-    """Return up to three other correct tables; none if the table ``rows`` is not correct."""
+    """Return at most three alternatives to the correct table ``rows``; none if it is wrong."""
     convention = part.convention
     if not isinstance(convention, Convention) or part.frames != "free":
         return []

@@ -24,7 +24,7 @@ _IS_ANGLE = np.isin(np.arange(4), (ALPHA, THETA))
 
 @dataclass(frozen=True, slots=True)
 class Placed:
-    """A standard table of constants ``(joints, 4)``, and the poses at both of its ends.
+    """A standard table of constants ``(joints, 4)``, and the poses of both ends of the arm.
 
     ``base`` is the pose of frame {0} in the base link, and ``tool`` is the pose of the tip in the
     last frame.

@@ -20,7 +20,7 @@ class Convention(StrEnum):
 
     @property
     def other(self) -> "Convention":
-        """The other convention."""
+        """The modified convention for the standard one, and the standard for the modified one."""
         return Convention.MODIFIED if self is Convention.STANDARD else Convention.STANDARD
 
 

@@ -59,7 +59,10 @@ def row(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def is_unreachable(transform: Matrices, length_scale: float) -> NDArray[np.bool_]:
-    """Return a mask ``(H,)`` of the transforms ``(H, L, 4, 4)`` that have no standard DH row."""
+    """Return a mask ``(H,)``: which of H transforms ``(H, L, 4, 4)`` have no standard DH row.
+
+    L is the number of samples.
+    """
     tilt = np.abs(dh1_residual(transform, Convention.STANDARD)).max(axis=-1)
     distance = np.abs(dh2_residual(transform, Convention.STANDARD)).max(axis=-1)
     return np.asarray((tilt > PARALLEL) | (distance > PARALLEL * length_scale))

@@ -32,7 +32,7 @@ CellIndex = tuple[int, int]
 
 @dataclass(frozen=True)
 class Factors:
-    """The factors of a table, in the order of the product."""
+    """The factors of a table: motions along and about x or z whose product is the table's pose."""
 
     convention: Convention
     # (K, 2, L): the SHIFT and the TURN of each factor.
@@ -55,7 +55,7 @@ class Factors:
 
     @cached_property
     def before(self) -> Matrices:
-        """The product of the first k factors for k = 0..K: ``(K + 1, L, 4, 4)``."""
+        """The product of the first k factors for k = 0..K: ``(K + 1, L, 4, 4)`` at L samples."""
         return products(self.screws)
 
     @cached_property
@@ -78,7 +78,10 @@ class Factors:
         return inverse(self.after)
 
     def around(self, factor: int) -> tuple[Matrices, Matrices]:
-        """Return the products of all factors before and after ``factor``, ``(L, 4, 4)`` each."""
+        """Return the products of all factors before and after ``factor``.
+
+        Each product is ``(L, 4, 4)``, with L samples.
+        """
         before = reduce(np.matmul, self.screws[:factor], np.eye(4))
         return before, reduce(np.matmul, self.screws[factor + 1 :], np.eye(4))
 
@@ -106,7 +109,10 @@ def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Facto
 
 
 def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
-    """Return screw motions ``(K, L, 4, 4)`` about axes ``(K,)`` by shifts and turns ``(K, L)``."""
+    """Return K screw motions ``(K, L, 4, 4)`` about x, y or z axes, at L samples.
+
+    ``axes`` is ``(K,)``; ``shifts`` and ``turns`` are ``(K, L)``.
+    """
     k = np.arange(len(axes))
     one, other = (axes + 1) % 3, (axes + 2) % 3
     cosine, sine = np.cos(turns), np.sin(turns)
@@ -124,7 +130,7 @@ def screws(axes: Integers, shifts: Numbers, turns: Numbers) -> Matrices:
 def read_screws(transforms: Matrices, axes: Integers) -> tuple[Numbers, Numbers]:
     """Return each transform's shift and turn about its axis, and its deviation from a screw.
 
-    For transforms ``(K, L, 4, 4)``, the results are ``(K, 2, L)`` and ``(K, L)``.
+    For K transforms at L samples, ``(K, L, 4, 4)``, the results are ``(K, 2, L)`` and ``(K, L)``.
     """
     # The axes are (K,). The deviation is the tilt of the axis plus the distance of the origin from
     # it.

@@ -27,7 +27,7 @@ Screws = NDArray[np.float64]
 def space_jacobian(
     table: Table, convention: Convention, rows: Sequence[int], prismatic: Sequence[bool]
 ) -> Screws:
-    """Return the space Jacobian ``(L, 6, n)`` at the configurations of the table.
+    """Return the space Jacobian ``(L, 6, n)`` of n joints at L configurations of the table.
 
     ``rows`` has the row of each joint; ``prismatic`` is True for prismatic joints.
     """
@@ -41,7 +41,7 @@ def space_jacobian(
 
 
 def coincident(jacobian: Screws) -> NDArray[np.bool_]:
-    """Return a mask ``(n, n)`` of the pairs of joints that move the arm in the same way."""
+    """Return a mask ``(n, n)`` of the pairs of n joints that move the arm in the same way."""
     # They turn about the same line, or slide along the same direction, at every sample, possibly in
     # opposite senses. jacobian is (L, 6, n).
     one, other = jacobian[..., :, None], jacobian[..., None, :]
@@ -60,7 +60,7 @@ def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
 
 
 def dependent(jacobian: Screws) -> NDArray[np.bool_]:
-    """Return a mask ``(n,)`` of the columns that depend linearly on the other columns."""
+    """Return a mask of the columns that depend linearly on the remaining columns."""
     # They depend at each of the L samples. A column is independent of the others if and only if its
     # entry in every null vector is zero.
     _, singular, rows = np.linalg.svd(jacobian)

@@ -95,7 +95,7 @@ def to_angles(sequence: str, rotation: Matrices, *, fixed: bool = False) -> Numb
 
 
 def other_triple(sequence: str, angles: Numbers) -> Numbers:
-    """Return the other triple ``(..., 3)`` that describes the same rotation.
+    """Return the second triple of angles for the same rotation as ``angles``, ``(..., 3)``.
 
     Source: Craig, *Introduction to Robotics*, §2.8.
     """

@@ -70,9 +70,10 @@ def drawn_slip(
     judge_table: JudgeTable,
     wanted: str | None = None,
 ) -> DrawnSlip:
-    """Return the table with one mistake that a seed draws; ``wanted`` may be its code.
+    """Return the table with one mistake, which ``seed`` determines.
 
-    Raises NoSlipError if there is no such table.
+    ``wanted`` is the code that the mistake must have, if any. Raises NoSlipError if there is no
+    such table.
     """
     # The grader must find exactly one slip in the table.
     table = model_table(exercise.robot, convention, exercise.symbols)

@@ -43,7 +43,7 @@ def _is_single(cell: CellText) -> bool:
 
 
 def _own(table: ModelTable) -> Iterator[tuple[TableCell, CellText, Joint]]:
-    """Yield each cell with a joint variable, its text and its joint."""
+    """Yield each cell that contains a joint variable, with the cell's text and its joint."""
     for (i, j), cell in _each(table):
         joint = table.joint_of(i)
         if joint is not None and cell.variable:

@@ -37,7 +37,7 @@ class CellText:
         return self.constant == "0"
 
     def text(self, *, variable: str | None = None, constant: str | None = None) -> str:
-        """Return the cell, or the cell with another variable or constant."""
+        """Return the text of the cell, with another ``variable`` or ``constant`` if given."""
         named = self.variable if variable is None else variable
         added = self.constant if constant is None else constant
         if not named:

@@ -1,4 +1,4 @@
-"""Assignments: exercises that are set together, their points, and the names of answer files."""
+"""Assignments: exercises for one hand-in, their points, and the names of answer files."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -113,7 +113,7 @@ class AssignedExercise:
 
 @dataclass(frozen=True, slots=True)
 class Assignment:
-    """Exercises that are set together, in order; a single exercise is also an assignment.
+    """The exercises for one hand-in, in order; a single exercise is also an assignment.
 
     With ``variants``, each learner gets personal variants of the exercises.
     """
@@ -142,7 +142,7 @@ class UnknownPartNameError(LookupError):
 
 
 def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
-    """Return an assignment of one exercise, or of one part of it. Raises UnknownPartNameError."""
+    """Return an assignment of one exercise, or of one of its parts. Raises UnknownPartNameError."""
     return Assignment((assigned(exercise, None if part is None else [part]),), exercise.title)
 
 
@@ -151,7 +151,8 @@ def assigned(
 ) -> AssignedExercise:
     """Return an exercise for an assignment, with the given parts, or with all its parts.
 
-    ``worth`` is its number of points, by default the sum of its parts. Raises UnknownPartNameError.
+    ``worth`` is its number of points, by default the sum of the points of its parts. Raises
+    UnknownPartNameError.
     """
     known = [part.id for part in exercise.parts]
     for part in parts or ():

@@ -28,7 +28,7 @@ _COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
 
 @dataclass(frozen=True, slots=True)
 class PlatformName:
-    """The parts of a file name that a learning platform has given."""
+    """A file name that a learning platform has given, divided into its parts."""
 
     # Unique.
     student: str

@@ -31,7 +31,7 @@ class Translation(Protocol):
 class Sentence(str):
     """A text in English that remembers its ``template`` and ``values``.
 
-    ``plural`` is the template for any ``count`` but 1. It is empty if nothing is counted.
+    ``plural`` is the template for any ``count`` but 1. If nothing is counted, ``plural`` is empty.
     """
 
     __slots__ = ("plural", "template", "values")

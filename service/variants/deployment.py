@@ -77,7 +77,7 @@ def deploy(
 ) -> list[str]:
     """Return the seeds of ``count`` different variants with the same difficulty.
 
-    No seed is in ``without``. Raises TooFewVariantsError or NoVariantError.
+    Seeds in ``without`` are not used. Raises TooFewVariantsError or NoVariantError.
     """
     # Deployed seeds of the file are kept if they are usable.
     struck = set(without)

@@ -1,4 +1,4 @@
-"""Floods of requests, as an attacker sends them. Each runs until its time is over."""
+"""Floods of requests, as an attacker sends them. Each flood runs until its time is over."""
 
 import itertools
 import json

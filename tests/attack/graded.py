@@ -1,4 +1,4 @@
-"""Write an answer in many notations, and check that all get the same points."""
+"""Write an answer in many notations, and check that all notations get the same points."""
 
 import json
 import re

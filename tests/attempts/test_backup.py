@@ -1,4 +1,4 @@
-"""The backup commands of docs/operations.md lose no attempt, even while others are recorded."""
+"""The backup commands of docs/operations.md lose no attempt, even while attempts are recorded."""
 
 import os
 import re

@@ -1,7 +1,7 @@
 """Print every measured time with its limit.
 
 Times are multiples of a fixed computation in numpy. With ``--against DIR``, compare this checkout
-with another one; exit with 1 if a time is worse here by more than 3 %.
+with the checkout in DIR; exit with 1 if a time is worse here by more than 3 %.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Other valid choices of frames describe the same robot."""
+"""The alternatives to a correct table describe the same robot as the table."""
 
 from collections.abc import Mapping, Sequence
 from typing import Any

@@ -61,7 +61,7 @@ def install(wheel: Path, programs: Path) -> None:
 
 
 def other_pythons() -> list[str]:
-    """Return the other supported Pythons on this machine."""
+    """Return the supported Pythons on this machine, except this Python's version."""
     names = [f"python3.{minor}" for minor in range(OLDEST[1], 20)]
     found = [path for name in names if (path := shutil.which(name))]
     found += map(str, Path.home().glob(".pyenv/versions/3.*/bin/python"))

@@ -1,4 +1,4 @@
-"""Test which misconceptions about a table can be drawn as slips."""
+"""Test which misconceptions about a table can be planted as mistakes."""
 
 from collections.abc import Mapping
 from dataclasses import replace

@@ -44,7 +44,10 @@ class Pseudo:
 
 @cache
 def reports(share: int) -> tuple[PartReport, ...]:
-    """Return the reports on one share of the example answers in docs/sentences.md."""
+    """Return the reports on some of the example answers in docs/sentences.md.
+
+    The answers are divided into shares for parallel tests; ``share`` is the number of a share.
+    """
     catalogue = exercises()
     return tuple(
         part
@@ -73,7 +76,10 @@ def said_of(part: PartReport) -> Iterator[tuple[str, str]]:
 
 @cache
 def said(share: int) -> tuple[tuple[str, str], ...]:
-    """Return one share of the messages and corrections in docs/sentences.md, with their codes."""
+    """Return some messages and corrections in docs/sentences.md, with their codes.
+
+    ``share`` is the number of a share (a subset for parallel tests).
+    """
     given = [*said_of_formulas(formulas())]
     given += said_of_pasted(pasted_texts(), exercises()["planar-rr"])
     return (
@@ -97,7 +103,7 @@ def texts() -> Mapping[str, str]:
 
 
 def sentences(share: int) -> list[Sentence]:
-    """Return the different sentences in one share of the messages and corrections."""
+    """Return the different sentences in a share (subset) of the messages and corrections."""
     return [text for text in dict.fromkeys(t for t, _ in said(share)) if isinstance(text, Sentence)]
 
 

@@ -1,4 +1,4 @@
-"""Routes for tutors: assignments, and extensions (other dates for single learners)."""
+"""Routes for tutors: assignments, and extensions (changed dates for single learners)."""
 
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated
@@ -46,7 +46,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
         **reading(CourseAssignmentList),
     )
     async def list_assignments(course_id: CourseId) -> Response:
-        """List the assignments of a course; for its tutors."""
+        """List the assignments of a course; for tutors of the course."""
         from service.courses.assignments import assignments_of
 
         found = await read(store, lambda it: assignments_of(it, course_id))

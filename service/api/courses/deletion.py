@@ -16,7 +16,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 def routes(store: "AttemptStore | None") -> APIRouter:
-    """Return the routes that delete; without `apply` in the request, they only preview."""
+    """Return the routes that delete courses, assignments and learners."""
     router = APIRouter(prefix="/v1/courses/{course_id}", tags=["courses"])
 
     @router.post(
@@ -69,7 +69,7 @@ def routes(store: "AttemptStore | None") -> APIRouter:
         **changing(RemovalRequest, DeletedData),
     )
     async def remove_learner(request: Request, course_id: CourseId) -> Response:
-        """Remove a learner, and end the learner's links to the course; for its tutors.
+        """Remove a learner, and end the learner's links; for tutors of the course.
 
         Without `with_attempts` the attempts stay, and count again if the learner comes back.
         """

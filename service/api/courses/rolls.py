@@ -74,7 +74,7 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         **reading(Course),
     )
     async def show_course(course_id: CourseId) -> Response:
-        """Show a course; for its tutors."""
+        """Show a course; for tutors of the course."""
         from service.courses import roll
 
         return private(await read(store, lambda it: roll.course(it, course_id)))
@@ -87,7 +87,7 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         **changing(CourseChange, Course),
     )
     async def change_course(request: Request, course_id: CourseId) -> Response:
-        """Change the title or the time zone of a course; for its tutors."""
+        """Change the title or the time zone of a course; for tutors of the course."""
         from service.courses import roll
 
         body = await read_body(CourseChange, request)
@@ -101,7 +101,7 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         **reading(LearnerList),
     )
     async def list_learners(course_id: CourseId) -> Response:
-        """List the learners of a course; for its tutors."""
+        """List the learners of a course; for tutors of the course."""
         return private(await read(store, partial(_learners, course_id)))
 
     @router.post(

@@ -55,7 +55,7 @@ def public_name(name: str) -> str:
 
 
 def tidy_schemas(document: Schema) -> None:
-    """Give each model and enumeration of the document a named schema, in alphabetical order."""
+    """Give each model and enumeration a named schema, and sort the schemas by name."""
     components = document.setdefault("components", {})
     tidying = _Tidying()
     for name, schema in components.get("schemas", {}).items():

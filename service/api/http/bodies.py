@@ -30,7 +30,7 @@ async def read_body(model: type[M], request: Request) -> M:
 def validated(model: type[M], value: object, at: Location = ()) -> M:
     """Return ``value``, a part of a request body, as an instance of ``model``.
 
-    ``at`` is the path of the part in the body. Raises ProblemError.
+    ``at`` is the path of ``value`` in the body. Raises ProblemError.
     """
     try:
         return model.model_validate(_with_few_unknown(model, value))

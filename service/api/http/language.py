@@ -16,7 +16,7 @@ _A_YEAR: Final = 365 * 24 * 3600
 def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
     """Return the reader's language: from the query, the cookie, or ``Accept-Language``.
 
-    ``usual`` is the reader's language elsewhere, such as on a platform.
+    ``usual`` is a known language of the reader, for example from a learning platform.
     """
     # The first that names a known language decides; the default is English.
     return (

@@ -62,7 +62,7 @@ def require_exercises(catalogue: Catalogue, exercise_ids: Iterable[str], field: 
 def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -> None:
     """Check that the exercise has the parts that a request names. Raises ProblemError.
 
-    ``located`` has pairs of a part's id and its path in the request body.
+    ``located`` has pairs: the id of a part, and the path of the id in the request body.
     """
     absent = (each for each in located if exercise.part(each[0]) is None)
     known = [part.id for part in exercise.parts]

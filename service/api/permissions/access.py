@@ -1,7 +1,7 @@
-"""Check that the caller of each request has the right that the request's route needs.
+"""Check that each caller has the right that the requested route needs.
 
-While the service has no API keys, everybody may grade and record. The users of this machine are
-then the tutors.
+While the service has no API keys, everybody may grade and record. Only the users of this machine
+are tutors then.
 """
 
 # A request that a proxy has forwarded does not count as a tutor's, because the proxy also forwards
@@ -77,8 +77,8 @@ _UNKNOWN: Final = Identity(NOBODY, by_key=True)
 class Access:
     """Checks who the callers are and what they may do.
 
-    ``solutions`` and ``read_attempts`` say who sees these data while the service has no keys. True
-    means everybody, None means tutors, False means nobody.
+    ``solutions`` and ``read_attempts`` say who may see solutions and recorded attempts while the
+    service has no keys. True means everybody, None means tutors, False means nobody.
     """
 
     def __init__(

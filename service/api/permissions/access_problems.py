@@ -137,7 +137,7 @@ def scope_missing(scope: Scope) -> ProblemError:
 
 
 def token_for_token() -> ProblemError:
-    """Return the error for a request that asks for a token with another token."""
+    """Return the error for a request that shows a token, not a key, to create a token."""
     return ProblemError(
         HTTPStatus.FORBIDDEN,
         say("A token makes no tokens; this needs a key."),

@@ -1,6 +1,6 @@
 """A table with the right that each route needs.
 
-A part of docs/keys.md is generated from the table.
+docs/keys.md contains a list made from this table.
 """
 
 from collections.abc import Mapping

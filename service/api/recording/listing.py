@@ -76,7 +76,7 @@ _REFUSED: Final = refusals(
 
 
 def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
-    """Return the routes that read attempts: tutors read all of them, learners their own."""
+    """Return the routes that read attempts: tutors read all attempts, learners only their own."""
     router = APIRouter(prefix="/v1", tags=["attempts"])
 
     @router.get(

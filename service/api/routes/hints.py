@@ -1,4 +1,4 @@
-"""The routes for hints, pictures of DH rules, and other correct tables."""
+"""The routes for hints, for pictures of DH rules, and for alternatives to a correct table."""
 
 from functools import partial
 from http import HTTPStatus
@@ -163,7 +163,7 @@ def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint
 
 
 def choices_for(exercise: Exercise, body: ChoicesRequest) -> FrameChoices:
-    """Return other correct tables for the same robot. Raises ProblemError."""
+    """Return alternatives to a submitted table if it is correct. Raises ProblemError."""
     require_parts(exercise, [(body.part, ("part",))])
     part = exercise.part(body.part)
     found = []

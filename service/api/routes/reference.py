@@ -1,6 +1,6 @@
-"""The files of the page /docs, which documents the HTTP interface.
+"""The page /docs, which documents the HTTP interface.
 
-Swagger UI draws the page. Its files are part of the service, so the page works without the
+Swagger UI draws the page. The service has a copy of Swagger UI, so the page works without the
 internet.
 """
 
@@ -29,7 +29,7 @@ _FILES: Final = {
 
 
 def routes() -> APIRouter:
-    """Return the route of the files of the page /docs."""
+    """Return the route that serves the files for the page /docs."""
     router = APIRouter(include_in_schema=False)
     contents = {name: (FOLDER / name).read_bytes() for name in _FILES}
 

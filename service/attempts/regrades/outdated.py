@@ -102,12 +102,12 @@ class Regrading:
         self._memoized = MemoizedReports()
 
     def outdated(self, connection: Connection) -> list[int]:
-        """Return the row numbers of attempts that were graded with another version."""
+        """Return the row numbers of attempts that were not graded with the current versions."""
         numbers = select(attempts.c.number).where(self._is_outdated()).order_by(attempts.c.number)
         return list(connection.scalars(numbers))
 
     def outdated_count(self, connection: Connection) -> int:
-        """Count the attempts graded with another version of the exercise or of the program."""
+        """Count the attempts that were not graded with the current exercise and program."""
         return connection.scalar(select(func.count()).where(self._is_outdated())) or 0
 
     def outdated_after(
@@ -301,7 +301,7 @@ class Regrading:
 
 
 def attempted_exercise(exercise: Exercise, row: Row[Any]) -> Exercise | None:
-    """Return the exercise or variant of an attempt; None if the variant has other values now."""
+    """Return the exercise or variant of an attempt; None if the variant's values have changed."""
     if row.variant is None:
         return exercise
     make = variant_of if row.assignment is None else hidden_variant

@@ -1,4 +1,4 @@
-"""The choice of the attempt that counts, and exports of attempts for other programs."""
+"""Choose the attempts that count, and export attempts for other programs."""
 
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping

@@ -92,7 +92,7 @@ def page(
 
 
 def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
-    """Return an attempt with its answers, its reports, and points given by tutors, if known."""
+    """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
     # PostgreSQL raises an error for some characters.
     if not attempt_id.isalnum():
         return None

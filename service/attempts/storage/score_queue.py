@@ -114,7 +114,7 @@ def queue_scores(
 
 
 def forget_scores(connection: Connection, learner: str) -> None:
-    """Delete a learner's scores: sent ones at the platforms, the others in the queue."""
+    """Delete a learner's scores: at the platforms if they were sent, else in the queue."""
     mine = scores.c.learner == learner
     connection.execute(scores.delete().where(mine, scores.c.stamp.is_(None)))
     # The platform's id of the learner stays until the platform has cleared the score.

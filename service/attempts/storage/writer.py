@@ -1,4 +1,4 @@
-"""The thread that writes to the database. Attempts that wait share one commit."""
+"""The thread that writes to the database. It commits several waiting attempts at once."""
 
 import asyncio
 import logging

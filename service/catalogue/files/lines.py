@@ -25,9 +25,10 @@ def with_line(field: str, line: int | None) -> str:
 
 
 def line_of(field: str, lines: dict[str, int]) -> int | None:
-    """Return the line of a field such as ``parts[1].points``, or of what encloses the field.
+    """Return the line of a field such as ``parts[1].points``.
 
-    ``lines`` comes from ``value_lines``.
+    If the field has no line, return the line of the table or list that contains it. ``lines`` comes
+    from ``value_lines``.
     """
     while field and field not in lines:
         field = field[: max(field.rfind("."), field.rfind("["), 0)]

@@ -1,4 +1,4 @@
-"""The place of temporary folders that several processes share."""
+"""Choose the place for temporary folders that several processes share."""
 
 import os
 import tempfile

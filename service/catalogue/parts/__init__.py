@@ -61,7 +61,7 @@ else:
 
 
 def posted_forms() -> str:
-    """Return the JSON form of an answer of each kind: "`transform`: a list of rows, …"."""
+    """Describe the JSON form of each kind of answer: "`transform`: a list of rows, …"."""
     kinds: dict[str, list[str]] = {}
     for kind, shape in _SHAPES.items():
         kinds.setdefault(shape.posted, []).append(f"`{kind}`")

@@ -43,7 +43,7 @@ class FieldError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class WrittenFormulas:
-    """A right answer as formulas, with the quantity (length, angle or number) of each."""
+    """The formulas of a right answer, each with its quantity (length, angle or number)."""
 
     # The field of row i and column j, such as ``expected[{i}][{j}]``.
     path: str

@@ -79,9 +79,9 @@ class Vary:
         self.base_version = _digest({**graded, "vary": kept}, 6)
 
     def with_choices(self, table: Mapping[str, Any]) -> "Vary":
-        """Return this content with another table ``[vary]``, from an earlier version of the file.
+        """Return the file's content with the table ``[vary]`` from an earlier version of the file.
 
-        Raises FieldError if the other texts do not fit that table.
+        Raises FieldError if the file's texts do not fit that table.
         """
         try:
             earlier = Vary(self._id, {**self._content, "vary": table})
@@ -104,7 +104,7 @@ class Vary:
         return count
 
     def values(self, seed: str) -> Mapping[str, VaryValue]:
-        """Return the value of each name for a seed; "" means the plain exercise."""
+        """Return the value of each name for a seed; the seed "" means the exercise itself."""
         # A seed whose values never meet the conditions also gives the values of the plain exercise.
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}

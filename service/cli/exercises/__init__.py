@@ -1,1 +1,1 @@
-"""The parts of `dh-grader exercises`: check, import and export."""
+"""The subcommands of `dh-grader exercises`: check, import and export."""

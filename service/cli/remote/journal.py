@@ -48,7 +48,7 @@ class Journal:
         self._is_writable = True
 
     def report(self, of: str) -> Report | None:
-        """Return the report of an earlier run with this digest, or None."""
+        """Return the report that an earlier run wrote for this digest, or None."""
         if of not in self._places:
             return None
         try:

@@ -107,7 +107,7 @@ class RemoteGrading:
 
 
 def restricted(report: Report, parts: Collection[str]) -> Report:
-    """Return the report with these parts of the exercise only."""
+    """Return the report, limited to these parts of the exercise."""
     kept = tuple(part for part in report.parts if part.part in parts)
     points = rounded_points(sum(part.points for part in kept))
     max_points = rounded_points(sum(part.max_points for part in kept))

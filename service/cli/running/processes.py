@@ -1,4 +1,4 @@
-"""Map a function over many items in several processes, in order, with few results in memory."""
+"""Map a function over items in several processes; the results keep the order of the items."""
 
 import os
 import signal

@@ -29,12 +29,12 @@ _FORM: Final = re.compile(r"([0-9]{1,4})/([0-9]{1,4})", re.ASCII)
 
 
 class UnusableShardsError(ValueError):
-    """The files are not all shards of the same run; the message says why."""
+    """The files are not all shards (parts) of the same run; the message says why."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shard:
-    """One of ``count`` sets of submissions; ``number`` begins with 1."""
+    """A shard: one of ``count`` subsets of the submissions, numbered from 1."""
 
     number: int
     count: int
@@ -45,7 +45,10 @@ class Shard:
 
 
 def shard_of(text: str) -> Shard:
-    """Parse a shard such as ``3/16``. Raises typer.BadParameter."""
+    """Parse a shard such as ``3/16``, the third of 16 subsets of the submissions.
+
+    Raises typer.BadParameter.
+    """
     found = _FORM.fullmatch(text)
     shard = Shard(int(found[1]), int(found[2])) if found else Shard(0, 0)
     if not 1 <= shard.number <= shard.count <= MOST_SHARDS:

@@ -1,1 +1,1 @@
-"""The points of a course: the gradebook, also as a workbook."""
+"""The gradebook of a course, also as a workbook for spreadsheet programs."""

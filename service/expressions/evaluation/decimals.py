@@ -44,9 +44,10 @@ class Decimals:
         self.sign: Final = _sign(replaced)
 
     def shifted(self, shifts: NDArray[np.float64], values: SymbolValues) -> SampleArray:
-        """Return the formula's values ``(K, samples)``, one row for each row of ``shifts``.
+        """Return the formula's values ``(K, samples)`` after each of K changes of its decimals.
 
-        ``shifts`` ``(K, m)`` says how much to add to each decimal, in units of its last place.
+        ``shifts`` ``(K, m)`` says how much to add to each of the m decimals, in units of its last
+        place.
         """
         # The shape is ``(K, 1)`` if the formula has no symbols. Undefined values are NaN or
         # infinite, without warnings.

@@ -1,4 +1,4 @@
-"""Evaluate many trees at one point, in plain floats.
+"""Evaluate many trees for one value of each symbol, in plain floats.
 
 The trees share most of their nodes, so the value of a shared node is computed once. To evaluate one
 tree at many samples, use ``samples``.
@@ -33,7 +33,7 @@ _OPERATORS: Final[dict[str, Callable[[float, float], float]]] = {
 
 
 def known_values(tree: Node, at: Mapping[str, float]) -> Known:
-    """Map the id of each node of ``tree`` to its value at the point ``at``.
+    """Map the id of each node of ``tree`` to its value; ``at`` has the value of each symbol.
 
     The ids are valid only as long as the tree exists.
     """

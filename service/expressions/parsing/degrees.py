@@ -1,9 +1,11 @@
 """Add the unit of degrees to bare numbers in a tree, for a student who works in degrees.
 
-An angle context is the argument of sin, cos or tan, or a whole entry that is an angle. In it, a
-constant term is in degrees unless it contains π, a unit or an inverse function; joint variables and
-angle symbols are in radians. ``cos(q1 + 90)`` becomes ``cos(q1 + 90deg)``. The argument of sind,
-cosd or tand is an angle context for every student; these functions become sin, cos and tan.
+An angle context is the argument of sin, cos or tan, or a whole entry that is an angle. In an angle
+context, a constant term is in degrees unless it contains π, a unit or an inverse function; joint
+variables and angle symbols are in radians. ``cos(q1 + 90)`` becomes ``cos(q1 + 90deg)``.
+
+The argument of sind, cosd or tand is an angle context for every student; these functions become
+sin, cos and tan.
 """
 
 from typing import NamedTuple

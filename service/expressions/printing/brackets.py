@@ -1,7 +1,7 @@
-"""The rule for brackets that all three printers share.
+"""The rule for brackets in formulas that are printed as text, LaTeX or MathML.
 
 An operand needs brackets if it binds less tightly than the operator next to it, or if its sign
-would follow that operator. In a drawn formula (LaTeX, MathML), a fraction bar replaces brackets.
+would follow that operator. In LaTeX and MathML, a fraction bar replaces brackets.
 """
 
 # A drawn formula needs more brackets than text for the base of a power, because ``90°`` and
@@ -28,7 +28,8 @@ _OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
 def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
     """True if ``node`` needs brackets as an operand in a place of this precedence.
 
-    ``signed`` is True if a sign of ``node`` would follow an operator. ``drawn`` is False for text.
+    ``signed`` is True if a sign of ``node`` would follow an operator. ``drawn`` is True for LaTeX
+    and MathML.
     """
     precedence = ATOM
     # Comparing types takes a third of the time of ``match``.
@@ -44,12 +45,12 @@ def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) 
 
 
 def is_power_of_ten(node: Node) -> bool:
-    """True if ``node`` is a number such as 1e-3, which is drawn as 1·10⁻³."""
+    """True if ``node`` is a number such as 1e-3, which LaTeX and MathML show as 1·10⁻³."""
     return type(node) is Number and "e" in node.literal.lower()
 
 
 def needs_dot(left: Node, right: Node) -> bool:
-    """True if a drawn product needs a dot, as 2·3 and θ1·(π + 1) do."""
+    """True if a product needs a dot in LaTeX and MathML, as 2·3 and θ1·(π + 1) do."""
     if begins_with_digit(right):
         return True
     if type(right) is Pi:
@@ -67,7 +68,7 @@ def _has_symbol(node: Node) -> bool:
 
 
 def begins_with_digit(node: Node) -> bool:
-    """True if ``node`` is drawn with a digit first."""
+    """True if ``node`` begins with a digit in LaTeX and MathML."""
     match node:
         case Number():
             return True

@@ -23,12 +23,12 @@ class MotionArrow:
 
     @property
     def middle(self) -> Numbers:
-        """The middle point."""
+        """The middle point of the arrow."""
         return np.asarray(self.line[len(self.line) // 2])
 
     @property
     def beside(self) -> list[Numbers]:
-        """The places for the name of the variable, the best first."""
+        """Possible places for the name of the joint variable, the best first."""
         outwards = np.sign(self.line[-1] - self.line[0]) * [16.0, 4.0]
         ends = [self.line[-1] + outwards, self.line[0] - outwards]
         near = around(self.middle, 15.0)

@@ -41,7 +41,7 @@ class Camera:
 
 @dataclass(frozen=True, slots=True)
 class Solid:
-    """The SVG of a mechanism's part, and where it is.
+    """A drawn part of a mechanism: its SVG and its place.
 
     The part is within ``radius`` pixels of the points ``spine``.
     """

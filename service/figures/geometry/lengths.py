@@ -30,7 +30,7 @@ class NamedLength:
 def named_lengths(
     reference: Reference, variables: tuple[Variable, ...], statement: str = ""
 ) -> list[NamedLength]:
-    """Return the pieces whose length is a sum of symbols, or a number in the statement."""
+    """Return the stretches whose length is a sum of symbols, or a number in the statement."""
     # Students know all symbols of an exercise, so the names reveal nothing.
     turning = {joint.variable for joint in reference.joints if not joint.prismatic}
     values = {

@@ -23,7 +23,7 @@ class AnsweredPart:
 
 @dataclass(frozen=True, slots=True)
 class AnsweredExercise:
-    """An assigned exercise, with the facts that formats need."""
+    """An assigned exercise as report formats need it: its points, parts, symbols and texts."""
 
     id: str
     title: str
@@ -38,14 +38,14 @@ class AnsweredExercise:
 
     @property
     def points(self) -> float:
-        """Return the sum of the points of its parts."""
+        """Return the points of the exercise, before any rescaling: the sum of its parts' points."""
         return sum(part.points for part in self.parts)
 
 
 def answered(exercise: SetExercise, worth: float | None = None) -> AnsweredExercise:
-    """Return an exercise with the facts that formats need.
+    """Return an assigned exercise in the form that report formats need.
 
-    ``worth`` is its number of points, by default the sum of the points of its parts.
+    ``worth`` is the exercise's points, by default the sum of the points of its parts.
     """
     parts = tuple(AnsweredPart(part.id, part.title, part.points) for part in exercise.parts)
     worth = sum(part.points for part in parts) if worth is None else worth
@@ -113,7 +113,7 @@ class GradedSubmission:
 
     @property
     def score(self) -> float:
-        """Return the points as a share of the maximum points, 0..1."""
+        """Return the points as a fraction of the maximum points, 0..1."""
         return rounded_points(self.points / self.max_points)
 
     @property

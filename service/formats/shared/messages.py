@@ -56,7 +56,7 @@ _RESULTS: Final = (YOURS, EXPECTED)
 
 @dataclass(frozen=True, slots=True)
 class Message:
-    """A message as visible texts of one line each."""
+    """A message in the parts that a reader sees; each part is one line of text."""
 
     severity: Severity
     # The verdict on the place of the message.

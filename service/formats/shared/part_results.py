@@ -93,7 +93,7 @@ class PartResult:
 
 
 def part_results(submission: GradedSubmission, language: Language) -> list[PartResult]:
-    """Return the results of all parts of all exercises of the submission, in order."""
+    """Return the result of each part of each exercise of the submission, in order."""
     distinct = distinct_names()
     has_several = len(submission.files) > 1
     return [

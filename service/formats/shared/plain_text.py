@@ -70,7 +70,7 @@ def percent(score: float) -> str:
 
 
 def whole_percent(share: float) -> str:
-    """Return a share, 0..1, in whole per cent. Only 1 is ``100 %``."""
+    """Return a fraction, 0..1, in whole per cent. Only 1 is ``100 %``."""
     return f"{min(int(share * 100 + 0.5), 99) if share < 1 else 100} %"
 
 

@@ -65,7 +65,7 @@ def single(
 ) -> Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]:
     """Return the function ``pieces`` of a format whose documents hold one submission.
 
-    It raises UnusableSettingError for any other number of submissions.
+    The function raises UnusableSettingError for any other number of submissions.
     """
 
     def pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:

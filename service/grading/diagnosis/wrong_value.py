@@ -139,7 +139,7 @@ class WrongCell(WrongValue):
 
     @cached_property
     def constants(self) -> tuple[Numbers, Numbers]:
-        """The actual and the expected value without the joint variables in both."""
+        """The actual and the expected value without the joint variables that the cell needs."""
         values = self.samples.values
         motion = sum(count * values[joint.variable] for joint, count in self.required.items())
         return self.actual - motion, self.expected - motion

@@ -54,13 +54,13 @@ def entry_rows(
 def value_rows(
     student: StudentValues, found: NDArray[np.int_], slips: Slips, grading: Grading
 ) -> tuple[RowReport, ...]:
-    """Return a report row for each value; ``found`` has the comparison results ``(n,)``."""
+    """Return a report row for each of n values; ``found`` ``(n,)`` has the comparison results."""
     column = [[entry] for entry in student.entries]
     return entry_rows(column, found[:, None], slips, grading)
 
 
 def value_places(marked: NDArray[np.bool_]) -> tuple[Place, ...]:
-    """Return the places of the marked values ``(n,)`` of a list."""
+    """Return the places of the values in a list for which ``marked`` is True."""
     return tuple(Place(str(i + 1), "1") for i in np.flatnonzero(marked).tolist())
 
 
@@ -71,7 +71,7 @@ def _right(column: str) -> CellReport:
 
 @lru_cache(maxsize=256)
 def right_row(label: str, columns: tuple[str, ...]) -> RowReport:
-    """Return the report on a row of right entries without messages."""
+    """Return the report on a row whose entries are all right; the report has no messages."""
     return row_report(label, tuple(map(_right, columns)))
 
 

@@ -1,4 +1,4 @@
-"""Messages on missing rows, extra rows, and rows that are graded under another number."""
+"""Messages on missing rows, extra rows, and rows that are graded under a new row number."""
 
 from functools import reduce
 from typing import Final
@@ -69,7 +69,7 @@ _ROW_TOO_MANY = register(
 def row_places(
     table: StudentTable, judgement: Judgement, convention: Convention, grading: Grading
 ) -> tuple[Finding, ...]:
-    """Return a message on the rows that are graded under another number."""
+    """Return a message on the rows that are graded under a new row number."""
     robot = grading.exercise.robot
     reference = robot.tables.get(convention)
     labels = [str(joint.index) for joint in robot.joints]

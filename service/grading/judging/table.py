@@ -126,7 +126,7 @@ class Judgement:
 def judged_table(
     part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Compare a student's table with the reference table, or with one in the student's frames."""
+    """Compare a table with the reference table, or with a correct table in the student's frames."""
     reference = grading.exercise.robot.tables.get(convention)
     if reference is None:
         return _judged_by_nearest(part, rows, convention, grading)

@@ -1,4 +1,4 @@
-"""Fill cells of a table with other numbers, or empty them."""
+"""Replace numbers in a table, or empty cells."""
 
 from collections.abc import Sequence
 from dataclasses import replace

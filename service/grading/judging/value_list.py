@@ -26,12 +26,12 @@ class ComparedValues:
     corrections: Sequence[Correction | None] = ()
 
     def scales(self, grading: Grading) -> Numbers:
-        """Return the scale of each value's tolerance, ``(n,)``."""
+        """Return the scale of each value's tolerance."""
         lengths = [quantity == "length" for quantity in self.student.quantities]
         return np.where(lengths, grading.exercise.length_scale, 1.0)
 
     def matches(self, grading: Grading) -> NDArray[np.int_]:
-        """Return the comparison result of each value, ``(n,)``; angles are equal modulo 2π."""
+        """Return the comparison result of each value; angles are equal modulo 2π."""
         student, scales = self.student, self.scales(grading)
         angle = np.array([[quantity == "angle"] for quantity in student.quantities])
         return entry_matches(

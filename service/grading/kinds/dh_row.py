@@ -50,7 +50,7 @@ def read(part: DhRowSpec, answer: object, grading: Grading) -> RowOrNone:
 
 
 def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
-    """Judge a row; the report has four cells, or one cell for "none"."""
+    """Judge a row. The report has four cells; for the answer "none", it has a single cell."""
     transform = np.moveaxis(given_values(part, grading), -1, 0)
     broken = violated(transform, part.convention, grading.exercise.length_scale)
     known = np.array([True])

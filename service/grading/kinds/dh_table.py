@@ -70,7 +70,8 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
 def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """Judge the table row by row and cell by cell.
 
-    A wrong table is also judged under other assumptions, such as another order of columns.
+    A wrong table is also judged under alternative assumptions, for example that its columns are in
+    a different order.
     """
     if np.isnan(answer.values).any():
         # Values for unread cells are looked for with what the judging itself leaves.

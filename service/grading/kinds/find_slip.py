@@ -236,7 +236,7 @@ def blame(
 ) -> TableBlame | None:
     """Return what is wrong in a table; None if it is correct or unreadable.
 
-    Another ``turn`` draws other random samples.
+    Each ``turn`` (0, 1, …) uses different random samples.
     """
     answer = {"rows": as_rows(texts)}
     samples = draw(exercise, [answer, turn] if turn else answer)

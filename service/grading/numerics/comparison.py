@@ -234,9 +234,9 @@ def _rounding_slack(expression: Expression, samples: Samples) -> float:
 def fitted_shifts(
     errors: Callable[[Numbers], Numbers], units: Numbers, tolerance: float
 ) -> Numbers | None:
-    """Find small shifts of decimals after which no error is left, or return None.
+    """Find small shifts of m decimals after which no error is left, or return None.
 
-    ``errors`` returns the errors ``(K, n)`` for K sets of shifts ``(K, m)``.
+    ``errors`` takes K sets of shifts, ``(K, m)``, and returns n errors for each set, ``(K, n)``.
     """
     # ``units`` ``(m,)`` are the units of the decimals. Each shift is at most as large as rounding
     # or cutting off allows.
@@ -252,7 +252,7 @@ def fitted_shifts(
 
 
 def difference_steps(sizes: Numbers) -> Numbers:
-    """Return step sizes ``(N,)`` for computing derivatives by central differences."""
+    """Return the step size of each unknown for computing derivatives by central differences."""
     # ``sizes`` is the effect of each unknown.
     # The steps are about as large as the unknowns, and large compared with floating-point errors.
     return np.maximum(0.5, LEAST_STEP / sizes)
@@ -264,9 +264,9 @@ def fitted_unknowns(
     count: int,
     tolerance: float,
 ) -> Numbers | None:
-    """Find values of the unknowns that leave no error, or return None.
+    """Find values of N unknowns that leave no error, or return None.
 
-    ``linearised`` returns the errors ``(n,)`` and their derivative ``(n, N)``.
+    ``linearised`` returns n errors, and their derivatives ``(n, N)`` by the unknowns.
     """
     # The first ``count`` unknowns are shifts. ``sizes`` ``(N,)`` is the direct effect of each
     # unknown on an error. All unknowns are small, so that the Gauss-Newton method needs few steps.
@@ -299,7 +299,7 @@ def fitted_unknowns(
 
 
 class SharedDecimals:
-    """The rounded decimals of several entries that can only be tested together.
+    """The rounded decimals of several entries, which must be tested together.
 
     ``units`` ``(count,)`` is the last place of each decimal.
     """

@@ -1,4 +1,4 @@
-"""The random values at which answers are compared, drawn for each submission.
+"""The random values of symbols at which the answers in a submission are compared.
 
 The seed is a hash of the exercise and the answers, so that a regrade uses the same values.
 """
@@ -45,7 +45,7 @@ class Samples:
 
     @cached_property
     def memo(self) -> dict[str, Numbers]:
-        """Memoized sines and cosines of expressions at these samples."""
+        """Memoized sines and cosines of expressions at the samples."""
         return {}
 
     @cached_property
@@ -53,7 +53,7 @@ class Samples:
         return {}
 
     def cached(self, key: Hashable, compute: Callable[[], _T]) -> _T:
-        """Return a value that depends only on the exercise and these samples, computed once.
+        """Return a value that depends only on the exercise and the samples, computed once.
 
         Do not modify the value.
         """
@@ -78,14 +78,14 @@ class Samples:
         )
 
     def with_names(self, names: Iterable[str]) -> "Samples":
-        """Return these samples with random values of more symbols."""
+        """Return a copy of the samples with random values of more symbols."""
         # The seed is the samples themselves, so that equal samples get equal values.
         drawn = next((values.tobytes().hex() for values in self.values.values()), "")
         more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
         return Samples({**self.values, **more}, self.in_degrees)
 
     def absent_names(self, expressions: Iterable[Expression | None]) -> set[str]:
-        """Return the names in the expressions that have no values at these samples."""
+        """Return the names in the expressions that have no values in the samples."""
         names = (each.symbols for each in expressions if each is not None)
         return set[str]().union(*names).difference(self.values)
 
@@ -95,7 +95,7 @@ class Samples:
         return self.with_names(absent).values if absent else self.values
 
     def renamed(self, meanings: Mapping[str, str]) -> "Samples":
-        """Return these samples with more names, each of which ``meanings`` maps to a symbol."""
+        """Return a copy of the samples with more names, which ``meanings`` maps to symbols."""
         values = {name: self.values[meaning] for name, meaning in meanings.items()}
         return Samples({**self.values, **values}, self.in_degrees)
 
@@ -116,7 +116,7 @@ class Samples:
 
 
 def draw(exercise: Exercise, answers: object, *, degrees: bool = False) -> Samples:
-    """Draw the samples for these answers to this exercise."""
+    """Return the random values for comparing these answers to this exercise."""
     ranges = _ranges_of(_Symbols(exercise.version, exercise.variables))
     moving, count = ranges.moving, len(ranges.names)
     split = moving * SAMPLES

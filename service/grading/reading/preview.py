@@ -110,7 +110,7 @@ def preview_entries(
     part: str,
     angle_unit: AngleUnit = "radians",
 ) -> tuple[CellPreview, ...]:
-    """Read single entries of a part; each is a text and the quantity expected there.
+    """Read single entries of a part; each is a pair: a text, and the expected quantity.
 
     Raises LookupError for a part that does not exist.
     """

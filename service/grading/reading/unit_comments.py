@@ -26,7 +26,7 @@ _NO_UNITS: Final = frozenset({"m", "in", "foot"})
 
 
 def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption says that lengths have another unit."""
+    """Raise GridError if a comment or a caption gives lengths a unit that is not the exercise's."""
     # ``kinds`` are the quantities of the entries.
     # Without lengths, all comments are accepted.
     if "length" not in kinds or CONVERTS_LENGTHS.search(text):

@@ -1,4 +1,4 @@
-"""Order values by their names, as in y = l1 s1, or report a wrong name."""
+"""Sort values by their names: ``y = 2, x = 1`` is x, then y. Report wrong names."""
 
 # A name may belong to several places, because textbooks differ, or to no place. The values are
 # reordered only if each value that is not empty names exactly one place, and no two values name the
@@ -93,7 +93,7 @@ def misnamed_value(name: LeftSide, asked: str) -> Finding:
 
 
 def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]:
-    """Return reordered entries with the note ``message`` on their order."""
+    """Return sorted entries with the note ``message`` on their order."""
     # It replaces the notes on equations.
     # The note has no span, so that the report shows it once for all entries.
     note = reading_note("ordered_by_names", message)

@@ -80,7 +80,7 @@ class GivenValue:
 
 
 def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return the matrix of a script without the other statements, and a note on their numbers.
+    """Return the matrix in a script, and a note on numbers that the script assigns to letters.
 
     Raises GridError if a letter of the matrix has a value that is not a plain number.
     """

@@ -1,6 +1,6 @@
 """Move a chain of links so that its joint axes coincide with those of another chain.
 
-The joint axes are the z axes of frames ``(joints, L, 4, 4)``.
+The joint axes are the z axes of frames ``(joints, L, 4, 4)``, where L is the number of samples.
 """
 
 # The base frame of a chain is free. Both chains have the same joint values. The rotation follows
@@ -20,14 +20,15 @@ _EACH, _LAST = slice(None), slice(-1, None)
 def align_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
     """Return the transform ``(L, 4, 4)`` that best moves the axes ``source`` to ``target``.
 
-    Both are ``(joints, L, 4, 4)``. Only the direction of a ``sliding`` axis matters.
+    Both are ``(joints, L, 4, 4)``, where L is the number of samples. Only the direction of a
+    ``sliding`` axis matters.
     """
     aligned: Matrices = _aligned(source, target, sliding, _LAST)[0]
     return aligned
 
 
 def align_first_axes(source: Matrices, target: Matrices, sliding: NDArray[np.bool_]) -> Matrices:
-    """Return the transforms that align the first 1, 2, … n axes: ``(n, L, 4, 4)``."""
+    """Return the transforms that align the first 1, 2, … n axes: ``(n, samples, 4, 4)``."""
     return _aligned(source, target, sliding, _EACH)
 
 

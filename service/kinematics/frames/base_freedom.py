@@ -66,9 +66,10 @@ class BaseFreedom:
     def use_up(
         self, rows: Numbers, rows_beyond: Numbers, written: Numbers
     ) -> list[tuple[Numbers, Numbers]]:
-        """Return rows of moved frames, each with the distance ``(N, L)`` along ``slide``.
+        """Return rows of moved frames, each with the distance of the frame along ``slide``.
 
-        Each distance makes one length in the row equal to the ``written`` length.
+        Each distance makes one length in the row equal to the ``written`` length. Distances are
+        ``(N, L)`` for N rows at L samples.
         """
         # rows_beyond is rows for a frame one unit further along slide; lengths depend linearly on
         # the distance.

@@ -50,7 +50,8 @@ def candidate_rows(
 ) -> Numbers:
     """Return all DH rows that lead to the next axes ``target``: ``(H, K, 4, L)``.
 
-    All these axes must have the same ``AxisRelation`` to the previous z axis.
+    There are K candidates for each of H hypotheses, at L samples. All axes in ``target`` must have
+    the same ``AxisRelation`` to the previous z axis.
     """
     if kind is TargetKind.TOOL:
         return row(target, Convention.STANDARD)[:, None]
@@ -71,7 +72,7 @@ def candidate_rows(
 
 
 def axis_relations(target: Matrices, length_scale: float) -> NDArray[np.int_]:
-    """Return the relation of each next z axis to the previous z axis: ``(H,)``."""
+    """Return the relation of the next z axis to the previous one, for each hypothesis."""
     sine = np.hypot(target[..., 0, 2], target[..., 1, 2])
     offset = np.hypot(target[..., 0, 3], target[..., 1, 3])
     parallel = np.all(sine < PARALLEL, axis=-1)

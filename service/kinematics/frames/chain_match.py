@@ -108,8 +108,8 @@ def match_tables(
 ) -> tuple[NDArray[np.bool_], Matrices]:
     """Test which of many tables are correct.
 
-    Return a mask ``(tables,)`` and the poses of their frames in the reference's frames, ``(rows,
-    tables, L, 4, 4)``.
+    Return a mask ``(tables,)`` and the poses of the tables' frames in the reference's frames,
+    ``(rows, tables, samples, 4, 4)``.
     """
     # written is (tables, rows, 4, L). joint_signs (tables, rows) are +1 or -1, or 0 where the sign
     # is unknown or the direction is free. start (L, 4, 4), or one for each table, is the relative
@@ -134,7 +134,7 @@ def match_tables(
 
 
 def misfits(poses: Matrices, targets: Sequence[Target], length_scale: float) -> Numbers:
-    """Return the errors of the frames of each table, ``(tables, n, L)``."""
+    """Return the n errors in the frames of each table, ``(tables, n, samples)``."""
     # poses (rows, tables, L, 4, 4) are the relative poses that match_tables returns. The directions
     # of the axes are ignored.
     unit = np.array([1.0, 1.0, 1.0, length_scale])

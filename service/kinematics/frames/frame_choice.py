@@ -283,7 +283,7 @@ def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArr
 
 
 def departure(pose: Matrices, length_scale: float) -> Numbers:
-    """Return the small cost ``(N,)`` of choosing other frames than the reference solution."""
+    """Return, for each pose, the small cost of a frame that is not the reference solution's."""
     # pose (N, L, 4, 4) are the relative poses of the frames. The cost is not 0.
     # An axis at a right angle is not reversed, whatever the rounding error of its cosine is.
     cost = np.where(pose[:, 0, 2, 2] < -SAME_POSE, TURNED_OVER, 0.0)

@@ -42,18 +42,18 @@ class AxisPosition(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class AxisLine:
-    """An axis: its unit direction and one of its points, ``(L, 3)`` each."""
+    """An axis: its unit direction and one of its points, ``(samples, 3)`` each."""
 
     direction: Numbers
     point: Numbers
 
     def nearest(self, points: Numbers) -> Numbers:
-        """Return the points of the axis that are nearest to ``points`` ``(L, 3)``."""
+        """Return the point of the axis that is nearest to each of ``points``."""
         along = _dot(points - self.point, self.direction)
         return np.asarray(self.point + along[:, None] * self.direction)
 
     def distance(self, points: Numbers) -> float:
-        """Return the largest distance of ``points`` ``(L, 3)`` from the axis."""
+        """Return the largest distance of any of ``points`` from the axis."""
         return largest(points - self.nearest(points))
 
     def through(self, points: Numbers) -> "AxisLine":
@@ -93,7 +93,7 @@ def normal_direction(neighbour: AxisLine, own: AxisLine, relation: AxisPosition)
 
 
 def normal_foot(neighbour: AxisLine, own: AxisLine) -> Numbers:
-    """Return the point where the common normal of two axes meets ``own``."""
+    """Return the point where the common normal of two axes meets the axis ``own``."""
     # The axes must not be parallel.
     normal = cross(neighbour.direction, own.direction)
     between = cross(own.point - neighbour.point, neighbour.direction)
@@ -244,7 +244,7 @@ def _may_lie(
 
 
 def frame_of(z: Numbers, origin: Numbers, x: Numbers) -> Matrices:
-    """Return the frame ``(L, 4, 4)`` with these z and x axes and this origin."""
+    """Return the frame ``(samples, 4, 4)`` with these z and x axes and this origin."""
     # z and x need no unit length. If x is rounded, the frame's x is made perpendicular to z.
     frame = identity((len(z),))
     z = _unit(z)
@@ -262,7 +262,7 @@ def home_rows(frames: Sequence[Matrices], convention: Convention) -> Numbers:
 
 
 def largest(vectors: Numbers) -> float:
-    """Return the length of the longest of the vectors ``(L, 3)``."""
+    """Return the length of the longest vector in an array of shape ``(L, 3)``."""
     # NaN counts as infinite.
     return float(np.nan_to_num(np.linalg.norm(vectors, axis=-1), nan=np.inf).max())
 

@@ -24,7 +24,7 @@ _Cell = TypeVar("_Cell", bound=np.generic)
 
 
 def reversed_cells(cells: NDArray[_Cell]) -> NDArray[_Cell]:
-    """Return the cells of a table in the order of the inverse product."""
+    """Return the cells of a table, rearranged for the inverse of the table's pose."""
     # The signs are unchanged; the function is its own inverse.
     x, z = cells[::-1, :D], np.roll(cells[::-1, D:], 1, axis=0)
     return np.concatenate([x, z], axis=1)
@@ -50,8 +50,8 @@ def reversed_rows(rows: Sequence[RowConstants]) -> list[RowConstants]:
 def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Target]:
     """Return what each row of the inverse chain leads to, from the tool to the base.
 
-    ``offsets`` ``(n, L, 4, 4)`` are Rot_z(θ) Trans_z(d) of each joint, from the reference's
-    constants.
+    ``offsets`` ``(n, L, 4, 4)`` are Rot_z(θ) Trans_z(d) of n joints at L samples, from the
+    reference's constants.
     """
     here = identity((offsets.shape[1],))
     each_offset = iter(offsets)

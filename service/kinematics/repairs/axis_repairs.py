@@ -43,10 +43,10 @@ def repairs_by_axes(
     axes: Matrices,
     sliding: NDArray[np.bool_],
 ) -> Iterator[FactorRepair]:
-    """Yield values of single cells, each of which corrects one later joint axis.
+    """Yield values of single cells, each of which corrects the axis of a later joint.
 
-    ``starts`` ``(K, L, 4, 4)`` are the frames before each factor, ``axes`` ``(n, L, 4, 4)`` the
-    correct axes.
+    ``starts`` ``(K, L, 4, 4)`` are the frames before each of K factors, at L samples. ``axes``
+    ``(n, L, 4, 4)`` are the correct axes of n joints.
     """
     # joints (n,) are the indices of the joints' factors. For a sliding axis, only the direction
     # counts. Axes may be reversed.

@@ -39,7 +39,7 @@ from service.kinematics.transforms import Matrices, Numbers, inverse
 
 @dataclass(frozen=True, slots=True)
 class CellRepair:
-    """Values ``(k, L)`` of k table cells that correct the pose of the table."""
+    """Values ``(k, L)`` of k table cells at L samples that correct the pose of the table."""
 
     # The values need not be valid in their cells (a constant, or the joint variable plus a
     # constant).
@@ -49,7 +49,7 @@ class CellRepair:
 
 
 def one_factor_repairs(factors: Factors, pose: Matrices) -> list[CellRepair]:
-    """Return the repairs of one or both cells of a single factor, single cells first."""
+    """Return the repairs that change one or both cells of a single factor, single cells first."""
     needed = factors.inverse_before[:-1] @ pose @ factors.inverse_after[1:]
     sizes, error = read_screws(needed, factors.axes)
     changed = ~_equal(sizes, factors.sizes)
@@ -78,7 +78,10 @@ def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]
 
 
 def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]) -> Numbers | None:
-    """Return the values ``(k, L)`` of one or two cells that correct the pose, or None."""
+    """Return the values of one or two cells that correct the pose, or None.
+
+    The values are ``(k, L)`` for k cells at L samples.
+    """
     # For the values of a CellRepair at other samples.
     positions = [factors.position(cell) for cell in cells]
     (a, kind_a), (b, kind_b) = min(positions), max(positions)

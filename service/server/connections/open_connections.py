@@ -80,7 +80,7 @@ class OpenConnections:
             connection.unfinished = 0
 
     def set_unfinished(self, connection: OpenConnection, size: int) -> None:
-        """Set the size of a connection's unfinished request; enforce the limit of all sizes."""
+        """Set the size of a connection's unfinished request; limit the sum of all sizes."""
         if connection not in self._connections:
             return
         self._unfinished += size - connection.unfinished

@@ -78,7 +78,7 @@ class Server(uvicorn.Server):
         return await super().on_tick(counter) or orphaned
 
     async def startup(self, sockets: list[socket.socket] | None = None) -> None:
-        """Listen on the shared port of the workers, or on a port of its own."""
+        """Listen on the port that all workers share, or on a separate port of this process."""
         if self._port is None:
             await super().startup(sockets)
             return

@@ -89,7 +89,7 @@ class Acceptor:
         self._port.counts.stop_listening(self._port.index)
 
     def publish_count(self) -> int:
-        """Publish the number of own connections; return the smallest number of other processes."""
+        """Publish this worker's number of connections; return the smallest one of other workers."""
         here, counts = self._port.index, self._port.counts.numbers
         counts[here] = self._count()
         return min((n for index, n in enumerate(counts) if index != here), default=_AWAY)

@@ -25,7 +25,7 @@ class Relation(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Grammar:
-    """The weights and percentages with which the robots of a level are drawn."""
+    """The weights and percentages for choosing random robots of a level."""
 
     # ``joints`` and ``relations`` have the weight of each choice. ``sliding`` is the percentage of
     # sliding joints, and ``most_sliding`` is the greatest number of sliding joints. The other

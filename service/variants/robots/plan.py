@@ -59,7 +59,7 @@ class Plan:
 
 
 def plan(level: Grammar, draws: Draws) -> Plan | None:
-    """Return a random robot of a level, or None if the drawn features do not fit together."""
+    """Return a random robot of a level, or None if the random features do not fit together."""
     count = draws.weighted(level.joints)
     kinds = [draws.chance(level.sliding) for _ in range(count)]
     if sum(kinds) > level.most_sliding:

@@ -42,7 +42,7 @@ def store(tmp_path: Path) -> Iterator[AttemptStore]:
 
 
 class Tutor:
-    """A tutor's client of a service in this process."""
+    """Sends requests as a tutor to a service that runs in this process."""
 
     def __init__(
         self, exercises: Mapping[str, Exercise], store: AttemptStore | None,

@@ -1,4 +1,4 @@
-"""Compare the tables of the real robots with other published tables."""
+"""Compare the tables of the real robots with tables from other publications."""
 
 # Sources choose different frames, signs and home configurations. But they must agree in |a|, in α
 # modulo 180°, and in |d|, because these are distances and angles between neighbouring joint axes.

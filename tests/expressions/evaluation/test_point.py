@@ -1,4 +1,4 @@
-"""Compute the value of a formula at one point."""
+"""Compute the value of a formula for one value of each symbol."""
 
 import math
 

@@ -1,4 +1,4 @@
-"""``python -m tests.frame_choice.rows.blanking --tries 20000``: empty cells must not earn more.
+"""``python -m tests.frame_choice.rows.blanking --tries 20000``: test that empty cells are fair.
 
 Empty a row or a cell in wrong tables. This should not raise the points.
 """

@@ -1,4 +1,4 @@
-"""Wrong tables that once earned more points with an empty cell."""
+"""Wrong tables that once earned more points after one of their cells was emptied."""
 
 from typing import NamedTuple
 

@@ -1,4 +1,4 @@
-"""Put values with names, such as ``y = 2, x = 1``, in order."""
+"""Sort values with names: ``y = 2, x = 1`` is read as x, then y."""
 
 import time
 from collections.abc import Mapping

@@ -85,7 +85,7 @@ class Called(Request):  # type: ignore[misc]
 
 @dataclass
 class OtherPlatform:
-    """The platform's gradebook columns, scores and members."""
+    """A fake learning platform with gradebook columns, scores and members."""
 
     # `makes_items` is true if our service may make line items.
     configuration: Configuration

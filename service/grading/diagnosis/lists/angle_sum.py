@@ -171,7 +171,7 @@ def counted_twice(wrong: WrongSum) -> Hypotheses:
     unlike={"1/1": "theta5"},
 )
 def added(wrong: WrongSum) -> Hypotheses:
-    """The sum contains an angle that does not belong in it."""
+    """The sum contains an angle that should not be in the sum."""
     for name, value in wrong.others():
         hint = say(
             "{angle} does not belong in this angle: check which two directions it is measured "

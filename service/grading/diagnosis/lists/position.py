@@ -26,7 +26,7 @@ from service.translations import say, template
 
 @dataclass(frozen=True)
 class WrongPosition(WrongNumbers):
-    """Wrong coordinates ``(n, SAMPLES)`` of a point."""
+    """Wrong coordinates of a point: n values at each sample, ``(n, SAMPLES)``."""
 
     # The axes of the coordinates: 0, 1 or 2.
     axes: tuple[int, ...]
@@ -105,14 +105,14 @@ def slip_after_signs(case: WrongPosition) -> Explained | None:
     unlike="[1000*(a1 c1 - a2 c12), 1000*(a1 s1 - a2 s12)]",
 )
 def length_unit(case: WrongPosition) -> Hypotheses:
-    """The coordinates are in another unit of length."""
+    """The coordinates are in a wrong unit of length."""
     for times in UNIT_FACTORS:
         yield Written(times * case.expected, other_length_unit(times))
 
 
 @misconception(of=WrongPosition, rank=50)
 def other_pose(case: WrongPosition) -> Hypotheses:
-    """The position is that of a wrong pose, such as the pose of another frame."""
+    """The position is that of a wrong pose, such as the pose of a wrong frame."""
     # A constant position, such as the origin itself, does not show which pose it belongs to.
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]

@@ -44,6 +44,6 @@ def with_joint_variable(entries: Sequence[Sequence[Entry]], exercise: Exercise) 
 def explain_moving(
     case: MatrixCase, entries: Sequence[Sequence[Entry]], exercise: Exercise
 ) -> list[Explanation]:
-    """Return explanations of the entries of a home pose that contain a joint variable."""
+    """Return explanations for entries of a home pose that wrongly contain a joint variable."""
     moving = np.asarray(case.wrong & with_joint_variable(entries, exercise))
     return [Explanation(NOT_AT_HOME, moving)] if moving.any() else []

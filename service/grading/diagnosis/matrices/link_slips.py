@@ -102,7 +102,7 @@ def absolute_angle(link: LinkAmongOthers) -> Hypotheses:
     unlike={"A1.3/2": "1"},
 )
 def pose_for_link(link: LinkAmongOthers) -> Hypotheses:
-    """The student submitted the product of all links up to this link."""
+    """The student submitted the product of all link transforms up to this link."""
     finding = says(
         say(
             "This is the product of all link transforms up to this one. A link transform leads "

@@ -59,7 +59,7 @@ def sign(case: WrongEntry) -> Iterator[Written[Numbers]]:
     unlike={"1/2": "s12"},
 )
 def degrees_as_radians(case: WrongEntry) -> Formulas:
-    """A number of degrees in a sine or cosine is read in radians."""
+    """A number in a sine or cosine was meant in degrees, but is read in radians."""
     finding = says(
         say(
             "A number in a sine or cosine was read in radians, but it fits in degrees: write the "
@@ -95,7 +95,7 @@ def _has_bare_number(node: Node) -> bool:
     unlike={"4/3": "1"},
 )
 def radians_as_degrees(case: WrongEntry) -> Formulas:
-    """A number of radians in a sine or cosine is read in degrees."""
+    """A number in a sine or cosine was meant in radians, but is read in degrees."""
     finding = says(
         say(
             "A number in a sine or cosine was read in degrees, but it fits in radians: write the "

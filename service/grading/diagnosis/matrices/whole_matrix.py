@@ -108,7 +108,7 @@ def _inverted(matrix: Numbers) -> Numbers:
 
 @misconception(of=UpperRows, rank=60)
 def other_pose(case: MatrixCase) -> Hypotheses:
-    """The student submitted a wrong pose, such as the pose of another frame."""
+    """The student submitted a wrong pose, such as the pose of a wrong frame."""
     for pose, entries in zip(*case.other_poses, strict=True):
         # Translators: {pose} is a name such as "the pose of frame {2}".
         found = named(pose, template("This matrix is {pose}. {advice}"))
@@ -183,7 +183,7 @@ def columns_exchanged(case: MatrixCase) -> Hypotheses:
 
 @misconception(of=RotationBlock, rank=60)
 def other_rotation(case: MatrixCase) -> Hypotheses:
-    """The rotation is that of a wrong pose, such as the pose of another frame."""
+    """The rotation is that of a wrong pose, such as the pose of a wrong frame."""
     # Translators: {pose} is a name such as "the pose of frame {2}".
     told = template("The rotation comes from {pose}. {advice}")
     return _from_other_poses(case, ROTATION_BLOCK, told)
@@ -199,7 +199,7 @@ def other_rotation(case: MatrixCase) -> Hypotheses:
     unlike={"1/4": "-817.2"},
 )
 def length_unit(case: MatrixCase) -> Hypotheses:
-    """The position is in another unit of length."""
+    """The position is in a wrong unit of length."""
     for times in UNIT_FACTORS if case.is_transform else ():
         position = times * case.expected[POSITION_BLOCK]
         yield Written(position, other_length_unit(times), POSITION_BLOCK)
@@ -207,7 +207,7 @@ def length_unit(case: MatrixCase) -> Hypotheses:
 
 @misconception(of=PositionBlock, rank=60)
 def other_position(case: MatrixCase) -> Hypotheses:
-    """The position is that of a wrong pose, such as the pose of another frame."""
+    """The position is that of a wrong pose, such as the pose of a wrong frame."""
     # Translators: {pose} is a name such as "the pose of frame {2}".
     told = template("The position comes from {pose}. {advice}")
     return _from_other_poses(case, POSITION_BLOCK, told)

@@ -1,7 +1,7 @@
 """Split a composite motion into turns and displacements.
 
-A displacement is the part of a position that contains certain lengths. A turn is the rotation that
-remains if all angles except one are 0.
+A displacement is the sum of the terms of a position that are turned by the same angles. A turn is
+the rotation that remains if all angles except one are 0.
 """
 
 # An exercise gives the motion in formulas. The turns before a displacement are those whose angles

@@ -1,7 +1,7 @@
 """Slips in a product of link transforms.
 
-Each misconception yields a wrong pose ``(SAMPLES, 4, 4)`` and a phrase for it, such as "the pose of
-frame {2}".
+Each misconception yields a wrong pose ``(SAMPLES, 4, 4)`` and a phrase for that pose, such as "the
+pose of frame {2}".
 """
 
 # The student may have submitted the pose, or only its rotation or its position. Therefore named()

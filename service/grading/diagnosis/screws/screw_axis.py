@@ -66,7 +66,7 @@ MOMENT_SIGN = says(
 
 
 def seen_from_elsewhere(frame: str) -> Finding:
-    """Return the finding that an axis is described in another frame than ``frame``."""
+    """Return the finding that an axis is described in a frame other than ``frame``."""
     if frame == "space":
         return Finding(
             "body_for_space",

@@ -267,7 +267,7 @@ def joint_variable_column(case: WrongCell) -> Finding | None:
     unlike={"2/d": "d6"},
 )
 def joint_variable_extra(case: WrongCell) -> Finding | None:
-    """The cell contains a joint variable that does not belong in it."""
+    """The cell contains a joint variable that should not be in the cell."""
     extra = [case.name(joint) for joint in case.contained or () if joint not in case.required]
     if not extra:
         return None

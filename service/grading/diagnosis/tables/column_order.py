@@ -1,4 +1,4 @@
-"""Tables whose columns are in another order, such as θ, d, a, α."""
+"""Tables whose columns are not in the expected order, but for example θ, d, a, α."""
 
 # The columns have no headers, or the cells were typed one by one under the headers a, α, d, θ.
 
@@ -49,7 +49,7 @@ _PERMUTED = register(
 
 
 def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
-    """Yield the table with its columns in other orders that suit the cells better."""
+    """Yield the table with its columns rearranged in each way that suits the cells better."""
     # For example, a column with joint variables must be d or θ, and a column with lengths a or d.
     # Only the orders that suit the cells best are tried, the likeliest first.
     if table.reread is None or _suits(table, grading):

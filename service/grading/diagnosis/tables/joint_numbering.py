@@ -1,4 +1,4 @@
-"""Tables in which the joints are numbered in another way, for example from 0."""
+"""Tables whose joint numbers are not the expected ones, but begin for example with 0."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace

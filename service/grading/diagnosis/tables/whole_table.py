@@ -230,7 +230,7 @@ def _reordered(order: list[int]) -> Finding:
     unlike={"3/a": "0", "3/d": "L2"},
 )
 def lengths_exchanged(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two lengths were exchanged, in other cells than a and d of one row."""
+    """Two lengths were exchanged, but not a and d of the same row."""
     for one, other, change in table.exchanges:
         repaired = table.constants + change
         rows = np.flatnonzero(change.any(axis=(1, 2)))

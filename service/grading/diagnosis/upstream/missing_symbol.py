@@ -217,7 +217,7 @@ def missing_joints(entry: Dependence) -> Finding | None:
     unlike={"A2.3/4": "1"},
 )
 def extra_joints(entry: Dependence) -> Finding | None:
-    """The entry contains joint variables that do not belong in it."""
+    """The entry contains joint variables that should not be in the entry."""
     case, required = entry.case, entry.required
     assert required is not None
     few = case.samples.subset(1)

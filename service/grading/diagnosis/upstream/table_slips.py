@@ -112,7 +112,7 @@ def table_slips(
 
 
 def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
-    """Return all lengths of the table, and those that fill a cell and occur nowhere else."""
+    """Return all lengths of the table, and the lengths that occur only once, alone in a cell."""
     cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
     names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
     once = [name for name in names if sum(name in cell for cell in cells) == 1]

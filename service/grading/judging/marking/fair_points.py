@@ -41,7 +41,10 @@ AGAIN = 0.5
 
 @dataclass(frozen=True, slots=True)
 class FairPoints:
-    """Limits the points of wrong tables to those of other tables, which ``judged_again`` judges."""
+    """Limits the points of a wrong table, so that empty rows never earn more than wrong rows.
+
+    ``judged_again`` judges similar tables, whose points are the limits.
+    """
 
     part: DhTableSpec
     judged_again: Callable[[StudentTable], Judged]
@@ -103,7 +106,7 @@ class FairPoints:
         return best
 
     def _without_wrong_end(self, answer: StudentTable, judged: Judged) -> Judged | None:
-        """Return the judgement of the table without its wrong rows at the end.
+        """Return the judgement of the table without its wrong last rows.
 
         Return None if there are no such rows, or if the table is right without them.
         """

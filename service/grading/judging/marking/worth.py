@@ -59,7 +59,7 @@ class CellWorth:
 
     @cached_property
     def groups(self) -> dict[int, int]:
-        """For each group of cells, the largest loss, in quarters or hundredths of a point."""
+        """The largest loss of each group of cells, in quarters or hundredths of a point."""
         if self.is_fixed:
             counts = _counts(self.content)
             return {g: max(1, n * self.unit + self.least_besides) for g, n in counts.items()}
@@ -75,7 +75,7 @@ class CellWorth:
 
     @cached_property
     def units(self) -> dict[int, int]:
-        """For each group of cells, the cost of a wrong cell that needs no knowledge."""
+        """The cost of a wrong cell that needs no knowledge, for each group of cells."""
         units = dict.fromkeys(self.groups, self.unit)
         if not self.is_fixed:
             least: dict[int, int] = {}
@@ -91,7 +91,7 @@ class CellWorth:
         return max(1, round(self.units[group] * BESIDES))
 
     def points(self, steps: int) -> float:
-        """Convert steps to points."""
+        """Convert a number of steps (quarters or hundredths of a point) to points."""
         return steps * self.step
 
 

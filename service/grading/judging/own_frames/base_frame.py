@@ -24,9 +24,9 @@ def possible_bases(
     mechanism: Mechanism,
     freedom: FrameFreedom,
 ) -> Iterator[Matrices | None]:
-    """Yield the poses ``(L, 4, 4)`` that the student's frame 0 may have in the reference frame 0.
+    """Yield the poses that the student's frame 0 may have in the reference frame 0.
 
-    None stands for the identity.
+    A pose is ``(L, 4, 4)`` for L samples; None means the identity.
     """
     # ``links`` ``(rows + 1, 4, L)`` are the constants of the table, ``joint_signs`` ``(rows + 1,)``
     # the signs of its joint variables. A given tool frame allows one pose. Otherwise the joint axes

@@ -31,7 +31,7 @@ def valid_tables(
     samples: Samples,
     tolerance: float,
 ) -> NDArray[np.bool_]:
-    """Return a mask ``(T,)`` of the tables that describe the robot in some allowed frames.
+    """Return a mask ``(T,)`` of the T tables that describe the robot in some allowed frames.
 
     ``tables`` is ``(T, rows, 4, samples)``.
     """

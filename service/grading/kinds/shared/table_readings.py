@@ -1,6 +1,6 @@
 """Interpret a wrong table in several ways, called readings, and take the best one.
 
-One reading has, for example, the columns in another order.
+For example, one reading assumes that the columns are in a different order.
 """
 
 # The first reading is the table as written.

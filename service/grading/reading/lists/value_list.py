@@ -44,8 +44,8 @@ def read_list(
 ) -> StudentValues:
     """Read a list of values, one for each of the expected ``names``.
 
-    Values with names, such as y = l1 s1, are ordered by their names. Raises UnreadableAnswerError
-    if there is no list of the expected length.
+    Values with names are sorted: ``y = 2, x = 1`` is read as x = 1, y = 2. Raises
+    UnreadableAnswerError if there is no list of the expected length.
     """
     # One of the ``tails`` may follow the values, as in [x, y, 0].
     # A list may also be a column (a list of lists with one value each), a row within a list, or

@@ -52,7 +52,7 @@ class StudentMatrix:
         return np.where(np.array(empty)[..., None], 0.0, self.values)
 
     def values_at(self, samples: Samples) -> Numbers:
-        """Return the values of the entries at other samples (random joint values)."""
+        """Return the values of the entries at these samples (random joint values)."""
         return matrix_values(self.entries, self.quantities, samples)
 
 
@@ -67,7 +67,7 @@ def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> Stude
 
 
 def matrix_of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> StudentMatrix:
-    """Read the matrix in a pasted grid. Raises UnreadableAnswerError if it has another size."""
+    """Read the matrix in a pasted grid. Raises UnreadableAnswerError if its size is wrong."""
     return matrix_of_entries(_of_grid(grid, quantities, reader), quantities, reader)
 
 

@@ -93,7 +93,7 @@ class StudentRow:
         return False
 
     def values_at(self, samples: Samples) -> Table:
-        """Return the numbers that the student wrote, at other samples."""
+        """Return the numbers that the student wrote, at these samples."""
         return np.asarray(_values([self.entries], samples)[0])
 
     @property
@@ -358,7 +358,7 @@ _NOT_VALUES = reading_error("wrong_shape", say("Write the four values a, α, d, 
 
 
 def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
-    """Return the numbers that the student wrote, at other samples: ``(rows, 4, samples)``."""
+    """Return the numbers that the student wrote, at these samples: ``(rows, 4, samples)``."""
     return _values([row.entries for row in rows], samples)
 
 

@@ -17,7 +17,7 @@ _UNIT_WORDS: Final = frozenset(
 def with_units_in_headers(grid: Grid) -> Grid:
     """Return the table with one header ``a [m]`` for the two cells ``a`` and ``(m)``.
 
-    Other tables are unchanged.
+    A table without a row of units is returned unchanged.
     """
     # All cells of the second row, or of a last row "Unit", must be units of a parameter, or empty.
     if len(grid.rows) < 3:

@@ -1,4 +1,4 @@
-"""Compare the explanation of a whole table with those of its cells."""
+"""Compare the explanation of a whole table with the explanations of its cells."""
 
 from collections.abc import Callable, Mapping, Sequence
 

@@ -99,7 +99,7 @@ class _Case:
 def nearest_by_few_cells(
     roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> NearestTable | None:
-    """Return the valid table that differs from the written one in at most two cells or one row.
+    """Return the valid table that differs from the submitted one in at most two cells or one row.
 
     Of several such tables, the one with the likeliest mistake is taken. No row may be missing.
     """

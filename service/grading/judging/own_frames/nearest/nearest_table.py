@@ -97,7 +97,7 @@ def _as_intended(
 
 
 def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
-    """Convert a table to a convention; return None if that needs another number of rows."""
+    """Convert a table to a convention; return None if the table would get more or fewer rows."""
     links = regrouped(table.values, table.convention)
     left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
     return None if left_out.any() else as_table(links, convention)
