@@ -1,6 +1,7 @@
 """Lint the OpenAPI document, generate clients from it, and use them: ``make clients``.
 
-This needs node's npx, and the registries of npm and PyPI. It installs into a temporary folder.
+The command needs node's npx, and the registries of npm and PyPI. It installs into a temporary
+folder.
 """
 
 import json

@@ -1,4 +1,4 @@
-"""The three registries of answer kinds agree."""
+"""Catalogue, grading and solutions have the same kinds of answers."""
 
 import sys
 from types import ModuleType

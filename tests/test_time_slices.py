@@ -28,7 +28,7 @@ def short(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def give_way() -> None:
-    """Let all other tasks run that are ready."""
+    """Let all ready tasks run before this task continues."""
     await asyncio.sleep(0)
 
 

@@ -1,6 +1,6 @@
 """Sessions of tutors in a browser.
 
-A session is a signed text that names a key; it is not stored.
+A session is a signed text that names a key. Sessions are not stored.
 """
 
 # A session token is valid at most as long as its key.

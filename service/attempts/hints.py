@@ -77,7 +77,7 @@ def take(
     prices: Sequence[float],
     now: datetime,
 ) -> HintRefusedError | None:
-    """Record that a learner took one step of a hint. Return an error if it is refused."""
+    """Record that a learner took one step of a hint. Return an error if the step is refused."""
     # Two requests for the same step wait for each other.
     attempt = connection.execute(
         select(attempts).where(attempts.c.id == attempt_id).with_for_update()

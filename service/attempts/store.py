@@ -82,7 +82,10 @@ class AttemptStore:
         return cls(engine)
 
     def start(self) -> None:
-        """Start the threads that write and read. Call it in the process that serves requests."""
+        """Start the threads that write and read.
+
+        Call this method in the process that serves requests.
+        """
         self._writer = AttemptWriter(self.engine, lambda: finish_overwriting(self.engine))
         self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
 

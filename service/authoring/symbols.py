@@ -93,7 +93,7 @@ def _problems(variable: Variable, exercise: Exercise) -> Iterator[str]:
 
 
 def badly_scaled(exercise: Exercise) -> Iterator[Remark]:
-    """Yield warnings about ranges: narrow ones, lengths near 0, and very different lengths."""
+    """Yield warnings about narrow ranges, lengths near 0, and very different lengths."""
     for variable in exercise.variables:
         yield from _range(variable)
     sizes = {v.name: max(abs(v.low), abs(v.high)) for v in exercise.variables if v.kind == "length"}

@@ -1,6 +1,6 @@
 """Compile the validated content of an exercise file into an exercise that can be graded.
 
-This also checks formulas, joint variables and ranges, which pydantic cannot check.
+The compiler also checks formulas, joint variables and ranges, which pydantic cannot check.
 """
 
 import hashlib

@@ -33,7 +33,7 @@ def shipped_folder() -> Path:
 def exercise_files(*folders: Path) -> list[Path]:
     """Return the exercise files of folders, sorted by name in each folder.
 
-    Raises CatalogueError if there are none, or if two have the same name.
+    Raises CatalogueError if there are no files, or if two files have the same name.
     """
     files: dict[str, Path] = {}
     faults: list[Fault] = []

@@ -112,7 +112,10 @@ def assignment_of(connection: Connection, course: str, assignment: str) -> Cours
 
 
 def assignments_of(connection: Connection, course: str) -> list[CourseAssignment]:
-    """Return the assignments of a course in their order. Raises CourseError."""
+    """Return the assignments of a course in the order in which they were added.
+
+    Raises CourseError.
+    """
     zone = _zone(connection, course)
     mine = assignments.c.course == course
     extensions_of: dict[int, list[Extension]] = {}

@@ -59,7 +59,7 @@ def assigned_seed(
 ) -> tuple[LearnerTerms, Exercise, str | None]:
     """Return an assignment's rules for a learner, the exercise, and the learner's seed.
 
-    The seed determines the learner's variant; it is None if there are no variants. Raises
+    The seed determines the learner's variant. The seed is None if there are no variants. Raises
     CourseError.
     """
     # In the exercise, ``[vary]`` has the choices of the assignment.

@@ -1,4 +1,4 @@
-"""Read a formula as typed into a syntax tree. Convert the tree to numbers, text, LaTeX or MathML.
+"""Parse typed formulas, and convert them to numbers, text, LaTeX or MathML.
 
 This package knows nothing about robots.
 """

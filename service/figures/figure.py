@@ -112,7 +112,7 @@ def _at_home_of(exercise: Exercise, frames: GivenFrames, axes: Sequence[str]) ->
 def figure(subject: Subject, theme: Theme = Theme.AUTO, *, large: bool = False) -> str:
     """Return the drawing as SVG: joints, links, frames, names of lengths and of joint variables.
 
-    It fits on a phone unless it is ``large``.
+    The drawing fits on a phone, unless ``large`` is True.
     """
     numbers = drawing_numbers(subject.variables)
     mechanism = mechanism_of(subject.reference, numbers)
@@ -149,7 +149,7 @@ def figure(subject: Subject, theme: Theme = Theme.AUTO, *, large: bool = False) 
 
 
 def default_view(mechanism: MovableMechanism, numbers: Mapping[str, float]) -> View:
-    """Return the default view of a mechanism, used unless the author chooses another one."""
+    """Return the view of a mechanism that is used if the author has chosen none."""
     return best_view(_at_home(mechanism, numbers), mechanism.extent)
 
 

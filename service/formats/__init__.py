@@ -1,7 +1,7 @@
 """Report formats for people and programs: one file for each format.
 
-A format is a file ``<name>.py`` with a ``FORMAT`` in ``documents/`` or ``platforms/``. It is found
-by its name, and loaded when it is used. ``shared/`` has helpers of several formats.
+A format is a file ``<name>.py`` with a ``FORMAT`` in ``documents/`` or ``platforms/``. A format is
+found by its name, and loaded when it is used. ``shared/`` has helpers of several formats.
 """
 
 from importlib import import_module

@@ -43,7 +43,7 @@ class StudentChain:
 
     @property
     def links(self) -> Matrices:
-        """The link transforms of the student's answer, ``(k, SAMPLES, 4, 4)``."""
+        """The k link transforms of the student's answer, ``(k, SAMPLES, 4, 4)``."""
         return inverse(self.frames[:-1]) @ self.frames[1:]
 
 

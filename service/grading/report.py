@@ -64,7 +64,7 @@ class Severity(StrEnum):
 class Correction:
     """The right entry, as the student would write it.
 
-    One without ``latex`` is an instruction in words: "Exchange a and d."
+    A correction without ``latex`` is an instruction in words: "Exchange a and d."
     """
 
     text: str
@@ -75,7 +75,8 @@ class Correction:
 class Place:
     """A row of the report, or one of its cells, by their labels.
 
-    ``correction`` is that of the place, if the places of a message have different ones.
+    ``correction`` is the correction of this place, if a message has different corrections for its
+    places.
     """
 
     row: str
@@ -201,7 +202,7 @@ class Report:
 
 
 def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...], Verdict]]:
-    """Yield the messages on a part, its rows and cells, with their places and the verdict there."""
+    """Yield the messages on a part, its rows and cells, with their places and verdicts."""
     verdicts: dict[tuple[str, str | None], Verdict] = {}
     for row in part.rows:
         verdicts[row.label, None] = row.verdict
@@ -241,5 +242,5 @@ def rounded_points(points: float) -> float:
 def row_report(
     label: str, cells: tuple[CellReport, ...], feedback: tuple[Feedback, ...] = ()
 ) -> RowReport:
-    """Make a row from its cells; it has no points yet."""
+    """Make a row from its cells, without points."""
     return RowReport(label, combined([cell.verdict for cell in cells]), 0.0, 0.0, cells, feedback)

@@ -1,7 +1,7 @@
 """Read a pasted table or matrix as a grid of cells.
 
-This package knows nothing about robots. It imports only spans, errors and function names from
-``service.expressions``.
+This package knows nothing about robots. The package imports only spans, errors and function names
+from ``service.expressions``.
 """
 
 from service.grids.cutting.grid import Grid, GridCell, GridError

@@ -48,9 +48,9 @@ _BLANK_LINES: Final = re.compile(r"\n(?:[ \t]*\r?\n)+")
 
 @dataclass(frozen=True, slots=True)
 class NamedGrid:
-    """One of several matrices, or the error if it cannot be read.
+    """One of several matrices, or the error if the matrix cannot be read.
 
-    ``name`` is the name before the matrix; it may be empty.
+    ``name`` is the name before the matrix, or "".
     """
 
     name: SourceText

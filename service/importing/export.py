@@ -15,9 +15,10 @@ _LIMIT = {"R": (-math.pi, math.pi), "P": (-1.0, 1.0)}
 
 
 def urdf_text(robot: HomeRobot, name: str) -> str:
-    """Return a URDF file of the robot. It has joints, but no shapes and no masses.
+    """Return a URDF file of the robot.
 
-    The link ``frame0`` is the base frame, and the last link is the tool frame.
+    The file has joints, but no shapes and no masses. The link ``frame0`` is the base frame, and the
+    last link is the tool frame.
     """
     # The file has the lengths of the table instead of letters.
     transforms = links(robot.table, Convention.STANDARD)

@@ -31,7 +31,8 @@ _IDENTITY = identity()
 def modified_rows(standard: Sequence[Row[_Cell]], zero: _Cell) -> list[Row[_Cell]]:
     """Convert the rows of a standard table to rows of a modified table.
 
-    The last of the ``m + 1`` rows is the fixed row of the end effector.
+    A table of m rows becomes a table of m + 1 rows. The last row is the fixed row of the end
+    effector.
     """
     # Regroups (Z_1 X_1)…(Z_m X_m) as (X_0 Z_1)…(X_{m-1} Z_m)(X_m), with X_0 the identity. The last
     # row has the label "e".

@@ -44,7 +44,7 @@ def dh2_residual(transform: Matrices, convention: Convention) -> Numbers:
 
 
 def row(transform: Matrices, convention: Convention) -> Numbers:
-    """Return the row (a, α, d, θ) ``(..., 4, L)`` of link transforms ``(..., L, 4, 4)``.
+    """Return the row (a, α, d, θ) ``(..., 4, L)`` of transforms ``(..., L, 4, 4)`` at L samples.
 
     >>> from service.kinematics.dh import modified_link
     >>> row(modified_link(0.5, 0.2, 0.3, 0.7)[None], Convention.MODIFIED)[:, 0]

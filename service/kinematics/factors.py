@@ -42,7 +42,7 @@ class Factors:
 
     @property
     def table(self) -> Table:
-        """The table in numbers, ``(rows, 4, L)``, with lengths in the unit of the factors."""
+        """The table in numbers, ``(rows, 4, samples)``, with lengths in the unit of the factors."""
         sizes = self.sizes.reshape(-1, 2, 2, self.sizes.shape[-1])
         if self.convention is Convention.STANDARD:
             sizes = sizes[:, ::-1]
@@ -50,7 +50,7 @@ class Factors:
 
     @cached_property
     def screws(self) -> Matrices:
-        """The factors as matrices, ``(K, L, 4, 4)``."""
+        """The K factors as matrices at L samples, ``(K, L, 4, 4)``."""
         return screws(self.axes, self.sizes[:, SHIFT], self.sizes[:, TURN])
 
     @cached_property
@@ -60,7 +60,7 @@ class Factors:
 
     @cached_property
     def after(self) -> Matrices:
-        """The product of the factors k, k + 1, … for k = 0..K: ``(K + 1, L, 4, 4)``."""
+        """The product of the factors k, k + 1, … for k = 0..K, ``(K + 1, samples, 4, 4)``."""
         reached = np.empty((len(self.axes) + 1, *self.screws.shape[1:]))
         reached[-1] = np.eye(4)
         for k in reversed(range(len(self.axes))):
@@ -69,12 +69,12 @@ class Factors:
 
     @cached_property
     def inverse_before(self) -> Matrices:
-        """The inverses of the matrices ``before``: ``(K + 1, L, 4, 4)``."""
+        """The inverse of each matrix in ``before``."""
         return inverse(self.before)
 
     @cached_property
     def inverse_after(self) -> Matrices:
-        """The inverses of the matrices ``after``: ``(K + 1, L, 4, 4)``."""
+        """The inverse of each matrix in ``after``."""
         return inverse(self.after)
 
     def around(self, factor: int) -> tuple[Matrices, Matrices]:
@@ -98,7 +98,7 @@ class Factors:
 
 
 def factors_of(table: Table, convention: Convention, unit: float = 1.0) -> Factors:
-    """Return the factors of a table ``(rows, 4, L)``, with lengths measured in ``unit``."""
+    """Return the factors of a table ``(rows, 4, samples)``, with lengths measured in ``unit``."""
     sizes = table.reshape(len(table), 2, 2, -1)
     z_first = convention is Convention.STANDARD
     if z_first:

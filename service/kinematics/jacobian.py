@@ -50,7 +50,7 @@ def coincident(jacobian: Screws) -> NDArray[np.bool_]:
 
 
 def rank(jacobian: Screws, zero: float = ZERO_SINGULAR_VALUE) -> int:
-    """Return the median rank of the matrices ``(L, m, n)`` at all samples."""
+    """Return the median rank of L matrices with m rows and n columns, ``(L, m, n)``."""
     # It is the rank at a generic configuration: the median ignores single singular or badly rounded
     # configurations. A singular value counts as 0 up to zero times the largest singular value of
     # all samples (or times 1 if that is larger, because a joint's screw has an entry of size 1).

@@ -31,7 +31,7 @@ def about(axis: str, angle: ArrayLike) -> Matrices:
 
 
 def composed(steps: Sequence[tuple[Matrices, bool]]) -> Matrices:
-    """Return the composite of rotations ``(..., 3, 3)``; each flag is True for a fixed axis.
+    """Return the composite of rotations ``(..., 3, 3)``, each with a flag: True for a fixed axis.
 
     Source: *Direct Kinematics (Part 2)*, §1.5.
 

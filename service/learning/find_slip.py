@@ -1,4 +1,4 @@
-"""Draw a table with one mistake, so that the grader finds exactly this mistake."""
+"""Make a table with one random mistake, so that the grader finds exactly this mistake."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass

@@ -28,7 +28,7 @@ class Work:
     writer: Writer
 
     def as_written(self, part: PartSpec) -> list[list[Node]] | None:
-        """Return the part's formulas from the exercise file; None if the robot gives the answer."""
+        """Return the part's formulas from the exercise file; None if the robot is used instead."""
         grid, written = self.exercise.formulas.get(part.id), part.formulas()
         if grid is None or written is None:
             return None

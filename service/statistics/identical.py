@@ -1,6 +1,7 @@
 """Groups of submissions with identical mistakes: the same wrong entries in the same cells.
 
-They do not prove that anybody copied: a common mistake leads many students to the same entries.
+Identical mistakes do not prove that anybody copied: a common mistake leads many students to the
+same entries.
 """
 
 from array import array

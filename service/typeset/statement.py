@@ -1,7 +1,7 @@
 """Statements of exercises as HTML, from Markdown with LaTeX between dollar signs.
 
-Authors write text, never HTML: tags and scripts in it are shown as text. Names in the text and
-fenced blocks ``matrix`` are typeset.
+Authors write text, never HTML: tags and scripts in the text are shown as text. Names in the text
+and fenced blocks ``matrix`` are typeset.
 """
 
 # The library that converts formulas to MathML lets tags through (``\text{<b>}``, ``\href``), so

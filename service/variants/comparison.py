@@ -43,7 +43,7 @@ class VariantDifficulty:
 
 
 def form_of(exercise: Exercise) -> Form:
-    """Return a description of an exercise that is equal for variants with the same answers."""
+    """Describe an exercise so that variants with the same answers get equal descriptions."""
     # It does not depend on frames chosen or on texts.
     values = _home(exercise)
     numbers: list[float] = []

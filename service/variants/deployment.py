@@ -118,7 +118,7 @@ def deploy(
 
 
 def with_deployed(text: str, seeds: Sequence[str]) -> str | None:
-    """Return the text of an exercise file with these seeds; None if it cannot be edited."""
+    """Return the text of an exercise file with these seeds; None if the text cannot be edited."""
     # Comments and everything else stay as they are.
     place = _TABLE.search(text)
     if place is None:

@@ -19,7 +19,7 @@ _MOST: Final = 256
 
 
 def choices_of(exercises: Mapping[str, Exercise]) -> Mapping[str, Any]:
-    """Return the table ``[vary]`` of each exercise that has one."""
+    """Return the table ``[vary]`` of each exercise that has this table."""
     return {name: each.vary.table for name, each in exercises.items() if each.vary is not None}
 
 

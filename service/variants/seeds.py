@@ -1,6 +1,6 @@
 """The seed of a learner, a short text that determines the learner's variant.
 
-It is derived from a secret, so that learners can neither compute nor choose it.
+The seed is derived from a secret, so that learners can neither compute nor choose it.
 """
 
 # If the exercise file lists seeds that a tutor has checked (deployed seeds), the learner gets the

@@ -1,4 +1,4 @@
-"""Students' pages as HTML. They can be read without scripts."""
+"""The pages of students as HTML, which can be read without scripts."""
 
 from collections.abc import Iterable
 from typing import Final

@@ -1,4 +1,4 @@
-"""Draw random formulas as trees, and evaluate them without the tested code."""
+"""Generate random formulas as trees, and evaluate them without the tested code."""
 
 #     Number 0.5 | Ratio 1/2 | Turn 90 (degrees) | Name q1
 #     Sum of signed terms | Product of factors | Quotient | Power (an integer exponent) | Call

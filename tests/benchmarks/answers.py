@@ -44,7 +44,7 @@ def table(rows: Rows) -> dict[str, Any]:
 
 
 def turned_over() -> Rows:
-    """Return a valid table of the same robot in which z2 is reversed."""
+    """Return a valid table of the robot in which z2 is reversed."""
     rows = list(STANFORD)
     rows[1] = ("0", "-90deg", "d2", "theta2")
     rows[2] = ("0", "180deg", "-d3", "0")

@@ -1,4 +1,4 @@
-"""Fixtures: a real service, and web servers on two other origins."""
+"""Fixtures: a real service, and web servers on two origins that are not the service's."""
 
 import os
 import threading
@@ -16,7 +16,7 @@ from tests.browser.hostile import HOSTILE_EXERCISE
 
 @dataclass
 class Origin:
-    """A web server on another origin, with its pages by path."""
+    """A web server on an origin that is not the service's; ``pages`` has its pages by path."""
 
     address: str
     pages: dict[str, str] = field(default_factory=dict)

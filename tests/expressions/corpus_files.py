@@ -64,7 +64,7 @@ def spelling_cases() -> list[SpellingCase]:
 
 
 class RepairCase(NamedTuple):
-    """A text, and the correction that the reader should suggest for it."""
+    """A text, and the correction that the reader should suggest for the text."""
 
     # `span` is the place of the fault, from-to, and `part` the text at this place (empty for a text
     # written in Python). `answer` is the repaired text, or None if there is no repair. For a text

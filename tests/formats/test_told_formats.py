@@ -1,4 +1,4 @@
-"""Test the report formats for students in another language."""
+"""Test the report formats for students in a language other than English."""
 
 import pytest
 

@@ -1,4 +1,4 @@
-"""Draw random robots with one to seven joints."""
+"""Generate random robots with one to seven joints."""
 
 # Neighbouring axes are skew, parallel, intersecting or equal. Lengths are letters or decimals.
 

@@ -28,7 +28,7 @@ _VARIABLES: Final = {
 
 
 def scripts() -> list[Path]:
-    """Return all scripts of the pages except those of third parties."""
+    """Return all scripts of the pages except third-party scripts."""
     return sorted(file for file in STATIC.rglob("*.js") if VENDOR not in file.parents)
 
 

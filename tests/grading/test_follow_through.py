@@ -147,7 +147,7 @@ SLIPS: dict[str, tuple[int, tuple[Any, ...], bool]] = {
 
 
 def link(a: Any, alpha: Any, d: Any, theta: Any) -> sympy.Matrix:
-    """Return the standard link transform (SHV, eq. 3.10)."""
+    """Return the standard link transform (Spong et al., eq. 3.10)."""
     c, s, ca, sa = sympy.cos(theta), sympy.sin(theta), sympy.cos(alpha), sympy.sin(alpha)
     return sympy.Matrix(
         [

@@ -1,4 +1,4 @@
-"""Compare screws with SciPy and with Modern Robotics."""
+"""Compare screws with SciPy and with the book Modern Robotics."""
 
 import doctest
 

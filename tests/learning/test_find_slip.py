@@ -1,4 +1,4 @@
-"""Draw exercises in which the student must find a slip in a table."""
+"""Make exercises in which the student must find a random slip in a table."""
 
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping

@@ -1,4 +1,4 @@
-"""Submit model solutions in the notation of other programs.
+"""Submit model solutions in the notation of programs such as MATLAB.
 
 ``python -m tests.solutions.prints`` submits all of them.
 """
@@ -254,7 +254,7 @@ IN_BRACKETS: Mapping[str, Join] = {
 
 
 class Print(NamedTuple):
-    """A model answer as another program prints it."""
+    """A model answer as a program such as MATLAB prints it."""
 
     exercise: str
     part: str

@@ -1,4 +1,4 @@
-"""Model solutions get full marks in the output formats of other programs."""
+"""Model solutions get full marks in the output formats of programs such as MATLAB."""
 
 # `tests.solutions.prints` defines these formats and submits every solution in every format; this
 # file submits a sample.

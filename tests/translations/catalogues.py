@@ -1,7 +1,7 @@
 """Update the translations with the sentences in the source.
 
-``python -m tests.translations.catalogues`` updates all languages. It writes sentences without a
-translation to ``untranslated.json``. Fill in the texts there, and run the command again.
+``python -m tests.translations.catalogues`` updates all languages. The command writes sentences
+without a translation to ``untranslated.json``. Fill in the texts there, and run the command again.
 """
 
 # For one language, `--missing de sentences` prints the sentences that German lacks, as JSON;

@@ -1,4 +1,4 @@
-"""Translate a message (``Sentence``) into another language."""
+"""Translate a message (``Sentence``) from English into a second language."""
 
 import copy
 import pickle

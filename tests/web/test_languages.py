@@ -1,4 +1,4 @@
-"""Test the pages in other languages."""
+"""Test the pages in languages other than English."""
 
 import asyncio
 import re

@@ -1,4 +1,4 @@
-"""The exercises of the search: the shipped ones, and others that a tutor might write."""
+"""The exercises of the search: the shipped ones, and exercises as a tutor might write them."""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace

@@ -35,7 +35,7 @@ if TYPE_CHECKING:  # it loads the drivers of databases
 
 
 def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
-    """Return the routes with which tutors set assignments."""
+    """Return the routes with which tutors create and change assignments."""
     router = APIRouter(prefix="/v1/courses/{course_id}", tags=["courses"])
 
     @router.get(

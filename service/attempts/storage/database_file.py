@@ -1,4 +1,4 @@
-"""The file of an SQLite database. It must not be moved or replaced while it is open."""
+"""The file of an SQLite database, which must not be moved or replaced while it is open."""
 
 import os
 import sqlite3

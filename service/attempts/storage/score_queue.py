@@ -84,7 +84,7 @@ _QUEUE_ONE: Final = {name: _upsert(each, _OF_LEARNER) for name, each in _DIALECT
 def queue_score(
     connection: Connection, assignment: int | None, learner: str, priority: Priority
 ) -> None:
-    """Queue the score of a learner in an assignment, if a platform has a column for it."""
+    """Queue the score of a learner in an assignment, if a platform has a column for this score."""
     if assignment is not None:
         _queue(
             connection,

@@ -1,4 +1,4 @@
-"""The thread that writes to the database. It commits several waiting attempts at once."""
+"""The thread that writes to the database, and commits several waiting attempts at once."""
 
 import asyncio
 import logging
@@ -48,7 +48,7 @@ _Finished = tuple[_Job, Any, Exception | None]
 
 
 class AttemptWriter:
-    """Runs jobs (functions that write) in order, many of them in one transaction.
+    """Runs jobs (functions that write) in order, many jobs in one transaction.
 
     A job gets its result only after the commit. A failing job does not affect others.
     """

@@ -1,6 +1,6 @@
 """Read the formulas of an exercise file, and evaluate them at trial values of their symbols.
 
-This finds faults in right answers, for example a matrix that is not a rotation.
+The values show faults in right answers, for example a matrix that is not a rotation.
 """
 
 from collections.abc import Callable, Iterator, Sequence
@@ -124,7 +124,7 @@ class FormulaReader:
     def grid(self, written: WrittenFormulas, prefix: str = "") -> FormulaGrid:
         """Read and check the formulas of an answer. Raises FieldError.
 
-        ``prefix`` is the beginning of their fields in the file.
+        ``prefix`` is the beginning of the formulas' fields in the file.
         """
         path = prefix + written.path
         rows = enumerate(zip(written.rows, written.quantities, strict=True))

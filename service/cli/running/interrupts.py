@@ -36,7 +36,8 @@ class _Signals:
 def interruptible() -> Iterator[Callable[[], None]]:
     """Clean up files and processes before SIGTERM or Ctrl-C ends this process.
 
-    Yields a function that ends the process after a signal. Call it between two pieces of work.
+    Yields a function that ends the process after a signal. Call this function between two pieces of
+    work.
     """
     # Without it, the process would go on if the exception of a signal was lost.
     signals = _Signals()

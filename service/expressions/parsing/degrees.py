@@ -62,7 +62,7 @@ class _Conversion:
         return facts
 
     def plain(self, node: Node) -> Node:
-        """Add degrees to the angles inside ``node``, which is not an angle itself."""
+        """Add the unit of degrees to the angles inside ``node``, which is not an angle itself."""
         match node:
             case Binary(operator, left, right):
                 return Binary(operator, self.plain(left), self.plain(right), node.start, node.end)
@@ -79,7 +79,7 @@ class _Conversion:
                 return node
 
     def angle(self, node: Node) -> Node:
-        """Add degrees to the bare constants in ``node``, which is an angle."""
+        """Add the unit of degrees to the bare constants in ``node``, which is an angle."""
         match node:
             case Negation(operand):
                 return Negation(self.angle(operand), node.start, node.end)

@@ -116,8 +116,8 @@ def _added_joints(node: Node) -> list[int]:
 class Habits(NamedTuple):
     """How one formula writes angles, names and shorthand.
 
-    ``unit`` is how it writes constant angles ("pi", "π", "deg", "°", ""), or None if it has none.
-    ``names`` maps canonical names of symbols to typed names.
+    ``unit`` is how the formula writes constant angles ("pi", "π", "deg", "°", ""), or None if the
+    formula has none. ``names`` maps canonical names of symbols to typed names.
     """
 
     unit: str | None
@@ -132,9 +132,10 @@ def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
 
 
 def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: bool) -> Spelling:
-    """Return one spelling for several formulas.
+    """Return one spelling (names, angle unit and shorthand) for several formulas.
 
-    It has the most frequent unit of angles and, for each symbol, the name that is used first.
+    The spelling has the most frequent unit of angles and, for each symbol, the name that is used
+    first.
     """
     # ``degrees`` is True if the student works in degrees; it decides the unit if no formula has
     # one.

@@ -49,7 +49,7 @@ _LONG_TEXT_RULES: Final = tuple(rule for rule in RULES if rule not in _SHORT_TEX
 
 
 def explain(failure: Failure) -> ExpressionError:
-    """Return the error for ``failure``. Any suggestion in it is readable."""
+    """Return the error for ``failure``. Any suggestion in the error is readable."""
     is_long = len(failure.source) > LIMITS.repaired
     rules = _LONG_TEXT_RULES if is_long else RULES
     error = next(found for rule in rules if (found := rule.repair(failure)) is not None)

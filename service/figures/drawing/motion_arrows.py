@@ -16,7 +16,7 @@ _HEAD = 8.0
 
 @dataclass(frozen=True, slots=True)
 class MotionArrow:
-    """An arrow in the picture, ``(points, 2)``; with ``both``, it has a head at each end."""
+    """An arrow in the picture, ``(points, 2)``; with ``both``, the arrow has a head at each end."""
 
     line: Numbers
     both: bool
@@ -35,7 +35,7 @@ class MotionArrow:
         return [*near[:12], *ends, *near[12:]]
 
     def svg(self) -> Iterator[str]:
-        """Yield the SVG of the line and of its heads."""
+        """Yield the SVG of the arrow's line and heads."""
         line = self.line
         yield polyline(line, "motion-halo")
         yield polyline(line, "motion")

@@ -1,6 +1,7 @@
 """The mechanism that a picture shows: joints on their axes, links between them, base and tool.
 
-A joint may be drawn anywhere on its axis. It is moved until it does not hide its neighbours.
+A joint may be drawn anywhere on its axis. Joints are moved along their axes until none of them
+hides a neighbour.
 """
 
 # The mechanism is built from the joint axes and the path between them, once for given lengths, and
@@ -168,7 +169,7 @@ def _largest_track(path: ChainPath, screws: Numbers, joints: Sequence[Joint]) ->
 
 @dataclass(frozen=True, slots=True)
 class _Track:
-    """The chain's path, and the stretch of it on which each joint may be drawn."""
+    """The chain's path, and the stretches of the path on which each joint may be drawn."""
 
     # The path is extended to the ground.
     # ``reached`` is the length of the path up to each corner. ``first`` and ``last`` are the ends

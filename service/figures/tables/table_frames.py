@@ -47,7 +47,8 @@ class FreedomLoss:
 class TableFrames:
     """The frames of a table ``(configurations, frames, 4, 4)``, the base frame first.
 
-    They end before the first row that has a cell without a number. ``unread`` lists such cells.
+    The frames end before the first row that has a cell without a number. ``unread`` lists all cells
+    without a number.
     """
 
     # For the rows before that row, ``values`` has the numbers ``(configurations, rows, 4)``, and

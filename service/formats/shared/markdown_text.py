@@ -1,4 +1,4 @@
-"""Untrusted texts as Markdown: for GitHub, and safe in other dialects."""
+"""Untrusted texts as GitHub's Markdown, which is also safe in similar kinds of Markdown."""
 
 import re
 from collections.abc import Iterator, Sequence

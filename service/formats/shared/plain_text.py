@@ -57,7 +57,7 @@ def points_in_words(earned: float, most: float, translation: Translation | None 
 
 
 def points(earned: float, most: float) -> str:
-    """Return points such as ``1.5 / 2``. They are never rounded up to the maximum."""
+    """Return points such as ``1.5 / 2``. The points are never rounded up to the maximum."""
     shown = number(earned)
     if earned < most and shown == number(most):
         shown = number(int(earned * 100) / 100)

@@ -1,7 +1,7 @@
 """Find the content cells of a correct answer: the cells that need knowledge and earn points.
 
 An answer with only zeros and joint variables is called lazy. A content cell is a cell in which the
-correct answer differs from the lazy one. ``known`` is a mask of these cells.
+correct answer differs from the lazy one. ``known`` is a mask of the content cells.
 """
 
 from collections.abc import Sequence

@@ -38,9 +38,9 @@ _NOT_ASKED_FOR = register(
 def judged_in_convention(
     part: DhTableSpec, table: StudentTable, grading: Grading
 ) -> tuple[Convention, Judgement, tuple[Finding, ...]]:
-    """Return the table's convention, the judgement in it, and findings on the convention.
+    """Choose the convention of a table, and judge the table; also return findings on the choice.
 
-    If both conventions are allowed, the one with fewer wrong cells is chosen.
+    If both conventions are allowed, the convention with fewer wrong cells is chosen.
     """
     # If the counts are equal, the reference's convention is chosen.
     if part.convention == "either" and table.convention is None:

@@ -1,7 +1,7 @@
 """Judge a submitted table cell by cell.
 
-It is compared with the reference table. If the student chose the frames, it is compared with the
-nearest table that describes the robot (``own_frames``).
+The table is compared with the reference table. If the student chose the frames, it is compared with
+the nearest table that describes the robot (``own_frames``).
 """
 
 import math
@@ -254,7 +254,7 @@ _UNREACHED = _TOOL_NOT_REACHED.finding(
 def judged_by_intended(
     intended: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Compare a table with the table that the student intended; no row is missing."""
+    """Compare a table with the table that the student intended; no row may be missing."""
     # ``intended`` is ``(rows, 4, SAMPLES)``.
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)

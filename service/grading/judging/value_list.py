@@ -16,7 +16,7 @@ from service.kinematics.transforms import Numbers
 
 @dataclass(frozen=True, slots=True)
 class ComparedValues:
-    """A list as read and the expected values, ``(n, SAMPLES)``.
+    """The n values of a list as read, and the expected values, ``(n, SAMPLES)`` each.
 
     ``corrections`` are the expected values as formulas, None for an unknown formula.
     """

@@ -35,7 +35,7 @@ from service.translations import say
 
 @dataclass(frozen=True, slots=True)
 class StudentLinks:
-    """The matrices of an answer, and their values ``(k, SAMPLES, 4, 4)``, NaN if unreadable."""
+    """The k matrices of an answer, and their values ``(k, SAMPLES, 4, 4)``, NaN if unreadable."""
 
     matrices: tuple[StudentMatrix, ...]
     values: Matrices

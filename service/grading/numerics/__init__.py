@@ -1,1 +1,1 @@
-"""Draw random values of joints and link parameters, and compare numbers at them."""
+"""Choose random values of joints and link parameters, and compare numbers at these values."""

@@ -11,7 +11,7 @@ from service.kinematics.transforms import Numbers
 
 
 def halves(values: Numbers) -> tuple[Numbers, Numbers]:
-    """Split values in two halves, which have the same link lengths but other joint values."""
+    """Split values in two halves with the same link lengths, but different joint values."""
     half = values.shape[-1] // 2
     return values[..., :half], values[..., half:]
 

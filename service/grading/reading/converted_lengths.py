@@ -17,7 +17,7 @@ _THOUSANDS: Final = re.compile(r"[1-9]\d{0,2},\d{3}")
 
 
 def converted(text: str, unit: str) -> str | None:
-    """Return a length with a unit, such as ``13.5 cm``, as a number in ``unit``; else None."""
+    """Return the number in ``unit`` for a length such as ``13.5 cm``; None for any other text."""
     plain = unicodedata.normalize("NFKC", _SIUNITX.sub(r"\1\2", text)).replace("\\", "")
     length = _LENGTH.fullmatch(plain.strip())
     if length is None or _THOUSANDS.fullmatch(length["number"]):

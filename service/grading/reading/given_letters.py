@@ -25,7 +25,7 @@ _MOST: Final = 40
 
 
 def with_given_letters(grid: Grid, text: str, reader: Reader) -> Grid:
-    """Return the grid with numbers for the letters that a text defines, and a note on them."""
+    """Replace letters that a text defines by their numbers; return the grid and a note."""
     given = _given(text, reader)
     used: dict[str, None] = {}
     rows = tuple(tuple(_cell(cell, given, used) for cell in row) for row in grid.rows)

@@ -39,7 +39,7 @@ class Problem:
 
 @dataclass(frozen=True, slots=True)
 class CellPreview:
-    """How one cell is read, as plain text, LaTeX and MathML; or the problem with it.
+    """How one cell is read, as plain text, LaTeX and MathML; or why the cell cannot be read.
 
     ``span`` is the cell's [start, end) in the pasted text.
     """

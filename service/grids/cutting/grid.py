@@ -69,7 +69,7 @@ def too_many_matrices(whole: Span) -> GridError:
 
 
 def too_many_rows(whole: Span, found: int | None = None) -> GridError:
-    """Return the error for a table with too many rows; ``found`` is their number if it is known."""
+    """Return the error for a table with too many rows; ``found`` is their number, if known."""
     most = GRID_LIMITS.rows - 1
     if found is None:
         message = say("A table has at most {most} rows below a header; yours has more.", most=most)

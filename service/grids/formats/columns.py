@@ -1,4 +1,4 @@
-"""Columns separated by blanks; each line has the same number of values."""
+"""Columns separated by blanks; all lines have equally many values."""
 
 import itertools
 import re

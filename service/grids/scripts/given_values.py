@@ -95,7 +95,7 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
 
 
 def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return a table without lines such as ``d1 = 0.135 m`` around it, and a note on them."""
+    """Return the table without definitions such as ``d1 = 0.135 m``, and a note on definitions."""
     # Any other text is returned unchanged.
     lines = [line for line in source.lines() if line.text.strip()]
     numbers = [_DEFINITIONS.fullmatch(line.text) is not None for line in lines]
@@ -126,7 +126,8 @@ def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...
 def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Note, ...]:
     """Return the note on numbers that a script assigns to letters.
 
-    ``read`` are the letters in the cells. Raises GridError if the value of one is not a number.
+    ``read`` are the letters in the cells. Raises GridError if the value of such a letter is not a
+    number.
     """
     # That is, a value that is not a plain number.
     for each in given:

@@ -1,7 +1,7 @@
 """Read a script for a robotics toolbox as the DH table of its robot.
 
-It may use ``SerialLink`` and links in MATLAB, ``DHRobot`` and links in Python, or joints with
-``setFixedTransform``. Nothing is run. A script whose table is not certain is refused.
+The script may use ``SerialLink`` and links in MATLAB, ``DHRobot`` and links in Python, or joints
+with ``setFixedTransform``. Nothing is run. A script whose table is not certain is refused.
 """
 
 # Lines that only show or move the robot are ignored. Sources: P. Corke, Robotics Toolbox for

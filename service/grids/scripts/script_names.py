@@ -188,7 +188,7 @@ def by_numbers(named: dict[str, Links], source: SourceText) -> list[RobotLink]:
 
 
 def in_order(links: Links, source: SourceText) -> list[RobotLink]:
-    """Return the links in the order of their numbers. Raises GridError if one is missing."""
+    """Return the links in the order of their numbers. Raises GridError if a number is missing."""
     for number in range(1, len(links) + 1):
         if number not in links:
             raise unread_script(

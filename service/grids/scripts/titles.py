@@ -93,7 +93,7 @@ def without_fence(source: SourceText) -> SourceText:
 
 
 def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return the text without the sentences around the table, and a note on them.
+    """Return the text without the sentences around the table, and a note on the sentences.
 
     Raises GridError if a sentence names a unit.
     """

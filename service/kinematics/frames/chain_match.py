@@ -61,7 +61,7 @@ class RowConstants:
 
 @dataclass(frozen=True, slots=True)
 class ChainMatch:
-    """A correct table, and its frames relative to those of the reference solution."""
+    """A correct table, and the poses of its frames in the frames of the reference solution."""
 
     # (rows, 4, L).
     rows: Numbers

@@ -62,12 +62,12 @@ class AxisLine:
 
 
 def z_line(frame: Matrices) -> AxisLine:
-    """Return the z axis of a frame ``(L, 4, 4)``."""
+    """Return the z axis of a frame ``(samples, 4, 4)``."""
     return AxisLine(frame[:, :3, 2], frame[:, :3, 3])
 
 
 def x_line(frame: Matrices) -> AxisLine:
-    """Return the x axis of a frame ``(L, 4, 4)``."""
+    """Return the x axis of a frame ``(samples, 4, 4)``."""
     return AxisLine(frame[:, :3, 0], frame[:, :3, 3])
 
 
@@ -255,14 +255,14 @@ def frame_of(z: Numbers, origin: Numbers, x: Numbers) -> Matrices:
 
 
 def home_rows(frames: Sequence[Matrices], convention: Convention) -> Numbers:
-    """Return the DH rows ``(rows, 4, L)`` between frames ``(L, 4, 4)`` at the home pose."""
+    """Return the DH rows ``(rows, 4, samples)`` between frames at the home pose."""
     return np.stack(
         [row(inverse(before) @ after, convention) for before, after in pairwise(frames)]
     )
 
 
 def largest(vectors: Numbers) -> float:
-    """Return the length of the longest vector in an array of shape ``(L, 3)``."""
+    """Return the length of the longest of the given vectors."""
     # NaN counts as infinite.
     return float(np.nan_to_num(np.linalg.norm(vectors, axis=-1), nan=np.inf).max())
 

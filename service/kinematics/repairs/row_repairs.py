@@ -40,7 +40,7 @@ def one_row_repairs(
 
 
 def repaired_row(factors: Factors, pose: Matrices, number: int) -> Numbers | None:
-    """Return the row ``(4, L)`` that corrects the pose, or None."""
+    """Return the row ``(4, samples)`` that corrects the pose, or None."""
     before, after = factors.before[2 * number], factors.after[2 * number + 2]
     needed = inverse(before) @ pose @ inverse(after)
     if _misfit(needed, factors).max() >= SAME_POSE:

@@ -96,7 +96,7 @@ def enrol_members(
     *,
     shows_names: bool | None = None,
 ) -> RosterChange:
-    """Enrol and rename the learners of a roster; remove learners who are not in it.
+    """Enrol and rename the learners of a roster; remove learners who are not in the roster.
 
     ``shows_names`` turns the display of real names on or off; None changes nothing.
     """

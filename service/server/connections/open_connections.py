@@ -138,7 +138,7 @@ def closing_order(
 
 
 def allowed_here() -> ConnectionLimits:
-    """Raise the limit of open files, and return the connection limits that it allows."""
+    """Raise the limit of open files, and return the connection limits that result from it."""
     try:
         import resource
     except ImportError:  # Windows, which has no such limit

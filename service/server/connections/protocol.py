@@ -1,4 +1,4 @@
-"""uvicorn's HTTP/1.1 protocol with limits; it gets one request at a time."""
+"""uvicorn's HTTP/1.1 protocol with limits, which gets one request at a time."""
 
 # uvicorn's own protocol reads a head of any size, waits for the end of the head without a time
 # limit, and continues to read while a pipeline of requests is being answered.

@@ -1,6 +1,6 @@
 """The queue of waiting requests, in which connections share the processor equally.
 
-The next request belongs to the connection that has used the least processor time. This is
+The next request belongs to the connection that has used the least processor time. The method is
 start-time fair queueing (Goyal, Vin and Cheng, 1996).
 """
 
@@ -40,7 +40,7 @@ _ACCOUNTS: Final = 1000
 
 @dataclass(eq=False, slots=True)
 class Ticket:
-    """One request that waits or is being answered; ``turn`` is the future that it awaits."""
+    """One request that waits or is being answered; the request awaits the future ``turn``."""
 
     # ``connection`` is 0 if the connections of the client cannot be distinguished.
 

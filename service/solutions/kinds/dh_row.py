@@ -19,7 +19,7 @@ _MOST_STEPS = 60
 
 
 def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
-    """Return the DH row of the part's transform, or the answer that it has no row."""
+    """Return the DH row of the part's transform, or the answer that the transform has none."""
     # The row follows from the entries of a link transform (Spong, Hutchinson, Vidyasagar, *Robot
     # Modeling and Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
     grid = work.exercise.formulas[part.id]

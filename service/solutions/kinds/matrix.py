@@ -15,7 +15,7 @@ def answer(part: MatrixSpec, work: Work) -> PrintedAnswer:
 
 
 def lazy(part: MatrixSpec, _exercise: Exercise) -> list[object]:
-    """Return a matrix of zeros, and one with ones on the diagonal."""
+    """Return two matrices: one of zeros, and one with 1 on the diagonal and 0 elsewhere."""
     rows, columns = len(part.quantities), len(part.quantities[0])
     zeros = [["0"] * columns for _ in range(rows)]
     ones = [["1" if i == j else "0" for j in range(columns)] for i in range(rows)]

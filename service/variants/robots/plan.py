@@ -1,4 +1,4 @@
-"""Draw a random robot: its joints, the relations of their axes, and the lengths."""
+"""Choose a random robot: its joints, the relations of their axes, and the lengths."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

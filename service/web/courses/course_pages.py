@@ -77,7 +77,7 @@ def course_page(
     has_keys: bool,
     deletes: bool,
 ) -> bytes:
-    """Return the page of a course; with ``deletes``, it has a button to delete the course."""
+    """Return the page of a course, with a button to delete the course if ``deletes`` is True."""
     return _page(
         "course",
         assets,
@@ -143,7 +143,7 @@ def learner_page(
 ) -> bytes:
     """Return a tutor's page about one learner of a course.
 
-    It has the learner's results, variants, scores and personal link.
+    The page has the learner's results, variants, scores and personal link.
     """
     # ``reports`` are the reports on handed-in files that did not reach the platform. ``variants``
     # has the learner's variants by assignment.

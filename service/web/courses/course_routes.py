@@ -148,7 +148,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
 
     @router.post("/{course_id}/links.csv")
     async def links(request: Request, course_id: CourseId) -> Response:
-        """Return a CSV file with the personal links of all learners, or with a new link of one."""
+        """Return a CSV file with the links of all learners, or with a new link of one learner."""
         from service.courses.links import issue_links, written_links
 
         fields = parse_qs((await request.body()).decode(errors="replace"))

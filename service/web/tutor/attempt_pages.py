@@ -27,7 +27,8 @@ def attempts_page(
 ) -> bytes:
     """Return the page with the list of attempts, its filters, the export, and the deletion.
 
-    Without ``of_all``, it shows one exercise at a time. Without ``forgets``, it cannot delete.
+    Without ``of_all``, the page shows one exercise at a time. Without ``forgets``, the page has no
+    deletion.
     """
     # Deletion concerns all exercises and courses.
     all_of_them = [("", say("All exercises"))] if of_all else []

@@ -1,6 +1,6 @@
 """`python -m service.web.tutor.check_process`: check exercise files for the service.
 
-The service starts this process, and it ends with the service or after some idle minutes.
+The service starts this process. The process ends with the service, or after some idle minutes.
 """
 
 import os

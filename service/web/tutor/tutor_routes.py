@@ -1,4 +1,4 @@
-"""The routes of the pages for tutors, and of their files."""
+"""The routes of the pages for tutors, and the routes that these pages call."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field

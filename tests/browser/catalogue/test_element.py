@@ -21,7 +21,7 @@ PAGE = """<!doctype html><html lang="en"><head><meta charset="utf-8"><title>Cour
 
 
 def course(origin: Origin, service: str, attributes: str, style: str = "") -> str:
-    """Serve a page with the element; return its address."""
+    """Serve a page with the element; return the page's address."""
     path = f"/{abs(hash((attributes, style)))}"
     origin.pages[path] = PAGE.format(service=service, attributes=attributes, style=style)
     return origin.address + path

@@ -23,7 +23,7 @@ _PICTURES: Final = """async (element, move) => {
 
 
 class Pace(NamedTuple):
-    """The number of pictures in one second, and the page's work for them."""
+    """The number of pictures in one second, and how much the page worked to draw them."""
 
     pictures: int
     style_passes: float

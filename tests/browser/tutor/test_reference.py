@@ -1,4 +1,4 @@
-"""The page /docs is accessible, and has the colours of the other pages."""
+"""The page /docs is accessible, and has the same colours as all pages of the service."""
 
 from collections.abc import Callable
 from typing import Final

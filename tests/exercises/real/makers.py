@@ -1,6 +1,6 @@
 """Compare the tables of real robots with the URDF files of their makers.
 
-``python -m tests.exercises.real.makers FOLDER`` compares them with files of your own.
+``python -m tests.exercises.real.makers FOLDER`` compares the tables with the files in FOLDER.
 """
 
 # FOLDER has files such as `ur16e.urdf`: expand the xacro file of the maker's repository first.

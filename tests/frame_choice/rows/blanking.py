@@ -1,6 +1,6 @@
 """``python -m tests.frame_choice.rows.blanking --tries 20000``: test that empty cells are fair.
 
-Empty a row or a cell in wrong tables. This should not raise the points.
+A wrong table should not earn more after a row or a cell was emptied.
 """
 
 # An empty cell does raise the points in a few tables with several wrong rows. In these tables, it

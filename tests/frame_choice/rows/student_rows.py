@@ -45,7 +45,7 @@ def entries(robot: Robot, texts: Texts, row: int, column: int) -> Iterator[str]:
 def wrong_row(
     robot: Robot, texts: Texts, row: int, count: int, rng: np.random.Generator
 ) -> Texts | None:
-    """Return the table with ``count`` wrong entries in a row, or None if it finds none."""
+    """Return the table with ``count`` wrong entries in a row, or None if none are found."""
     columns = rng.permutation(4)[:count].tolist()
     for _ in range(DRAWS):
         spoiled = [list(each) for each in texts]

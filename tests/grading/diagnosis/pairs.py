@@ -1,4 +1,4 @@
-"""Pairs of wrong answers: a misconception explains only the first of them."""
+"""Pairs of wrong answers, of which a misconception explains only the first answer."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Draw the random values at which answers are compared."""
+"""Choose the random values at which answers are compared."""
 
 import tomllib
 from collections.abc import Mapping

@@ -39,7 +39,7 @@ def euler(sequence: str, expected: str, axes: str = "moving") -> str:
 
 
 def only(report: PartReport, code: str) -> None:
-    """Assert that the report has exactly one message, and that it has this code."""
+    """Assert that the report has exactly one message, with this code."""
     messages = [*report.feedback]
     for row in report.rows:
         messages += (*row.feedback, *(each for cell in row.cells for each in cell.feedback))

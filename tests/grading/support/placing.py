@@ -1,4 +1,4 @@
-"""Draw random robots and valid frames on their axes, without the tested code."""
+"""Generate random robots and valid frames on their axes, without the tested code."""
 
 # Nothing here uses the geometry of the program: the frames come from plain products of rotations,
 # the common normals from linear equations, and the oracle only tests the two conditions of a DH
@@ -65,7 +65,7 @@ frames = "free"
 
 
 def drawn_arm(rng: Generator) -> Arm:
-    """Draw a random robot with two to six joints."""
+    """Return a random robot with two to six joints."""
     count = int(rng.integers(2, 7))
     structure = "".join(rng.choice(["R", "R", "R", "P"], count))
     convention = str(rng.choice(["standard", "modified"]))
@@ -167,7 +167,7 @@ def feet(one: Line, other: Line) -> tuple[Vector, Vector, Vector]:
 
 
 def drawn_frames(home: Home, rng: Generator) -> list[Placed]:
-    """Draw valid frames for a robot."""
+    """Return random valid frames for a robot."""
     standard = home.arm.convention == "standard"
     asked = home.asked
     lines = dict(enumerate(home.axes))

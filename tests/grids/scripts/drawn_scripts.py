@@ -1,4 +1,4 @@
-"""Draw random scripts for the Robotics Toolbox for Python."""
+"""Generate random scripts for the Robotics Toolbox for Python."""
 
 # Source: P. Corke, Robotics Toolbox for Python, the constructors of RevoluteDH, PrismaticDH, their
 # modified forms, DHLink and DHRobot.

@@ -38,7 +38,7 @@ _FORM: Final = "application/x-www-form-urlencoded"
 
 
 class Configuration(LTI1P3PlatformConfAbstract):  # type: ignore[misc]
-    """The registration of the service at the independent platform."""
+    """The registration of the service at a platform that is built with lti1p3platform."""
 
     def init_platform_config(self, **kwargs: Any) -> None:
         platform = kwargs["platform"]

@@ -22,7 +22,7 @@ LEARNER = [f"{MEMBER}#Learner"]
 
 @dataclass
 class Course:
-    """A course at the independent platform, with learners who submit answers."""
+    """A course at a platform built with lti1p3platform, with learners who submit answers."""
 
     other: OtherPlatform
     journey: Journey

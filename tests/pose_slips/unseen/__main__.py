@@ -14,7 +14,7 @@ OF_ENTRIES = {"value", "independent_of", "joint_variable_extra", "term_sign", "q
 
 
 class Counts:
-    """Counts of all trials, and of those whose report named the slip."""
+    """Counts of all trials, and of the trials whose report named the slip."""
 
     def __init__(self) -> None:
         self.all = self.named = self.placed = 0

@@ -1,4 +1,4 @@
-"""Draw random arms of two to six joints, as exercises."""
+"""Generate random arms of two to six joints, as exercises."""
 
 from collections.abc import Iterator
 from dataclasses import dataclass

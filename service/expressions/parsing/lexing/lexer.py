@@ -220,10 +220,7 @@ class Lexer(WordLexer):
                 self.fraction_end = len(self.tokens) - 1
 
     def _star(self, start: int, end: int, span: Span) -> None:
-        """Read the * after a joint variable.
-
-        It is a product, or marks the variable as in tables: θ1*.
-        """
+        """Read the * after a joint variable: a product, or a mark on the variable, as in θ1*."""
         typed = self.source[slice(*span)]
         star = read_star(self.text, start, end, typed, first=self._is_first_factor())
         if star == "ambiguous":

@@ -42,7 +42,7 @@ class WordLexer(TokenWriter):
     def _split_word(self, run: str, start: int, end: int) -> int:
         """Read a run of letters and digits that may contain several names, as in l1c1.
 
-        Return the position after it.
+        Return the position after the run.
         """
         if run in MODULES and (member := MEMBER.match(self.text, end)):
             return self._after_module(member.end())
@@ -125,7 +125,10 @@ class WordLexer(TokenWriter):
         return (other, end) if other else self._index(run, start, end)
 
     def _index(self, run: str, start: int, end: int) -> tuple[tuple[Piece, ...], int]:
-        """Read q[0], q(1) or q{1}. Return the names that it contains and the position after it."""
+        """Read q[0], q(1) or q{1}.
+
+        Return the names in this text, and the position after the text.
+        """
         if self.from_one is None:
             self.from_one = counts_from_one(self.text)
         found = indexed(run, self.text, end, self.vocabulary, from_one=self.from_one)
@@ -200,7 +203,10 @@ class WordLexer(TokenWriter):
         return end
 
     def _function_power(self, name: str, at: int, a: int, b: int) -> tuple[int | None, int]:
-        """Read the power after a function's name, as in sin^2. Return it, or None, and its end."""
+        """Read the power after a function's name, as in sin^2.
+
+        Return the power or None, and the position after the power.
+        """
         raised = _FUNCTION_POWER.match(self.text, at)
         if raised is None:
             return None, at

@@ -1,6 +1,6 @@
 """Functions that correct one possible mistake in a student's formula.
 
-They return a new tree and never change the old one.
+The functions return a new tree and never change the old one.
 """
 
 # The new tree shares all unchanged parts with the old one. If there is nothing to rewrite, the old

@@ -45,7 +45,7 @@ class MatrixCase(WrongNumbers):
 
     @cached_property
     def other_poses(self) -> tuple[list[Explained], Numbers]:
-        """The wrong poses that mistakes in the product of links lead to, and their entries."""
+        """The wrong poses that mistakes in the product of links lead to, with their entries."""
         # The entries are (poses, rows, columns, SAMPLES), cut to the size of the expected matrix.
         poses = other_poses(self.chains)
         rows, columns = self.expected.shape[:2]

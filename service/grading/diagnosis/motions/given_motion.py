@@ -26,7 +26,7 @@ MAX_TURNS = 4
 
 @dataclass(frozen=True, slots=True)
 class Displacement:
-    """A term of a position: it contains ``lengths`` and is turned by ``angles``."""
+    """A term of a position, which contains ``lengths`` and is turned by ``angles``."""
 
     lengths: tuple[str, ...]
     angles: tuple[str, ...]

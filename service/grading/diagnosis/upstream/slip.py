@@ -115,7 +115,10 @@ def change_cells(
     constants: Table,
     first_row: int = 0,
 ) -> None:
-    """Apply each of K changes to its own table in ``tables`` ``(rows, 4, K, count)``, in place."""
+    """Apply each of K changes to its own table in ``tables``, in place.
+
+    ``tables`` is ``(rows, 4, K, count)`` for ``count`` samples.
+    """
     # right (rows, 4, count) is the correct table, constants the same table with all joint variables
     # 0. All three arrays begin with row first_row of the whole table.
     cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]

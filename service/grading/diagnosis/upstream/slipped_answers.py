@@ -39,7 +39,7 @@ class SlippedAnswers:
     at_home: bool = False
 
     def of(self, entries: Callable[[Numbers], Numbers]) -> "SlippedAnswers":
-        """Return these answers with only some of their entries, for example positions."""
+        """Return a copy of the answers with only some entries, such as the positions."""
         return replace(self, at=lambda changes, samples: entries(self.at(changes, samples)))
 
 
@@ -83,7 +83,7 @@ def _of_table(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Slipp
 def slipped_tables(
     table: ReferenceTable, changes: Sequence[Change], values: SymbolValues, count: int
 ) -> Table:
-    """Return one changed table for each of K changes: ``(rows, 4, K, count)``."""
+    """Return one changed table for each of K changes, in an array ``(rows, 4, K, samples)``."""
     # A change in a row that the table does not have adds rows.
     changed = changed_values(changes, values)
     tables = table.values(changed, len(changes) * count).reshape(len(table.rows), 4, -1, count)

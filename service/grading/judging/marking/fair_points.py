@@ -82,7 +82,10 @@ class FairPoints:
         return replace(judged, at_most=max(others, key=self._lost), at_least=shorter)
 
     def _without_a_row(self, answer: StudentTable, judged: Judged, best: Judged) -> Judged:
-        """Return the best of ``best`` and the judgements of the table without one wrong row."""
+        """Return the best judgement of several.
+
+        The candidates are ``best`` and the judgements of the table without one wrong row.
+        """
         part, grading = self.part, self.grading
         counts = _counts_wrong(judged)
         # All tables that differ from the answer in as few cells, or in one row, have been compared.
@@ -138,7 +141,7 @@ def _missing_at_end(
 def _shortened(
     part: DhTableSpec, answer: StudentTable, judged: Judged, grading: Grading
 ) -> StudentTable | None:
-    """Return the table without wrong rows after the rows of all joints; None if there are none."""
+    """Return the table up to its first wrong row after the joints' rows; None if all are right."""
     robot = grading.exercise.robot
     rows, kept = len(answer.rows), len(robot.joints)
     counts = _counts_wrong(judged)

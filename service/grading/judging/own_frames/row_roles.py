@@ -39,7 +39,7 @@ def freedom_of(part: DhTableSpec) -> FrameFreedom:
 class Role:
     """A row of a submitted table, and the joint that it belongs to.
 
-    ``joint`` is None for a row without a joint. ``row`` is None if the student left it out.
+    ``joint`` is None for a row without a joint. ``row`` is None if the student left the row out.
     """
 
     row: StudentRow | None

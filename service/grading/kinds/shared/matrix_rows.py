@@ -35,7 +35,7 @@ MATRIX_WORK, LINK_WORK = 15.0, 12.0
 
 @dataclass(frozen=True, slots=True)
 class MatrixRows:
-    """The report rows of a matrix, and the messages on it as a whole."""
+    """The report rows of a matrix, and the messages on the matrix as a whole."""
 
     rows: tuple[RowReport, ...]
     feedback: tuple[Feedback, ...] = ()

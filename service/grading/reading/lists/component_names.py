@@ -45,7 +45,7 @@ class ListNames:
     coordinates: Mapping[str, tuple[int, ...]] = field(default_factory=dict)
 
     def places_of(self, names: Sequence[LeftSide | None], vocabulary: Vocabulary) -> list[Places]:
-        """Return the places in the list that each name may mean; None if it means no place."""
+        """Return the places in the list that each name may mean; None if a name means no place."""
         words = [_words(name.name) if name else [] for name in names]
         letters = [letter for each in words if (letter := _coordinate(each))]
         # x_1 and y_1 are coordinates in frame 1, but x_1 and x_2 are numbered values.

@@ -39,8 +39,8 @@ _Read = tuple[object, object]
 def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
     """Convert a table to ``{"rows": [{"a", "alpha", "d", "theta"} …], …}``. Never raises.
 
-    A row may be a mapping whose keys are headers, or a list in ``order``. Rows with numbers are
-    ordered by these numbers.
+    A row may be a mapping whose keys are headers, or a list in ``order``. Rows with row numbers are
+    sorted by these numbers.
     """
     # The answer may be a mapping with ``rows`` (other fields are kept), the list of rows alone, or
     # a mapping from headers to lists. Headers have any spelling ("α", "alpha_i", "twist"). A list

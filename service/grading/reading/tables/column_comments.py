@@ -52,7 +52,7 @@ def columns_in_comments(text: str) -> tuple[Header, ...] | None:
 
 
 def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption names a unit, but not the columns that have it."""
+    """Raise GridError if a comment or a caption names a unit, but not the columns in this unit."""
     # Units of angles are ignored if a header has one, and so are units of lengths. The reader's own
     # units and comments with numbers are ignored, too.
     has_angles = any(header.angle_unit for header in headers) or _CONVERTS_ANGLES.search(text)

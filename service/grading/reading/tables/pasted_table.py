@@ -88,8 +88,8 @@ def table_of(
 ) -> PastedTable:
     """Read the rows of a pasted DH table.
 
-    Columns are identified by their headers, or else by ``order``. Raises GridError if that is
-    impossible.
+    Columns are identified by their headers, or else by ``order``. Raises GridError if the columns
+    cannot be identified.
     """
     # Without headers there must be four columns, or five if the first column has row numbers. Their
     # order is the order that a comment in the text ``comments`` names, or else ``order``. Rows are

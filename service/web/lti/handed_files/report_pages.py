@@ -1,6 +1,7 @@
 """The page with the report on files that a student has handed in at the learning platform.
 
-The files are not stored here: each time, they are read from the platform and graded again.
+The files are not stored here. For each view, the service reads them from the platform and grades
+them again.
 """
 
 import asyncio

@@ -1,7 +1,7 @@
 """Find the valid table that differs from a submitted one in one cell, if frames may be chosen.
 
-A table is valid if it describes the robot. Its joint axes, with all joints at 0, must lie on those
-of the reference.
+A table is valid if it describes the robot. The joint axes of a valid table, with all joints at 0,
+must lie on those of the reference table.
 """
 
 # ``few_cells`` compares poses at all joint values, which is impossible if the student chooses base,

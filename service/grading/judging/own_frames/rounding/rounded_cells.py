@@ -1,6 +1,7 @@
-"""Correct the rounding of all decimals of a table at once, so that it describes the robot.
+"""Correct the rounding of all decimals of a table at once.
 
-Each decimal is shifted by at most a unit of its last place.
+After that, the table describes the robot. Each decimal is shifted by at most a unit of its last
+place.
 """
 
 # So a less precise decimal cannot hide a wrong number.
