@@ -28,7 +28,7 @@ _SHORT_SECRET = say(
 
 
 class SettingsError(Exception):
-    """One or more environment variables cannot be used; the message has a line for each."""
+    """Environment variables cannot be used; the message has a line for each variable."""
 
 
 class Settings(BaseSettings):

@@ -26,7 +26,7 @@ class BundleVariants:
     deployed: Mapping[str, Sequence[str]]
 
     def seeds_of(self, learner: str) -> Mapping[str, str]:
-        """Return a learner's seed for each exercise."""
+        """Return the seed of a learner's variant of each exercise."""
         return {
             exercise: seed_of(self.secret, learner, exercise, 0, deployed)
             for exercise, deployed in self.deployed.items()
@@ -51,7 +51,7 @@ def variants_of(exercises: Sequence[Exercise], secret: str) -> BundleVariants:
 
 
 def platform_seeds(submission: Path, variants: Path | None) -> Mapping[str, str]:
-    """Return a student's seed for each exercise. Raises UnknownStudentError.
+    """Return the seed of a student's variant of each exercise. Raises UnknownStudentError.
 
     ``submission`` is the file in which a platform describes the submission. ``variants`` is the
     file of the bundle with the secret and the seeds.

@@ -71,7 +71,7 @@ class ExpressionError(TextError):
 
 
 class UnreadableError(Exception):
-    """A formula cannot be read further than the place ``span``.
+    """A formula cannot be read further than the position ``span``.
 
     ``cause`` is the kind of problem, and ``details`` are values for the message about it.
     """

@@ -34,7 +34,7 @@ ToolAt = Callable[[Samples], Matrices]
 
 
 def can_carry(chain: StudentChain, grading: Grading) -> bool:
-    """True if later answers may be judged by this answer instead of by the reference.
+    """True if later answers may be judged by this answer instead of by the reference solution.
 
     The answer must be an arm with the joints and the degrees of freedom of the robot.
     """
@@ -101,7 +101,7 @@ STANDS_STILL = Finding(
 
 
 def follows_from(earlier: PartSpec, *, is_right: bool) -> Finding:
-    """Return the message that an answer was graded by the student's earlier answer."""
+    """Return the message that an answer was graded on the basis of an earlier answer."""
     # The earlier answer is_right if it differs from the reference only by its choice of frames or
     # by rounding.
     title = repr(earlier.title)

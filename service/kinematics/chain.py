@@ -68,7 +68,7 @@ def frames(table: Table, convention: Convention) -> Matrices:
 
 
 def products(transforms: Matrices) -> Matrices:
-    """Return the product of the first k transforms for k = 0..K: ``(K + 1, ...)``."""
+    """Return the product of the first k of K transforms for k = 0..K: ``(K + 1, ...)``."""
     reached = np.empty((len(transforms) + 1, *transforms.shape[1:]))
     reached[0] = _IDENTITY
     reached[1:2] = transforms[:1]

@@ -1,4 +1,4 @@
-"""The share of right answers in each part, row and cell."""
+"""The fraction of right answers in each part, row and cell."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -27,7 +27,7 @@ class Share:
 
     @property
     def value(self) -> float | None:
-        """The share of right answers, 0..1; None without answers."""
+        """The fraction of right answers, 0..1; None without answers."""
         return self.correct / self.answered if self.answered else None
 
 

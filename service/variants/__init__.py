@@ -1,4 +1,4 @@
-"""Variants of exercises with other numbers, and exercises about generated robots.
+"""Variants of exercises with changed numbers, and exercises about generated robots.
 
 A short text, the seed, determines a variant.
 """

@@ -63,7 +63,7 @@ def checked_variant(exercise: Exercise, seed: str) -> CheckedVariant:
 
 
 def random_seeds() -> Iterator[str]:
-    """Yield random seeds without end."""
+    """Yield random seeds (short texts that determine variants) without end."""
     # They have no letters that look alike.
     while True:
         yield "".join(choice(_LETTERS) for _ in range(_LENGTH))
@@ -118,7 +118,7 @@ def deploy(
 
 
 def with_deployed(text: str, seeds: Sequence[str]) -> str | None:
-    """Return the text of an exercise file with these seeds; None if the text cannot be edited."""
+    """Return an exercise file's text with these seeds deployed; None if this is impossible."""
     # Comments and everything else stay as they are.
     place = _TABLE.search(text)
     if place is None:

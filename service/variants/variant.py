@@ -1,4 +1,4 @@
-"""Make a variant of an exercise, which is determined by a short text, the seed."""
+"""Make a variant of an exercise. A short text, the seed, determines the variant."""
 
 from collections import OrderedDict
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""Formulas printed by SymPy are read with the same value."""
+"""Formulas printed by SymPy are read with the value that they have in SymPy."""
 
 from collections.abc import Callable
 from random import Random

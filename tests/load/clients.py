@@ -45,7 +45,7 @@ class Results:
 
 @dataclass(frozen=True)
 class Mix:
-    """The fractions of recorded, of trivial and of only graded requests."""
+    """The fractions of requests that are recorded, trivial, or only graded."""
 
     recorded: float = 0.0
     trivial: float = 0.0

@@ -113,7 +113,7 @@ class Regrading:
     def outdated_after(
         self, connection: Connection, place: TimePlace | None, most: int
     ) -> list[TimePlace]:
-        """Return time and row number of outdated attempts after ``place``, the oldest first."""
+        """Return time and row number of the outdated attempts after ``place``, the oldest first."""
         following = select(*BY_TIME).where(self._is_outdated())
         if place is not None:
             following = following.where(later_than(place))

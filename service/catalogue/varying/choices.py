@@ -59,7 +59,10 @@ def is_seed(text: str) -> bool:
 
 
 def deployed_seeds(vary: Mapping[str, object]) -> tuple[str, ...]:
-    """Return the seeds that assignments may use. Raises FieldError."""
+    """Return the seeds (short texts that determine variants) that assignments may use.
+
+    Raises FieldError.
+    """
     seeds = texts_of(vary, DEPLOYED)
     if len(seeds) > MOST_DEPLOYED:
         raise FieldError(

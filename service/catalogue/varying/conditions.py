@@ -78,7 +78,7 @@ class Condition:
     right: Expression
 
     def holds(self, values: Mapping[str, NDArray[np.float64]], count: int) -> NDArray[np.bool_]:
-        """Return a mask ``(count,)`` that is True where the values meet the condition."""
+        """Return a mask that is True where the values meet the condition."""
         difference = np.broadcast_to(
             np.asarray(self.left.evaluate(values)) - np.asarray(self.right.evaluate(values)), count
         )

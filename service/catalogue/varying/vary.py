@@ -104,13 +104,13 @@ class Vary:
         return count
 
     def values(self, seed: str) -> Mapping[str, VaryValue]:
-        """Return the value of each name for a seed; the seed "" means the exercise itself."""
+        """Return the value of each name in the variant of a seed; "" means the exercise itself."""
         # A seed whose values never meet the conditions also gives the values of the plain exercise.
         chosen = (self._draw(seed) if seed else None) or self._plain
         return {name: self._choices[name][i] for name, i in chosen.items()}
 
     def written(self, seed: str) -> Mapping[str, str]:
-        """Return the values of a seed as text, by name."""
+        """Return the values in the variant of a seed as text, by name."""
         written: dict[str, str] = {}
         for name, value in self.values(seed).items():
             if isinstance(value, Mapping):

@@ -73,7 +73,7 @@ class CharacterWriter:
         del self.letters[at:], self.starts[at:], self.ends[at:]
 
     def _subscript_run(self, at: int) -> int:
-        """Read subscript characters such as ₁₂ as one index; return the place after them."""
+        """Read subscript characters such as ₁₂ as one index; return the position after them."""
         self._attach_index()
         end = self._end_of_run(at, unicode.SUBSCRIPTS)
         if self.source[end : end + 1] in {"₊", "₋"}:
@@ -87,7 +87,7 @@ class CharacterWriter:
         return end
 
     def _superscript_run(self, at: int) -> int:
-        """Read superscript characters such as ⁻¹ as one power; return the place after them."""
+        """Read superscript characters such as ⁻¹ as one power; return the position after them."""
         end = self._end_of_run(at, unicode.SUPERSCRIPTS)
         if self.source[at:end] == "⁰" and self.source[at - 1 : at].isdigit():
             raise UnreadableError("raised_zero", (at, end))

@@ -40,7 +40,7 @@ _OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 class LeftSide(NamedTuple):
-    """The name before an equals sign. ``span`` is the place of the name and the sign."""
+    """The name before an equals sign. ``span`` is the position of the name and the sign."""
 
     name: str
     span: Span

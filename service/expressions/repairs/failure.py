@@ -51,7 +51,7 @@ class Failure:
         return "" if at < 0 else self.details["tokens"][at][0]
 
     def place(self, back: int = 0) -> Span:
-        """Return the place of the token ``back`` tokens before the unreadable token."""
+        """Return the position of the token ``back`` tokens before the unreadable token."""
         token = self.details["tokens"][self.details["index"] - back]
         return token[2], token[3]
 

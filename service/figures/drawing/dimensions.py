@@ -41,7 +41,7 @@ def dimension(
 ) -> Drawing:
     """Draw a dimension line for the piece between ``ends``, and mark its room as taken.
 
-    ``sides`` ``(n, 3)`` are the directions in which the line may be moved away from the piece.
+    ``sides`` ``(n, 3)`` are n directions in which the line may be moved away from the piece.
     """
     # ``ends`` is ``(2, 3)``.
     line = min(_lines(camera, ends, extent, sides, room), key=lambda each: each.penalty)

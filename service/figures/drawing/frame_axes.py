@@ -87,7 +87,7 @@ def frame_names(camera: Camera, drawn: DrawnFrames, room: TakenRoom) -> list[str
 def named(
     label: Label, wanted: Sequence[Numbers], points: Numbers, kind: str, room: TakenRoom
 ) -> Iterator[str]:
-    """Yield the SVG of a label, with a line to ``points`` if they are far away."""
+    """Yield the SVG of a label, and of a line from the label to distant ``points``."""
     place = room.place(label, wanted, points)
     leader = place.leader(points)
     if leader is not None:

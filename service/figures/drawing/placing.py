@@ -64,7 +64,7 @@ class Rectangle:
 
     @property
     def points(self) -> Numbers:
-        """Points spread over the rectangle, ``(15, 2)``."""
+        """Fifteen pixel positions, spread over the rectangle, ``(15, 2)``."""
         return np.asarray(_SPREAD * (self.half_width, self.half_height) + (self.x, self.y))
 
 

@@ -1,4 +1,7 @@
-"""The misconceptions that explain wrong answers. Importing this package registers all of them."""
+"""The misconceptions that explain wrong answers.
+
+Importing this package registers all misconceptions.
+"""
 
 from importlib import import_module
 from pkgutil import walk_packages

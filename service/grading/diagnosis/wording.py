@@ -1,4 +1,4 @@
-"""Words that several messages share."""
+"""Phrases that several kinds of messages contain."""
 
 from typing import Final
 

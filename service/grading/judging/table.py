@@ -317,7 +317,7 @@ def _is_as_written(nearest: NearestTable) -> bool:
 
 
 def departures_of(frames: Matrices, grading: Grading) -> float:
-    """Return how far frames ``(joints, samples, 4, 4)`` are from the reference's frames."""
+    """Return how far frames ``(joints, samples, 4, 4)`` are from the reference frames."""
     return float(departure(frames, grading.exercise.length_scale).sum())
 
 

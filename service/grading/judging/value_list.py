@@ -40,6 +40,6 @@ class ComparedValues:
 
 
 def number_corrections(expected: Numbers, grading: Grading) -> list[Correction | None]:
-    """Return the expected values ``(n, SAMPLES)`` as numbers; None for a value that varies."""
+    """Return the expected values as numbers; None for a value that varies."""
     # All are None if the report shows no corrections.
     return [number_formula(each) if grading.corrects else None for each in expected]

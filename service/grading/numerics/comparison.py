@@ -322,7 +322,7 @@ class SharedDecimals:
             self._parts, self.count, self.units = [], 0, np.zeros(0)
 
     def shifted(self, shifts: Numbers, values: Numbers) -> Numbers:
-        """Return ``values`` with shifted decimals, for K sets of shifts ``(K, count)``."""
+        """Return ``values`` with shifted decimals, for each of K sets of shifts ``(K, count)``."""
         # ``values`` is ``(entries, samples)``, the result ``(K, entries, ...)``.
         moved = np.repeat(values[None], len(shifts), axis=0)
         for i, decimals, places, symbol_values in self._parts:

@@ -20,7 +20,7 @@ _BRACKET_OR_QUOTE: Final = re.compile(r"""[][(){}'"]""")
 
 
 def pairs(text: str) -> dict[int, int]:
-    """Map each opening bracket's place to the place after its partner on the same line.
+    """Map each opening bracket's position to the position after its partner on the same line.
 
     Brackets without a partner are left out.
     """
@@ -39,7 +39,7 @@ def pairs(text: str) -> dict[int, int]:
 
 
 def strict_pairs(source: SourceText) -> dict[int, int]:
-    """Map the start of each bracket pair or string to the place after its end.
+    """Map the start of each bracket pair or string to the position after its end.
 
     Raises GridError for a bracket without a partner, or for a string without an end.
     """
@@ -98,7 +98,7 @@ def _unbalanced(source: SourceText, at: int, stack: list[int]) -> GridError:
 
 
 def outside(text: str, ends: dict[int, int]) -> Iterator[int]:
-    """Yield the places of the characters outside all pairs of brackets and quotes."""
+    """Yield the positions of the characters outside all pairs of brackets and quotes."""
     # ``ends`` maps the start of a pair to its end.
     i = 0
     while i < len(text):

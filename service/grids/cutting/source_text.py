@@ -50,7 +50,7 @@ class SourceText:
 
     @property
     def whole(self) -> Span:
-        """The place of the piece in the typed text."""
+        """The position of the piece in the typed text."""
         return self.span(0, len(self.text))
 
     def strip(self, letters: str | None = None) -> "SourceText":
@@ -71,7 +71,7 @@ class SourceText:
         return [*pieces, self.cut(start, len(self.text))]
 
     def spelled(self, text: str) -> "SourceText":
-        """Return a piece with another ``text`` at the same place."""
+        """Return a copy of the piece with this ``text``, at the same position."""
         # Each of its characters has the place of this whole piece.
         start, end = self.whole
         return SourceText(text, (start,) * len(text), (end,) * len(text), start)

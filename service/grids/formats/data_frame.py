@@ -56,7 +56,7 @@ def _joined_lines(lines: list[SourceText], source: SourceText) -> SourceText:
 
 
 def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    """Return the rows with a header above the row numbers; pandas and R print none there."""
+    """Add the header above the row numbers, which pandas and R do not print."""
     # The new header is empty, or the name of the index if pandas prints this name in the second
     # line.
     rows = _with_whole_labels(rows)

@@ -62,7 +62,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _after_tag(source: SourceText, start: int) -> int:
-    """Return the place after the tag's >. A > in a quoted attribute does not count."""
+    """Return the position after the tag's >. A > in a quoted attribute does not count."""
     text = source.text
     i = start
     while i < len(text):

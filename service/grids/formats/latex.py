@@ -187,7 +187,7 @@ def check_wrapper(around: SourceText) -> None:
 
 
 def after_wrappers(text: str) -> int:
-    """Return the place after the layout commands at the beginning of a text."""
+    """Return the position after the layout commands at the beginning of a text."""
     at = 0
     while at < len(text):
         found = next((match for token in _WRAPPERS if (match := token.match(text, at))), None)
@@ -216,7 +216,7 @@ def _after_position(source: SourceText, at: int, options: re.Pattern[str] = _POS
 
 
 def after_brace(source: SourceText, start: int) -> int:
-    """Return the place after the brace that closes the opening brace at ``start``."""
+    """Return the position after the brace that closes the opening brace at ``start``."""
     depth = 0
     for i in range(start, len(source.text)):
         depth += {"{": 1, "}": -1}.get(source.text[i], 0)

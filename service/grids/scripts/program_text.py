@@ -192,7 +192,7 @@ def without_harmless_lines(source: SourceText) -> SourceText:
 
 
 def after_names(text: str) -> int:
-    """Return the place after imports, declarations and the left side of an equation."""
+    """Return the position after imports, declarations and the left side of an equation."""
     at = 0
     while at < len(text) and (line := _HARMLESS.match(text, at)):
         at = line.end()

@@ -1,1 +1,1 @@
-"""Find which tables describe the same robot if students choose the frames."""
+"""Find which tables describe a given robot if students choose the frames."""

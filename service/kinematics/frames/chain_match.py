@@ -108,8 +108,8 @@ def match_tables(
 ) -> tuple[NDArray[np.bool_], Matrices]:
     """Test which of many tables are correct.
 
-    Return a mask ``(tables,)`` and the poses of the tables' frames in the reference's frames,
-    ``(rows, tables, samples, 4, 4)``.
+    Return a mask ``(tables,)`` and the poses of the tables' frames in the reference solution's
+    frames, ``(rows, tables, samples, 4, 4)``.
     """
     # written is (tables, rows, 4, L). joint_signs (tables, rows) are +1 or -1, or 0 where the sign
     # is unknown or the direction is free. start (L, 4, 4), or one for each table, is the relative
@@ -163,5 +163,5 @@ def _error_at(pose: Matrices, kind: TargetKind, length_scale: float) -> Numbers:
 
 
 def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
-    """Return +1 for each frame with the reference's z direction, −1 for the opposite direction."""
+    """Return +1 for each frame with the reference frame's z direction, −1 for the opposite one."""
     return np.where(pose[:, 0, 2, 2] > 0, 1, -1)

@@ -51,7 +51,7 @@ def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Targe
     """Return what each row of the inverse chain leads to, from the tool to the base.
 
     ``offsets`` ``(n, L, 4, 4)`` are Rot_z(θ) Trans_z(d) of n joints at L samples, from the
-    reference's constants.
+    reference solution's constants.
     """
     here = identity((offsets.shape[1],))
     each_offset = iter(offsets)

@@ -1,4 +1,4 @@
-"""Test what all routes share: size limits, methods, headers and failures."""
+"""Test what holds for all routes: size limits, methods, headers and failures."""
 
 import asyncio
 import re

@@ -1,4 +1,4 @@
-"""The points in a figure move with the robot."""
+"""The corners and joints in a figure move with the robot."""
 
 # The drawing uses screw axes; the tests use the link transforms of the table, or SciPy's matrix
 # exponential if a robot has no table.

@@ -1,4 +1,4 @@
-"""Test words that several messages share."""
+"""Test phrases that several kinds of messages contain."""
 
 import pytest
 

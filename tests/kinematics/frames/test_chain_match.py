@@ -1,4 +1,4 @@
-"""A valid table in other frames matches the reference; a table of another robot does not."""
+"""A valid table in other frames matches the reference; a table of a different robot does not."""
 
 # The identities are from the documentation.
 

@@ -14,7 +14,7 @@ WRAPPING: Final = -1
 
 
 class Brackets:
-    """A stack of opening brackets, each with its place in the text as typed."""
+    """A stack of opening brackets, each with its position in the text as typed."""
 
     __slots__ = ("opened",)
 
@@ -48,7 +48,7 @@ class Brackets:
 
 
 def partners(text: str) -> dict[int, int]:
-    """Map the place of each opening round bracket to the place of its closing bracket, if any."""
+    """Map the position of each opening round bracket to that of its closing bracket, if any."""
     found: dict[int, int] = {}
     opened: list[int] = []
     for match in _ROUND.finditer(text):

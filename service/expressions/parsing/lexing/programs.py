@@ -30,7 +30,7 @@ def is_more_than_a_turn(text: str, at: int) -> bool:
 
 
 def subscripted(text: str, at: int) -> tuple[str, int] | None:
-    """Return the name and the end of ``Subscript[name, index]``; ``at`` is the place of its [."""
+    """Return the name in ``Subscript[name, index]``, and its end; ``at`` is the position of [."""
     found = _SUBSCRIPT.match(text, at)
     return found and (f"{found[1]}{found[2]}", found.end())
 

@@ -63,7 +63,10 @@ class GivenMotion:
         return cls(grid, samples.values, samples.count, angles, of_kind["length"])
 
     def position(self, zeros: Iterable[str] = ()) -> Numbers:
-        """Return the position ``(n, samples)`` with the symbols ``zeros`` set to 0."""
+        """Return the n coordinates ``(n, samples)`` of the position.
+
+        The symbols ``zeros`` are set to 0.
+        """
         column = self.grid[0] if len(self.grid) == 1 else [row[3] for row in self.grid[:3]]
         return np.asarray(self._numbers([column], zeros)[0])
 

@@ -1,7 +1,7 @@
 """Limit the points of a wrong table, so that an empty row never earns more than a wrong row.
 
 A wrong row can mislead the search for the frames that the student chose. Then correct rows look
-wrong. An empty row cannot do that.
+wrong. An empty row cannot mislead the search.
 """
 
 # So a wrong table earns at least as much as the same table with one wrong row replaced by numbers

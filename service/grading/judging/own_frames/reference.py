@@ -59,7 +59,7 @@ def reference_values(reference: ReferenceTable, samples: Samples) -> Table:
 
 
 def reference_frames(exercise: Exercise, convention: Convention, samples: Samples) -> Matrices:
-    """Return the reference's frames on the joint axes and its tool frame.
+    """Return the reference solution's frames on the joint axes and its tool frame.
 
     The shape is ``(joints + 1, samples, 4, 4)``.
     """
@@ -100,7 +100,7 @@ def frames_on_axes(
 
 
 def tool_pose(exercise: Exercise, samples: Samples) -> Matrices:
-    """Return the reference's end-effector frame in the base frame, ``(samples, 4, 4)``."""
+    """Return the reference solution's end-effector frame in the base frame, ``(samples, 4, 4)``."""
     pose: Matrices = reference_frames(exercise, exercise.robot.convention, samples)[-1]
     return pose
 

@@ -50,7 +50,7 @@ class Direction:
         return next((entry for entry in self.entries if not entry.readable), None)
 
     def values(self, samples: Samples) -> Numbers | None:
-        """Return the vector ``(count, 3)``, or None if it was not read."""
+        """Return the vector at ``count`` samples, ``(count, 3)``, or None if it was not read."""
         if self.name is not None:
             axis, sense = self.name
             return np.tile(sense * np.eye(3)[axis], (samples.count, 1))

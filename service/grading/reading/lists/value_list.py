@@ -20,7 +20,7 @@ from service.translations import paragraph, say
 
 @dataclass(frozen=True, slots=True)
 class StudentValues:
-    """A list of values as read: entries, and numbers ``(n, SAMPLES)``, NaN if unreadable."""
+    """A list as read: n entries, and their numbers ``(n, SAMPLES)``, NaN if unreadable."""
 
     entries: list[Entry]
     quantities: Sequence[Kind]
