@@ -39,4 +39,4 @@ def test_the_page_names_every_public_name() -> None:
 def test_the_page_has_the_default_retries() -> None:
     usual = Retries()
     assert (usual.number, usual.first_wait, usual.longest_wait) == (5, 0.5, 30.0)
-    assert "tried up to five times more" in PAGE.replace("\n", " ")
+    assert "up to five times more" in PAGE.replace("\n", " ")
