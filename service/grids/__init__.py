@@ -9,7 +9,7 @@ from service.grids.cutting.limits import GRID_LIMITS, GridLimits
 from service.grids.cutting.source_text import SourceText
 from service.grids.registry import FORMATS, FULL_WIDTH, read_grid, read_robot
 from service.grids.scripts.given_values import ASSIGNMENT
-from service.grids.scripts.robot_table import RobotTable
+from service.grids.scripts.script import RobotTable
 from service.grids.several import NamedGrid, read_grids
 
 __all__ = [

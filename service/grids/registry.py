@@ -21,10 +21,11 @@ from service.grids.formats import (
 from service.grids.formats.data_frame import without_frame
 from service.grids.matrices import bracketed, drawn_matrix, maple, matlab_rows, word
 from service.grids.scripts.given_values import without_definitions, without_given_values
+from service.grids.scripts.later_statements import without_print, without_uses
 from service.grids.scripts.named_columns import describes_columns, read_columns
 from service.grids.scripts.program_text import without_title
 from service.grids.scripts.robot_script import describes_robot, read_script
-from service.grids.scripts.robot_table import RobotTable
+from service.grids.scripts.script import RobotTable
 from service.grids.scripts.session import session_outputs
 from service.grids.scripts.titles import without_fence, without_titles
 from service.grids.scripts.toolbox_print import describes_print, read_print
@@ -49,13 +50,16 @@ _SEPARATOR_LINE: Final = re.compile(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
 _THIN_SPACE: Final = "\\,"
 
 
-def read_grid(text: str) -> Grid:
+def read_grid(text: str, *, of_table: bool = False) -> Grid:
     """Return the grid in a pasted text, in linear time. Raises only GridError, for any text."""
-    # The length of the text is bounded by ``GRID_LIMITS``.
+    # The length of the text is bounded by ``GRID_LIMITS``. With ``of_table``, later statements of a
+    # script may use the grid: it is the answer, and their results are not.
     source = pasted_source(text)
     if named_values.FORMAT.matches(source.text):
         # The label of the first row would be a title.
         return named_values.FORMAT.parse(source)
+    if of_table:
+        source = without_print(without_uses(source))
     source, defined = without_definitions(source)
     source, titles = without_titles(without_frame(without_title(source)))
     source, values = without_given_values(source)

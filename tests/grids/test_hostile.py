@@ -30,6 +30,7 @@ FRAGMENTS = [
     "SerialLink([", "\nL(1) = Link([0 0 ", "Revolute('d', ", "setFixedTransform(j1, ", "{'a': [",
     "■(", "@", "┆", "```\n", "~~~\n", "# A tibble: 3 × 4\n", "shape: (3, 4)\n", "[1,]", "[,1] ",
     ":: 3 axis, RRR, stdDH\n", "| j | theta | d | a | alpha | offset |\n", "dict(a=", "[{'a': ",
+    "T = f(DH)\n", "for i in DH:\n", "print(DH)\n", "3×4 Matrix{Num}:\n",
     "Table 1:", "degrees\n", "，", "关节", "theta[1]", "% theta d a alpha\n", "\\begin{tblr}{",
 ]  # fmt: skip
 
@@ -44,7 +45,7 @@ def refusal(error: GridError) -> Refusal:
 def outcome(text: str) -> Grid | Refusal:
     try:
         robot = read_robot(text)
-        return robot.grid if robot else read_grid(text)
+        return robot.grid if robot else read_grid(text, of_table=True)
     except GridError as error:
         return refusal(error)
 

@@ -37,11 +37,12 @@ _MOST_UNITS: Final = 40
 _JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
 
 
-def pasted_grid(text: str, reader: Reader) -> Grid:
+def pasted_grid(text: str, reader: Reader, *, of_table: bool = False) -> Grid:
     """Return the table or matrix in a pasted text. Raises GridError if there is none."""
     # Also raised if the pasted texts of a submission are too long.
     _charge(text, reader)
-    return with_given_letters(read_grid(_prepared(text, reader)), text, reader)
+    grid = read_grid(_prepared(text, reader), of_table=of_table)
+    return with_given_letters(grid, text, reader)
 
 
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:

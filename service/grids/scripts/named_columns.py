@@ -19,8 +19,14 @@ from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import matlab
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.program_text import MAKERS
-from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.script import arguments, excerpt, split_call, statements, unread_script
+from service.grids.scripts.script import (
+    RobotTable,
+    arguments,
+    excerpt,
+    split_call,
+    statements,
+    unread_script,
+)
 from service.translations import say, say_count
 
 _DICTIONARY: Final = re.compile(

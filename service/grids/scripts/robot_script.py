@@ -24,8 +24,14 @@ from service.grids.scripts.robot_links import (
     row_of,
     transform_link,
 )
-from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.script import arguments, excerpt, split_call, statements, unread_script
+from service.grids.scripts.script import (
+    RobotTable,
+    arguments,
+    excerpt,
+    split_call,
+    statements,
+    unread_script,
+)
 from service.grids.scripts.script_names import (
     NUMBERED,
     ScriptNames,

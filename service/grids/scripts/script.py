@@ -2,9 +2,10 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Final
 
-from service.grids.cutting.grid import GridError
+from service.grids.cutting.grid import Grid, GridError
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
@@ -19,6 +20,18 @@ _CALL: Final = re.compile(r"(?:[A-Za-z_]\w{0,60}\.){0,4}([A-Za-z_]\w{0,60})[ \t]
 _SHOWN: Final = 40
 # Blanks other than those of ASCII and the ends of lines: web pages have them in programs.
 _BLANK: Final = re.compile(r"[^\S\x00-\x20\x85\u2028\u2029]")
+
+
+@dataclass(frozen=True, slots=True)
+class RobotTable:
+    """The DH table of a robot, and the convention that the script names: standard or modified.
+
+    With ``has_headers``, the first row contains headers. Otherwise the columns are a, α, d, θ.
+    """
+
+    grid: Grid
+    convention: str | None = None
+    has_headers: bool = False
 
 
 def statements(source: SourceText) -> list[SourceText]:

@@ -12,8 +12,7 @@ from typing import Final
 
 from service.grids.cutting.grid import grid
 from service.grids.cutting.source_text import SourceText, joined
-from service.grids.scripts.robot_table import RobotTable
-from service.grids.scripts.script import unread_script
+from service.grids.scripts.script import RobotTable, unread_script
 from service.grids.scripts.script_names import too_many_robots
 from service.translations import say
 

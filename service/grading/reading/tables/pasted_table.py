@@ -78,7 +78,7 @@ def read_pasted_table(text: str, reader: Reader) -> PastedTable:
     if robot:
         table = table_of_robot(robot, reader)
     else:
-        table = table_of(pasted_grid(text, reader), reader, comments=text)
+        table = table_of(pasted_grid(text, reader, of_table=True), reader, comments=text)
     refuse_other_units(text, table.headers, reader)
     return table
 

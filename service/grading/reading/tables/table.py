@@ -203,7 +203,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
         return StudentTable((), _NO_ROWS, None)
     try:
         robot = pasted_robot(text, reader)
-        grid = robot.grid if robot else pasted_grid(text, reader)
+        grid = robot.grid if robot else pasted_grid(text, reader, of_table=True)
         pasted = table_of_robot(robot, reader) if robot else table_of(grid, reader, comments=text)
         refuse_other_units(text, pasted.headers, reader)
     except GridError as error:

@@ -1,0 +1,196 @@
+r"""Statements of a script that only use its DH table, such as ``T1 = dh(DH(1,:));`` below it.
+
+Nothing is run. A statement is left out only if it cannot change the table, its units or its order.
+"""
+
+# The table and its rows may be arguments, but never a part of a calculation. An element, such as
+# DH(1,2), could tell that the columns have another order, and so could the name of a parameter.
+
+import re
+from typing import Final
+
+from service.grids.cutting.pairs import BRACKET, split, strict_pairs
+from service.grids.cutting.source_text import SourceText
+from service.grids.scripts.program_text import without_remarks
+
+# Signs of another unit, of another order, or of a toolbox, whose matrices have another order.
+_TELLS: Final = re.compile(
+    r"deg|rad|180|1000|57\.|1e-?3|\.001|[sc][oi][sn]d|tand|(?<!\w)[mc]m(?!\w)"
+    r"|flip|swap|rot90|shift|transpos|permut|sort|revers|shuffle|order|convert|scal|unit"
+    r"|eval|exec|assignin|link|revolute|prismatic|dhrobot|rigidbody|setfixed",
+    re.IGNORECASE,
+)
+_PARAMETER: Final = re.compile(
+    r"(?<![^\W\d_])(?:a|d|r|(?i:al|alpha|alfa|th|theta|twist|offset|angle)|[αθ])_?[ijn]?(?![^\W_])"
+)
+_GAP: Final = r"['\"]?\s{0,4},\s{0,4}['\"]?"
+# The parameters, or the elements of a row, in the order a, α, d, θ.
+_IN_ORDER: Final = re.compile(
+    rf"(?<![\w.])a(?:_?i)?{_GAP}(?:alpha|al|α)(?:_?i)?{_GAP}d(?:_?i)?{_GAP}(?:theta|th|θ)(?:_?i)?"
+    r"(?!\w)|"
+    + "|".join(
+        rf"(?P<row{first}>\w{{1,40}}[(\[](?:\w{{1,12}}(?:,\s?|\]\[))?){first}(?P<end{first}>[)\]])"
+        + "".join(rf"\s?,\s?(?P=row{first}){first + i}(?P=end{first})" for i in range(1, 4))
+        for first in (0, 1)
+    )
+)
+_ROW: Final = "ROW"
+_LONGEST: Final = 400
+# The number of rows.
+_COUNTED: Final = (
+    r"(?<![\w.])(?:len|length|size|numel|nrows|height)\({table}(?:,\s?[01])?\)"
+    r"|(?<![\w.]){table}\.shape\[0\]"
+)
+_STRING: Final = re.compile(r"(?<=[(,=\[{ ])(['\"])[^'\"\n]{0,200}\1")
+# The table and its name: DH = [, dh = np.array([.
+_TABLE: Final = re.compile(
+    r"(?:^|(?<=;))[ \t]*([A-Za-z]\w{0,40})[ \t]*=[ \t]*(?:[\w.]{1,40}\(\s{0,40})?[\[{]",
+    re.MULTILINE,
+)
+_NAMES: Final = r"[A-Za-z]\w{0,40}"
+_LOOP: Final = re.compile(
+    rf"(?:par)?for\s{{1,4}}\(?(?P<names>{_NAMES}(?:,\s?\(?{_NAMES})?)\)?\s?(?:=|in\s|∈)\s?"
+    r"(?P<over>[^,;=]{1,60}?(?:\([^()]{0,20}\))?)\)?(?:[,:](?=\s|\Z)|\Z)\s?(?P<body>.*)",
+    re.DOTALL,
+)
+_LISTED: Final = re.compile(
+    rf"\[(?P<value>[^\[\]]*(?:\[[^\[\]]*\][^\[\]]*)*)\sfor\s(?P<names>{_NAMES})\sin\s(?P<over>[^\[\]]*)\]"
+)
+_ASSIGNED: Final = re.compile(
+    rf"(?P<left>{_NAMES}(?:\{{[\w+ -]{{1,20}}\}}|\([\w:,+ -]{{1,20}}\))?(?:\s?,\s?{_NAMES}){{0,5}})"
+    r"\s?=(?!=)\s?(?P<right>.+)",
+    re.DOTALL,
+)
+_SHOWN: Final = re.compile(
+    rf"(?:\w{{1,12}}\.)?(?:disp|display|print|println|pprint|pretty|fprintf|printf)\(.*\)|{_NAMES}"
+    r"(?:\{\d{1,2}\})?|(?:import|from|syms|clc|format|end\w{0,6})(?!\w)[^=]*",
+    re.DOTALL,
+)
+_LITERAL: Final = re.compile(r"(?<![\w)\]}])[\[{](?!\s{0,4}[\]}])")
+_IS_TABLE: Final = re.compile(r"dh|tab|param", re.IGNORECASE)
+# The first line of an output, such as "3×4 Matrix{Num}:" or "DH =".
+_ECHO: Final = re.compile(
+    r";?[ \t]*\n\s{0,40}(?:\d{1,2}[×x]\d{1,2} [\w{}, ]{1,40}:|(?P<name>[A-Za-z]\w{0,40}) ?=)\s*?\n"
+)
+_TOKEN: Final = re.compile(r"[^\s,;\[\]]+")
+_NUMBER: Final = re.compile(r"-?\d{1,12}(?:\.\d{0,12})?")
+# A line that prints a table: print(tabulate(dh, headers=[…])), print(df.to_string()).
+_PRINTED: Final = re.compile(
+    r"\s{0,40}(?:(?:import|from)\s[^\n]{0,80}\n){0,4}(?:\w{1,12}\.)?(?:print|disp|display)\("
+    r"(?:[\w.]{1,20}\()?\w{1,40}(?:=\w{1,12}|\.to_\w{1,12}\()?(?:,[^()\n]{0,200})?\){1,2}[ \t;]*\n"
+)
+_WORD: Final = re.compile(r"[^\W\d]\w*")
+
+
+def without_uses(source: SourceText) -> SourceText:
+    """Return a table without the later statements of its script that only use it.
+
+    Any other text is returned unchanged. Raises GridError for unbalanced brackets.
+    """
+    plain = without_remarks(source)
+    found = _TABLE.search(plain.text)
+    if found is None:
+        return source
+    name = found[1]
+    opened = BRACKET.search(plain.text, found.end(1))
+    assert opened is not None
+    end = strict_pairs(plain)[opened.start()]
+    if _is_echo(plain.text[found.end() : end], plain.text[end:], name):
+        return plain.cut(0, end)
+    later = split(plain.cut(end, len(plain.text)), ";\n\r")
+    if later[0].text.strip():
+        return source
+    taken = set(_WORD.findall(plain.text[:end]))
+    rows = {_ROW}
+    if all(_is_use(each.text.strip(), name, rows, taken) for each in later):
+        return plain.cut(0, end)
+    return source
+
+
+def without_print(source: SourceText) -> SourceText:
+    """Return a printed table without a first line such as ``print(tabulate(dh, …))``."""
+    printed = _PRINTED.match(source.text)
+    if printed is None or _TELLS.search(printed[0]):
+        return source
+    rest = source.cut(printed.end(), len(source.text))
+    named = _PARAMETER.findall(_IN_ORDER.sub(_ROW, printed[0]))
+    if not named or named == _PARAMETER.findall(rest.text.lstrip().partition("\n")[0]):
+        return rest
+    return source
+
+
+def _is_echo(written: str, later: str, name: str) -> bool:
+    """True if the text after a table is only its output by an interpreter."""
+    echo = _ECHO.match(later)
+    if echo is None or (echo["name"] or name) != name:
+        return False
+    tokens, shown = _TOKEN.findall(written), _TOKEN.findall(later[echo.end() :])
+    return len(tokens) == len(shown) and all(map(_is_equal, tokens, shown))
+
+
+def _is_equal(written: str, shown: str) -> bool:
+    # A program shows -pi/2 as -1.5708.
+    if written == shown:
+        return True
+    if not _NUMBER.fullmatch(shown) or set(_WORD.findall(written)) - {"pi"}:
+        return False
+    if _NUMBER.fullmatch(written):
+        return float(written) == float(shown)
+    return "pi" in written and (written[0] == "-") == (shown[0] == "-") and float(shown) != 0
+
+
+def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool:
+    """True if a statement cannot change the table; ``rows`` gets the names of its rows."""
+    # ``taken`` are the words in the table and before it.
+    text = _IN_ORDER.sub(_ROW, re.sub(_COUNTED.format(table=table), "1", statement))
+    if not text:
+        return True
+    if len(text) > _LONGEST or _TELLS.search(text) or _PARAMETER.search(text):
+        return False
+    text = _STRING.sub("''", text)
+    if loop := _LOOP.match(text):
+        return _iterates(loop, table, rows, taken) and _is_use(loop["body"], table, rows, taken)
+    assigned = _ASSIGNED.fullmatch(text)
+    if assigned is None:
+        return _SHOWN.fullmatch(text) is not None and _is_argument(text, table, rows)
+    names, right = set(_WORD.findall(assigned["left"])), assigned["right"]
+    if names & (taken | rows - {_ROW}) or any(map(_IS_TABLE.search, names)):
+        return False
+    if listed := _LISTED.fullmatch(right):
+        if not _iterates(listed, table, rows, taken):
+            return False
+        right = f"({listed['value']})"
+    elif row := _use_of(table).fullmatch(right):
+        rows |= names
+        return row["row"] is not None
+    return not _LITERAL.search(right) and _is_argument(right, table, rows)
+
+
+def _iterates(loop: re.Match[str], table: str, rows: set[str], taken: set[str]) -> bool:
+    names, over = _WORD.findall(loop["names"]), loop["over"].strip()
+    if set(names) & taken:
+        return False
+    if re.fullmatch(rf"(?:(?:enumerate|eachrow)\()?{table}(?:,\s?\w)?\)?", over):
+        rows.add(names[-1])
+        # In MATLAB, a loop over a matrix takes its columns.
+        return " in " in loop[0]
+    return re.fullmatch(r"[\w(),:+ -]{1,60}", over) is not None and table not in over
+
+
+def _use_of(*names: str) -> re.Pattern[str]:
+    return re.compile(
+        rf"(?<![\w.])(?:{'|'.join(sorted(names))})(?!\w)"
+        r"(?P<row>\[[\w +-]{1,12}(?:,\s?:)?\]|\([\w +-]{1,12},\s?:\))?"
+    )
+
+
+def _is_argument(text: str, table: str, rows: set[str]) -> bool:
+    """True if the table and its rows are only arguments of functions, or are shown."""
+    for use in _use_of(table, *rows).finditer(text):
+        before, after = text[: use.start()].rstrip(), text[use.end() :].lstrip()
+        is_alone = not before and not after
+        if not (
+            is_alone or (before.removesuffix("*")[-1:] in {"(", ","} and after[:1] in {")", ","})
+        ):
+            return False
+    return True
