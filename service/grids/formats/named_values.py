@@ -4,13 +4,13 @@ The values may also be below each other, as in YAML, or arguments: ``DH('a', l1,
 """
 
 import re
-from itertools import islice
+from itertools import islice, pairwise
 from typing import Final, NamedTuple
 
 from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.limits import GRID_LIMITS
-from service.grids.cutting.pairs import pairs
-from service.grids.cutting.source_text import SourceText
+from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.source_text import SourceText, joined
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.titles import UNIT
 
@@ -33,6 +33,24 @@ _LABEL: Final = re.compile(
     r"(?:\d{1,2} (?=\D*\d))?(?:[^\W\d_]{1,20} ){0,3}(?:[^\W\d_]{0,20}(?P<number>\d{1,2}) )?"
     r"(?:[^\W\d_]{1,20} ){0,3}"
 )
+# A word between two values, and words before the next name: "0 and angle theta = q1".
+_AND: Final = re.compile(
+    r"(?:\A|\s)(?:and|und|y|et|with|mit|con|avec)(?:\s[^\W\d_]{3,20}){0,2}\s*\Z", re.IGNORECASE
+)
+# Names before their values: (a, α, d, θ) = (l1, 0, 0, θ1).
+_ONE: Final = r"\s{0,4}\\?(?:alpha|alfa|α|theta|th|θ|ϑ|a|d)_?\{?(?:[\d₀-₉]{0,2}|[ijᵢ])\}?\s{0,4}"
+_GROUP: Final = re.compile(
+    rf"[(\[](?P<names>{_ONE}(?:,{_ONE}){{3}})[)\]]\s{{0,4}}[=:]\s{{0,4}}(?=[(\[])"
+)
+_AFTER: Final = re.compile(r"[ \t]*(?:[,;.\r\n]|\Z)")
+_COMMA: Final = re.compile(",")
+_ORDINALS: Final = tuple(
+    re.compile(rf"(?<!\w)(?:{words})\w{{0,4}}", re.IGNORECASE)
+    for words in (
+        "first|erst|primer|premi", "second|zweit|segund|deuxi", "third|dritt|tercer|troisi",
+        "fourth|viert|cuart|quatri", "fifth|fünft|quint|cinqui", "sixth|sechst|sext|sixi",
+    )
+)  # fmt: skip
 _SUBSCRIPTS: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 
 
@@ -45,9 +63,30 @@ class _Item(NamedTuple):
     value: SourceText
 
 
+def _spread(source: SourceText) -> SourceText:
+    """Return the text with each name before its value, if groups of names are before values."""
+    text, pieces, start = source.text, [], 0
+    ends = pairs(text)
+    for group in _GROUP.finditer(text):
+        opened, end = group.end(), ends.get(group.end(), 0)
+        inside = source.cut(opened + 1, end - 1)
+        commas = [i for i in outside(inside.text, pairs(inside.text)) if inside.text[i] == ","]
+        names = source.cut(*group.span("names")).split(_COMMA)
+        values = [inside.cut(a + 1, b) for a, b in pairwise([-1, *commas, len(inside.text)])]
+        is_whole = start <= opened < end and _AFTER.match(text, end)
+        if not is_whole or len(values) != len(names):
+            return source
+        pieces.append(source.cut(start, group.start()))
+        for name, value in zip(names, values, strict=True):
+            pieces += [name, name.spelled("="), value, name.spelled(",")]
+        start = end
+    return joined([*pieces, source.cut(start, len(text))], source.at)
+
+
 def _items(source: SourceText) -> list[_Item]:
     text = _STYLE.sub(lambda mark: " " * len(mark[0]), source.text)
-    source = SourceText(text, source.starts, source.ends, source.at)
+    source = _spread(SourceText(text, source.starts, source.ends, source.at))
+    text = source.text
     first = islice(_NAME.finditer(text), len(_COLUMNS) * GRID_LIMITS.rows + 1)
     names = [name for name in first if name["sign"] != "," or name["quote"]]
     following = [*(name.start() for name in names), len(text)][1:]
@@ -55,11 +94,17 @@ def _items(source: SourceText) -> list[_Item]:
     ends, at = pairs(text), 0
     for name, end in zip(names, following, strict=True):
         gap = _PADDING.sub(" ", f"{text[at : name.start()]} ").lstrip()
+        gap = _AND.sub("", gap) if found else gap
+        for i, ordinal in enumerate(_ORDINALS, 1):
+            gap = ordinal.sub(str(i), gap)
         label = None if UNIT.search(gap) else _LABEL.fullmatch(gap)
         at = name.end()
         while at < end and text[at] not in _STOP:
             at = ends.get(at, at + 1)
-        value = unquoted(source.cut(name.end(), at).strip())
+        written = text[name.end() : at].rstrip(" \t.")
+        if at == end < len(text):
+            written = _AND.sub("", written)
+        value = unquoted(source.cut(name.end(), name.end() + len(written)).strip())
         is_within = len(found) % len(_COLUMNS) > 0
         if label is None or _NOT_ONE.search(value.text) or (is_within and _LETTER.search(gap)):
             return []

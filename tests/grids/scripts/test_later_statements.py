@@ -62,7 +62,8 @@ def test_the_toolbox_reads_a_matrix_in_its_own_order() -> None:
     [
         # another table, or a part of it
         "DH = fliplr(DH)", "DH(1,2) = 0;", "DH(:,2) = DH(:,2)*pi/180;", "DH(3,:) = [0 0 0 q3];",
-        "DH2 = convert(DH);", "M = DH;\nM(:,2) = 0;", "DHn = [DH; 0 0 0 0];", "x = y = DH",
+        "DH2 = f(DH);", "table = f(DH)", "M = [0 0 0 q1; 0 0 0 q2];", "T = f(DH, [4 3 1 2])",
+        "M = DH;\nM(:,2) = 0;", "DHn = [DH; 0 0 0 0];", "x = y = DH",
         "for i = 1:2\n  DH(i,2) = f(i);\nend", "if x\n  T = dh(DH(1,:));\nend", "DH += 1",
         "DH[:, 1] = 0", "DH *= 2", "DH.sort()", "DH[0][1] = 0", "DH.append([0, 0, 0, 0])",
         "del DH[0]", "np.random.shuffle(DH)", "np.multiply(DH, 2, out=DH)", "DH, x = f(DH)",
