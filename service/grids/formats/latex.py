@@ -46,13 +46,19 @@ _OPTIONS: Final = {
 _RULES: Final = re.compile(
     rf"\\(?:{'|'.join(f'(?:{name})(?![A-Za-z]){options}' for name, options in _OPTIONS.items())})"
 )
-# A row that is one cell over several columns, with words only: the title of the table.
+_WORD: Final = r"(?!(?:pi|theta|alpha)\W)[^\W\d_]{2,20}"
+# A row that is one cell over several columns, with words only: the title of the table or a note.
 _TITLE: Final = re.compile(
-    r"(?:\A|(?<=\\\\)|(?<=\\hline)|(?<=\\toprule))\s*\\multicolumn\s?\{\d{1,2}\}\s?\{[^{}]{0,40}\}"
-    r"\s?\{(?:\\text[bi][ft]\{)?[^\W\d_]{2,20}(?:[ -][^\W\d_]{2,20}){0,11}\}{1,2}\s*\\\\"
+    r"(?:\A|(?<=\\\\)|(?<=\\hline)|(?<=rule))\s*\\multicolumn\s?\{\d{1,2}\}\s?\{[^{}]{0,40}\}"
+    r"\s?\{(?:\\(?:text[bi][ft]\{|(?:footnote|script)size|small|tiny|itshape)\s?)?"
+    r"(?:\$?\^?\{?(?:\*|\\ast|\\dagger)\}?\$?[ :=]{0,4})?"
+    rf"{_WORD}(?:[,:]?[ -]{_WORD}){{0,11}}"
+    r"\.?\}{1,2}\s*(?:\\\\|\Z)"
 )
-# A cell over one column, as generators of tables write each header.
-_ONE_COLUMN: Final = re.compile(r"\\multicolumn\s?\{1\}\s?\{[^{}]{0,40}\}\s?(?=\{)")
+# A cell over one column or one row, as generators of tables write each header.
+_ONE_COLUMN: Final = re.compile(
+    r"\\multi(?:column|row)\s?(?:\[\w\]\s?)?\{1\}\s?\{[^{}]{0,40}\}\s?(?=\{)"
+)
 # An escaped % does not begin a comment.
 _COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
 _POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
@@ -94,7 +100,7 @@ def _matches(text: str) -> bool:
 
 def _parse(source: SourceText) -> Grid:
     body = _body(without_comments(source))
-    if (title := _TITLE.search(body.text)) and not UNIT.search(title[0]):
+    if not any(UNIT.search(title[0]) for title in _TITLE.finditer(body.text)):
         body = joined(body.split(_TITLE), body.at)
     rows = _rows(joined(body.split(_ONE_COLUMN), body.at))
     if not any(cell.text.strip() for cell in rows[-1]):

@@ -21,7 +21,7 @@ _BARS: Final = "|│┃║"
 _SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
 # A bracket that is not the unit in a header.
 _PROGRAM: Final = re.compile(r"\[(?!(?:in )?(?:[cm]?m|deg|rad|°)\])|■|(?<!\w)(?:dict|np|sp)(?!\w)")
-_ENVIRONMENT: Final = re.compile(r"\\(?:begin|end) ?\{|\\[\[\]]|\$\$")
+_ENVIRONMENT: Final = re.compile(r"\\(?:begin|end) ?\{(?!document\})|\\[\[\]]|\$\$")
 _PADDING: Final = " \t;,"
 _EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
 # A line of one or two words, which may be short: "DH", "% DH", "End".
@@ -32,7 +32,12 @@ _SEVERAL: Final = re.compile(r"[\s,;\[\]]")
 _SIGNS: Final = re.compile(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
 # A name in a sentence of Markdown or LaTeX, a reference, or an escaped star.
 _INLINE: Final = re.compile(
-    r"\$[^$=\n]{1,60}\$|\\\([^=\n]{1,60}?\\\)|~?\\(?:eq)?ref\{[^{}]{0,40}\}|\\(?=[*_#])"
+    r"\$[^$=\n]{1,60}\$|\\\([^=\n]{1,60}?\\\)|~?\\(?:(?:eq)?ref|label|cite)\{[^{}]{0,40}\}|\\(?=[*_#])"
+    r"|\\(?:documentclass|usepackage)(?:\[[^][]{0,80}\])?\{[\w,]{1,80}\}|\\(?:begin|end)\{document\}"
+)
+# A command of LaTeX with words in it.
+_COMMAND: Final = re.compile(
+    r"\\(?:(?:sub){0,2}section|(?:sub)?paragraph|chapter|title|emph|text(?:bf|it))\*?\{([^{}]{0,200})\}"
 )
 # A legend of the stars that mark joint variables.
 _LEGEND: Final = re.compile(r"\*+\)?\s?[=:]")
@@ -150,9 +155,10 @@ def _is_padded(line: str) -> bool:
 
 def _is_prose(line: str) -> bool:
     """True if a line has words, and no signs of a formula or of headers."""
-    line = _INLINE.sub(" ", line)
-    if _is_few_words(line):
+    plain = _INLINE.sub(" ", _COMMAND.sub(r"\1 ", line)).strip()
+    if _is_few_words(plain) or (line and not plain):
         return True
+    line = plain
     if len({name[0] for name in _PARAMETER.finditer(line.lower())}) > 1:
         return False
     return _WORD.search(line) is not None and not _SIGNS.search(_LEGEND.sub("", line))
