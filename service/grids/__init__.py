@@ -8,7 +8,7 @@ from service.grids.cutting.grid import Grid, GridCell, GridError
 from service.grids.cutting.limits import GRID_LIMITS, GridLimits
 from service.grids.cutting.source_text import SourceText
 from service.grids.registry import FORMATS, FULL_WIDTH, read_grid, read_robot
-from service.grids.scripts.given_values import ASSIGNMENT
+from service.grids.scripts.given_values import ASSIGNMENT, without_tuples
 from service.grids.scripts.script import RobotTable
 from service.grids.several import NamedGrid, read_grids
 
@@ -27,4 +27,5 @@ __all__ = [
     "read_grid",
     "read_grids",
     "read_robot",
+    "without_tuples",
 ]

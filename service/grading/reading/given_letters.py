@@ -11,7 +11,7 @@ from typing import Final
 from service.expressions.errors import Note
 from service.grading.reading.entry import Reader
 from service.grading.reading.tables.column_headers import read_header
-from service.grids import Grid, GridCell
+from service.grids import Grid, GridCell, without_tuples
 from service.grids.cutting.source_text import joined
 from service.translations import say
 
@@ -20,6 +20,10 @@ _NUMBER: Final = re.compile(
     r"[ \t\r]*(?=[;,\n%#]|\Z)"
 )
 _ASSIGNED: Final = re.compile(r"(?<![\w.])(\w{1,21})[ \t]{0,40}[-+*/]?=(?!=)")
+# The last letter of an assignment to several letters, whose value may be another number.
+_LAST: Final = re.compile(
+    r"(?<![\w.])[A-Za-z]\w{0,20}\s{0,9},\s{0,9}([A-Za-z]\w{0,20})\s{0,9}=(?!=)"
+)
 _NAME: Final = re.compile(r"(?<![\w.\\])[A-Za-z]\w*(?![\w(\[])")
 _MOST: Final = 40
 
@@ -43,7 +47,8 @@ def _given(text: str, reader: Reader) -> dict[str, str]:
     slides = reader.vocabulary.sliding.values()
     if any(each.kind == "length" and each not in slides for each in reader.vocabulary.symbols):
         return {}
-    names = _ASSIGNED.findall(text)
+    text = without_tuples(text)
+    names = _ASSIGNED.findall(text) + _LAST.findall(text)
     return {
         each[1]: each[2]
         for each in islice(_NUMBER.finditer(text), _MOST)

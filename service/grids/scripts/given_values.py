@@ -21,6 +21,14 @@ ASSIGNMENT: Final = re.compile(
     r"[ \t\r]*(?P<line>(?P<name>[A-Za-z]\w{0,60})[ \t]*=(?!=)[ \t]*"
     r"(?P<value>(?=[^\s])(?:[^;,\n\[\](){}=]|\((?:[^()\n\[]|\[(?!\s?\[)){0,40}\)){1,80}))(?:[;,\n]|\Z)"
 )
+# An assignment to several letters: d1, d4 = 0.1625, 0.1333.
+_LETTER: Final = r"[A-Za-z]\w{0,20}"
+_VALUE: Final = r"[^,;=\n()\[\]{}#%]{1,40}"
+_TUPLE: Final = re.compile(
+    rf"[ \t\r]*(?P<line>\(?(?P<names>{_LETTER}(?:[ \t]*,[ \t]*{_LETTER}){{1,11}})\)?[ \t]*=(?!=)"
+    rf"[ \t]*\(?(?P<values>{_VALUE}(?:,{_VALUE}){{1,11}})\)?)[ \t\r]*(?:[#%][^\n]*)?(?:[;\n]|\Z)"
+)
+_TUPLES: Final = re.compile(rf"(?:(?<=[;\n])|\A){_TUPLE.pattern}")
 _NUMBER: Final = re.compile(r"[-+]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+]?\d{1,3})?")
 _HARMLESS: Final = re.compile(
     r"[ \t\r]*(?:(?:syms|clc|clear|close|format|pkg|load|import|from)\b[^;\n]*)?(?:[;,\n]|\Z)"
@@ -167,11 +175,31 @@ def _given_values(source: SourceText) -> tuple[list[GivenValue], int]:
             if not value.is_itself:
                 found.append(value)
             at = assignment.end()
+        elif (several := _TUPLE.match(text, at)) and (pairs := _pairs_of(several)):
+            line = source.cut(*several.span("line"))
+            found += [GivenValue(*pair, line) for pair in pairs]
+            at = several.end()
         elif harmless := _HARMLESS.match(text, at):
             at = harmless.end()
         else:
             break
     return found, at
+
+
+def _pairs_of(assignment: re.Match[str]) -> list[tuple[str, str]]:
+    # Return the letters with their values; [] if their numbers differ.
+    names = [name.strip() for name in assignment["names"].split(",")]
+    values = [value.strip() for value in assignment["values"].split(",")]
+    return [*zip(names, values, strict=True)] if len(names) == len(values) else []
+
+
+def without_tuples(text: str) -> str:
+    """Return the text with one assignment for each letter: ``d1, d4 = 1, 2`` is two lines."""
+
+    def lines(found: re.Match[str]) -> str:
+        return "".join(f"{name} = {value}\n" for name, value in _pairs_of(found)) or found[0]
+
+    return _TUPLES.sub(lines, text)
 
 
 def _without_display(source: SourceText) -> SourceText:

@@ -10,6 +10,7 @@ from service.grading.reading.preview import PastedPreview, preview_pasted
 HEADERS = "a,alpha,d,theta"
 ROWS = ("0, pi/2, d1, q1", "a2, 0, 0, q2", "-a2/2, 0, 0, q3")
 TABLE = "[" + "; ".join(ROWS) + "]"
+LISTS = "[" + ", ".join(f"[{row}]" for row in ROWS) + "]"
 LINKS = (
     "L(1) = Revolute('d', d1, 'alpha', pi/2);\nL(2) = Revolute('a', a2);\n"
     "L(3) = Revolute('a', -a2/2);"
@@ -30,6 +31,9 @@ def codes(read: PastedPreview) -> list[str]:
         f"d1 = 0.1625; a2 = -0.425;\nDH = {TABLE}",
         f"d1 = 0.1625  % height\na2 = -0.425  % upper arm\nDH = {TABLE}",
         f"d1 = 0.1625;\na2 = -0.425;\n{LINKS}",
+        f"import numpy as np\nd1, a2 = 0.1625, -0.425  # the lengths\nDH = np.array({LISTS})",
+        f"(d1, a2) = (0.1625, -0.425)\nDH = {LISTS}",
+        f"x, a2, y, d1 = 1, -0.425, 2, 0.1625\n{LINKS}",
         "\n".join(["d1 = 0.1625, a2 = -0.425", HEADERS, *ROWS]),
     ],
 )
@@ -42,7 +46,19 @@ def test_a_letter_means_its_number(text: str, catalogue: Mapping[str, Exercise])
 
 @pytest.mark.parametrize(
     "given",
-    ["d1 = 0.1; d1 = 0.2;", "", "d1 = 2*a2;", "d1 = 0.1; d1 = d1 + 0.2;", "d1 = 0.1;\nd1 *= 2;"],
+    [
+        "d1 = 0.1; d1 = 0.2;",
+        "",
+        "d1 = 2*a2;",
+        "d1 = 0.1; d1 = d1 + 0.2;",
+        "d1 = 0.1;\nd1 *= 2;",
+        "d1, x = 0.1, 2\nd1 = 0.3",
+        "d1, x = 0.1, 2, 3",
+        "x, d1 = 0.1, 2*y",
+        "x, d1 = 0.1, f(2)",
+        "d1, x = x, 0.1",
+        "d1 = x = 0.1",
+    ],
 )
 @pytest.mark.parametrize("table", [f"DH = {TABLE}", LINKS, "\n".join([HEADERS, *ROWS])])
 def test_a_letter_without_one_number_is_unknown(
@@ -52,8 +68,18 @@ def test_a_letter_without_one_number_is_unknown(
     assert not preview_pasted(text, catalogue["ur5e"], "table").ok
 
 
-def test_letters_of_the_exercise_keep_their_meaning(catalogue: Mapping[str, Exercise]) -> None:
-    text = "a1 = 0.4; a2 = 0.3;\nDH = [a1 0 0 q1; a2 0 0 q2]"
+@pytest.mark.parametrize("given", ["a1 = 0.4; a2 = 0.3;", "a1, a2 = 0.4, 0.3"])
+def test_letters_of_the_exercise_keep_their_meaning(
+    given: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    text = f"{given}\nDH = [a1 0 0 q1; a2 0 0 q2]"
     read = preview_pasted(text, catalogue["planar-rr"], "table")
     assert lengths(read) == [("a1", "0"), ("a2", "0")]
     assert codes(read) == ["given_numbers"]
+
+
+def test_letters_that_change_places_are_refused(catalogue: Mapping[str, Exercise]) -> None:
+    text = "a1, a2 = a2, a1\nDH = [[a1, 0, 0, q1], [a2, 0, 0, q2]]"
+    read = preview_pasted(text, catalogue["planar-rr"], "table")
+    assert read.problem is not None
+    assert read.problem.code == "given_value"
