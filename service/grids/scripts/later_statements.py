@@ -7,19 +7,22 @@ Nothing is run. A statement is left out only if it cannot change the table, its 
 # DH(1,2), could tell that the columns have another order, and so could the name of a parameter.
 
 import re
+from collections.abc import Sequence
 from typing import Final
 
 from service.grids.cutting.pairs import BRACKET, split, strict_pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import without_remarks
 
-# Signs of another unit, of another order, or of a toolbox, whose matrices have another order.
+# Signs of another unit or of another order.
 _TELLS: Final = re.compile(
-    r"deg|rad|180|1000|57\.|1e-?3|\.001|[sc][oi][sn]d|tand|(?<!\w)[mc]m(?!\w)"
+    r"deg|rad|180|1000|57\.|1e-?3|\.001|(?<!\w)(?:a?(?:sin|cos|tan)d|[mc]m)(?!\w)"
     r"|flip|swap|rot90|shift|transpos|permut|sort|revers|shuffle|order|convert|scal|unit"
-    r"|eval|exec|assignin|link|revolute|prismatic|dhrobot|rigidbody|setfixed",
+    r"|eval|exec|assignin",
     re.IGNORECASE,
 )
+# Toolboxes, whose matrices have another order.
+_TOOLBOX: Final = re.compile(r"link|revolute|prismatic|dhrobot|rigidbody|setfixed", re.IGNORECASE)
 _PARAMETER: Final = re.compile(
     r"(?<![^\W\d_])(?:a|d|r|(?i:al|alpha|alfa|th|theta|twist|offset|angle)|[αθ])_?[ijn]?(?![^\W_])"
 )
@@ -113,10 +116,26 @@ def without_print(source: SourceText) -> SourceText:
     if printed is None or _TELLS.search(printed[0]):
         return source
     rest = source.cut(printed.end(), len(source.text))
-    named = _PARAMETER.findall(_IN_ORDER.sub(_ROW, printed[0]))
-    if not named or named == _PARAMETER.findall(rest.text.lstrip().partition("\n")[0]):
+    named = _PARAMETER.findall(printed[0])
+    if not tells(printed[0]) or named == _PARAMETER.findall(rest.text.lstrip().partition("\n")[0]):
         return rest
     return source
+
+
+def tells(text: str) -> bool:
+    """True if a text may name another unit or another order of the columns than a, α, d, θ."""
+    return bool(_TELLS.search(text) or _PARAMETER.search(_IN_ORDER.sub(_ROW, text)))
+
+
+def first_change(later: Sequence[SourceText], table: str) -> SourceText | None:
+    """Return the first statement after a table that may change it, or None."""
+    rows = {_ROW}
+    for each in later:
+        is_other = not {table, *rows} & set(_WORD.findall(each.text))
+        is_harmless = is_other and not _TELLS.search(each.text)
+        if not is_harmless and not _is_use(each.text, table, rows, set()):
+            return each
+    return None
 
 
 def _is_echo(written: str, later: str, name: str) -> bool:
@@ -145,7 +164,7 @@ def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool
     text = _IN_ORDER.sub(_ROW, re.sub(_COUNTED.format(table=table), "1", statement))
     if not text:
         return True
-    if len(text) > _LONGEST or _TELLS.search(text) or _PARAMETER.search(text):
+    if len(text) > _LONGEST or _TOOLBOX.search(text) or tells(text):
         return False
     text = _STRING.sub("''", text)
     if loop := _LOOP.match(text):

@@ -14,11 +14,12 @@ from typing import Final
 from service.expressions.errors import Note
 from service.grids.cutting.grid import grid, too_many_rows
 from service.grids.cutting.limits import GRID_LIMITS
-from service.grids.cutting.pairs import strict_pairs
+from service.grids.cutting.pairs import CLOSES, strict_pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import matlab
 from service.grids.matrices.lists import unquoted
-from service.grids.scripts.program_text import MAKERS
+from service.grids.scripts.later_statements import first_change, tells
+from service.grids.scripts.program_text import MAKERS, text_around
 from service.grids.scripts.script import (
     RobotTable,
     arguments,
@@ -27,6 +28,7 @@ from service.grids.scripts.script import (
     statements,
     unread_script,
 )
+from service.grids.scripts.titles import UNIT
 from service.translations import say, say_count
 
 _DICTIONARY: Final = re.compile(
@@ -51,6 +53,8 @@ _HARMLESS: Final = re.compile(
     r"|\w+\s*=\s*(?:table|length|len|numel|size)\([\w, ]+\)\Z"
 )
 _FRAME: Final = "DataFrame"
+_UNIT: Final = re.compile(rf"{UNIT.pattern}|(?<!\w)m(?!\w)", re.IGNORECASE)
+_KEYWORDS: Final = frozenset({"data", "columns", "index", "dtype"})
 _TITLES: Final = frozenset({"robot", "name", "title", "model"})
 _DASH: Final = re.compile(r"-[ \t]{1,8}(?=\{)")
 _OPENS_ITEMS: Final = re.compile(r"\{|dict\(")
@@ -65,6 +69,8 @@ class _Item:
 def describes_columns(text: str) -> bool:
     """True if a text seems to contain a dictionary."""
     # LaTeX has braces and colons, too.
+    if "DataFrame(" in text:
+        return True
     names = {_COLUMNS[found[1]] for found in islice(_LIST.finditer(text), GRID_LIMITS.columns)}
     if len(names) == len(_PARAMETERS) or "VariableNames" in text:
         return True
@@ -85,21 +91,81 @@ def read_columns(source: SourceText) -> RobotTable | None:
         return _by_column(*columns, source)
     if rows := _dashed_rows(found_statements):
         return _by_row(rows, source)
-    for statement in found_statements:
-        if rows := _row_items(statement):
-            return _by_row(rows, source)
-        if columns := _table_call(statement):
-            return _by_column(*columns, source)
-        found = _items(statement)
-        if not found:
-            continue
-        keys = [_KEY.fullmatch(item.key.text) for item in found]
-        if all(keys):
-            return _by_index(found, [(_COLUMNS[k[1]], int(k[2])) for k in keys if k], source)
-        lists = [_list(item.value) for item in found]
-        if all(lists) and len(lists) >= len(_PARAMETERS):
-            return _by_column(found, [each for each in lists if each], source)
+    for i, statement in enumerate(found_statements):
+        if table := _table_in(statement, source):
+            _check_later(statement, found_statements[i + 1 :])
+            return table
     return None
+
+
+def _table_in(statement: SourceText, source: SourceText) -> RobotTable | None:
+    if rows := _row_items(statement):
+        return _by_row(rows, source)
+    if columns := _table_call(statement):
+        return _by_column(*columns, source)
+    if lines := _listed_rows(statement):
+        return RobotTable(grid("rows", lines, source.whole), has_headers=True)
+    found = _items(statement)
+    keys = [_KEY.fullmatch(item.key.text) for item in found]
+    if found and all(keys):
+        return _by_index(found, [(_COLUMNS[k[1]], int(k[2])) for k in keys if k], source)
+    lists = [_list(item.value) for item in found]
+    if all(lists) and len(lists) >= len(_PARAMETERS):
+        return _by_column(found, [each for each in lists if each], source)
+    return None
+
+
+def _check_later(statement: SourceText, later: list[SourceText]) -> None:
+    """Raise GridError if a later statement may change the table of a statement."""
+    name = _NAME.match(statement.text)
+    if change := first_change(later, name[0].rstrip("= \t") if name else ""):
+        raise text_around(change)
+
+
+def _listed_rows(statement: SourceText) -> list[list[SourceText]]:
+    """Return the rows of ``DataFrame([[…], …], columns=[…])``, with its headers above them.
+
+    Also return the rows of an object with one list of rows, such as ``{"dh": [[…], …]}``. Return []
+    for any other text.
+    """
+    name = _NAME.match(statement.text)
+    value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
+    call = split_call(value)
+    if call and call[0] == _FRAME:
+        return _frame_rows(arguments(call[1]))
+    items = _items(value) if value.text.startswith("{") else []
+    listed = [item.value for item in items if item.value.text[:1] in CLOSES]
+    others = [item for item in items if item.key.text not in _TITLES]
+    texts = [each.text for item in others for each in (item.key, item.value) if each not in listed]
+    if len(listed) != 1 or any(tells(text) or _UNIT.search(text) for text in texts):
+        return []
+    return _rows_of(listed[0])
+
+
+def _frame_rows(given: list[SourceText]) -> list[list[SourceText]]:
+    named: dict[str, SourceText] = {}
+    for each in given:
+        keyword = _NAME.match(each.text)
+        key = keyword[0].rstrip("= \t") if keyword else "data"
+        if key in named or key not in _KEYWORDS:
+            return []
+        named[key] = each.cut(keyword.end() if keyword else 0, len(each.text))
+    rows = _rows_of(named["data"]) if "data" in named else []
+    if "columns" not in named or not rows:
+        return rows
+    headers = _list(named["columns"])
+    return [headers, *rows] if headers else []
+
+
+def _rows_of(value: SourceText) -> list[list[SourceText]]:
+    """Return the values in a list of lists, or []."""
+    call = split_call(value)
+    if call and call[0] in MAKERS:
+        value = call[1].strip()
+    if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
+        return []
+    rows = [_list(each) for each in arguments(value.cut(1, len(value.text) - 1))]
+    return [row for row in rows if row] if all(rows) else []
 
 
 def _items(statement: SourceText) -> list[_Item]:

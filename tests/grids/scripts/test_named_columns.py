@@ -1,8 +1,8 @@
-"""Read a script with four lists, one for each column of a table."""
+"""Named lists, objects and data frames are tables if no other statement can change them."""
 
 import pytest
 
-from service.grids import read_robot
+from service.grids import GridError, read_grid, read_robot
 
 LISTS = "a = [0 l2]; alpha = [0 pi/2]; d = [0 0]; theta = [q1 q2];"
 ROWS = [["a", "alpha", "d", "theta"], ["0", "0", "0", "q1"], ["l2", "pi/2", "0", "q2"]]
@@ -45,3 +45,88 @@ def test_a_list_of_yaml_has_a_row_in_each_item() -> None:
 )
 def test_any_other_statement_leaves_the_table_unread(text: str) -> None:
     assert read_robot(text) is None
+
+
+LINES = '[["0", 0, 0, "q1"], ["l2", "pi/2", 0, "q2"]]'
+ITEMS = "[{'a': 0, 'alpha': 0, 'd': 0, 'theta': q1}, {'a': l2, 'alpha': pi/2, 'd': 0, 'theta': q2}]"
+TURNED = '[["q1", 0, 0, "0"], ["q2", 0, "l2", "pi/2"]]'
+HEADERS = "columns=['a', 'alpha', 'd', 'theta']"
+
+
+def cells(text: str) -> list[list[str]]:
+    robot = read_robot(text)
+    grid = robot.grid if robot else read_grid(text, of_table=True)
+    return [[cell.text for cell in row] for row in grid.rows]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f'{{"dh_parameters": {LINES}}}',
+        f'{{"robot": "2-link arm", "convention": "standard", "n": 2, "links": {LINES}}}',
+        f"dh = {{'table': {LINES}}}\nprint(dh)",
+        f"pd.DataFrame({LINES})",
+        f"import pandas as pd\ndf = pd.DataFrame(np.array({LINES}))\ndf",
+    ],
+)
+def test_an_object_or_a_data_frame_may_hold_the_rows(text: str) -> None:
+    assert cells(text) == ROWS[1:]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"pd.DataFrame({LINES}, {HEADERS})",
+        f"dh = pd.DataFrame(data={LINES}, index=[1, 2], {HEADERS})\nprint(dh)",
+        f"dh = pd.DataFrame({HEADERS}, data={LINES})\nT = chain(dh)",
+        f"dh = {ITEMS}\nfor row in dh:\n    T = T @ transform(row)",
+    ],
+)
+def test_the_columns_of_a_data_frame_are_headers(text: str) -> None:
+    assert cells(text) == ROWS
+
+
+def test_the_columns_of_a_data_frame_may_be_in_any_order() -> None:
+    found = cells(f"pd.DataFrame({TURNED}, columns=['theta', 'd', 'a', 'alpha'])")
+    assert found[0] == ["theta", "d", "a", "alpha"]
+    assert found[2] == ["q2", "0", "l2", "pi/2"]
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f'{{"unit": "degrees", "dh": {LINES}}}',
+        f'{{"angles": "deg", "dh": {LINES}}}',
+        f'{{"lengths": "mm", "dh": {LINES}}}',
+        f'{{"length": "m", "dh": {LINES}}}',
+        f'{{"dh_in_degrees": {LINES}}}',
+        f'{{"order": "other", "dh": {LINES}}}',
+        f'{{"columns": "theta, d, a, alpha", "dh": {LINES}}}',
+        f'{{"columns": ["theta", "d", "a", "alpha"], "dh": {LINES}}}',
+        f'{{"theta_d_a_alpha": {LINES}}}',
+        f'{{"left": {LINES}, "right": {TURNED}}}',
+        f'{{"base": {{"d": 1}}, "dh": {LINES}}}',
+        f'{{"dh": {LINES}, "offsets": [0, 1]}}',
+        f'{{"arm": {{"dh": {LINES}}}}}',
+        f"pd.DataFrame({LINES}, columns=names)",
+        f"pd.DataFrame({LINES}, columns='theta d a alpha'.split())",
+        f"pd.DataFrame({LINES}, [1, 2], ['theta', 'd', 'a', 'alpha'])",
+        f"pd.DataFrame({LINES}, {HEADERS}).T",
+        f"pd.DataFrame({LINES}, {HEADERS}) * 2",
+        f"df = pd.DataFrame({LINES})\ndf.columns = ['theta', 'd', 'a', 'alpha']",
+        f"df = pd.DataFrame({LINES}, {HEADERS})\ndf['alpha'] = np.deg2rad(df['alpha'])",
+        f"df = pd.DataFrame({LINES}, {HEADERS})\ndf.alpha *= pi/180",
+        f"df = pd.DataFrame({LINES}, {HEADERS})\ndf.loc[0, 'a'] = 3",
+        f"df = pd.DataFrame({LINES}, {HEADERS})\ndf.drop(0, inplace=True)",
+        f"df = pd.DataFrame({LINES}, {HEADERS})\ndf = df[::-1]",
+        f"dh = {ITEMS}\nfor row in dh:\n    row['alpha'] = np.radians(row['alpha'])",
+        f"dh = {ITEMS}\nfor row in dh: row['alpha'] *= x",
+        f"dh = {ITEMS}\nfirst = dh[0]\nfirst['a'] = 3",
+        f"dh = {ITEMS}\ndh[0].update(a=3)",
+        f"dh = {ITEMS}\ndh.append(dict(a=1, alpha=0, d=0, theta=q3))",
+        f"dh = {ITEMS}\ndh = {ITEMS}",
+    ],
+)
+def test_an_object_or_a_data_frame_that_may_mean_something_else_is_refused(text: str) -> None:
+    with pytest.raises(GridError):
+        cells(text)

@@ -150,7 +150,7 @@ def test_an_uncertain_table_is_refused(text: str, code: str, marked: str | None)
         "Link(i) & a & alpha & d & theta",
         "DH = [a1 0 0 q1]; % for SerialLink(DH)",
         '[{"a": 1, "d": 2}]',
-        '{"rows": [[0, 0, 0, 1]]}',
+        '{"rows": [0, 0, 0, 1]}',
         r"\begin{tabular}{a:b:c:d} 1 & 2 \end{tabular}",
         "{alpha0: 0, a0: 0, d2: 1}",
         "{a1: 1, alpha2: 0, d1: 1}",
