@@ -19,11 +19,11 @@ from service.grids.formats import (
     tsv,
 )
 from service.grids.formats.data_frame import without_frame
-from service.grids.matrices import bracketed, drawn_matrix, maple, matlab_rows, word
+from service.grids.matrices import bracketed, drawn_matrix, eigen, maple, matlab_rows, word
 from service.grids.scripts.given_values import without_definitions, without_given_values
 from service.grids.scripts.later_statements import without_print, without_uses
 from service.grids.scripts.named_columns import describes_columns, read_columns
-from service.grids.scripts.program_text import without_title
+from service.grids.scripts.program_text import without_function, without_title
 from service.grids.scripts.robot_script import describes_robot, read_script
 from service.grids.scripts.script import RobotTable
 from service.grids.scripts.session import session_outputs
@@ -33,9 +33,9 @@ from service.translations import say
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
 FORMATS: Final[tuple[GridFormat, ...]] = (
-    named_values.FORMAT, stacked.FORMAT, maple.FORMAT, html.FORMAT, word.FORMAT, latex.FORMAT,
-    drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT, matlab_rows.FORMAT, tsv.FORMAT,
-    semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
+    named_values.FORMAT, stacked.FORMAT, eigen.FORMAT, maple.FORMAT, html.FORMAT, word.FORMAT,
+    latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT, matlab_rows.FORMAT,
+    tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
 )  # fmt: skip
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
@@ -58,6 +58,7 @@ def read_grid(text: str, *, of_table: bool = False) -> Grid:
     if named_values.FORMAT.matches(source.text):
         # The label of the first row would be a title.
         return named_values.FORMAT.parse(source)
+    source = without_function(source)
     if of_table:
         source = without_print(without_uses(source))
     source, defined = without_definitions(source)

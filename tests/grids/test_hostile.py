@@ -30,7 +30,9 @@ FRAGMENTS = [
     "SerialLink([", "\nL(1) = Link([0 0 ", "Revolute('d', ", "setFixedTransform(j1, ", "{'a': [",
     "■(", "@", "┆", "```\n", "~~~\n", "# A tibble: 3 × 4\n", "shape: (3, 4)\n", "[1,]", "[,1] ",
     ":: 3 axis, RRR, stdDH\n", "| j | theta | d | a | alpha | offset |\n", "dict(a=", "[{'a': ",
-    "T = f(DH)\n", "for i in DH:\n", "print(DH)\n", "3×4 Matrix{Num}:\n",
+    "R << ", "Matrix3d R;\n", "function R = f(x)\n", "(1, 2)\n", "%o5 ", "(a, α, d, θ) = (",
+    "d1, d4 = 1, 2\n", "pd.DataFrame([[", "T = f(DH)\n", "for i in DH:\n",
+    "print(DH)\n", "3×4 Matrix{Num}:\n",
     "Table 1:", "degrees\n", "，", "关节", "theta[1]", "% theta d a alpha\n", "\\begin{tblr}{",
 ]  # fmt: skip
 

@@ -4,6 +4,7 @@ from typing import Final
 
 from service.expressions.errors import Note
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
+from service.grids.cutting.pairs import outside, pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import lists, matlab
 from service.grids.scripts.program_text import begins_as_matrix, text_around, unwrap
@@ -13,7 +14,25 @@ from service.translations import say
 _MATLAB_FUNCTIONS: Final = frozenset({"", "sym", "simplify"})
 
 
+def _lines(source: SourceText) -> list[SourceText]:
+    """Return the texts in round brackets if each line is one row in them: ``(l1, 0, 0, q1)``."""
+    lines = [line for each in source.lines() if (line := each.strip(" \t,;")).text]
+    inner = [line.cut(1, len(line.text) - 1) for line in lines]
+    for line, row in zip(lines, inner, strict=True):
+        if line.text[0] != "(" or pairs(line.text).get(0) != len(line.text):
+            return []
+        if all(row.text[i] != "," for i in outside(row.text, pairs(row.text))):
+            return []
+    return inner if len(inner) > 1 else []
+
+
+def _matches(text: str) -> bool:
+    return begins_as_matrix(text) or bool(_lines(SourceText.of(text)))
+
+
 def _parse(source: SourceText) -> Grid:
+    if lines := _lines(source):
+        return grid("rows in brackets", lists.rows(lines), source.whole)
     matrix = unwrap(source)
     notes: tuple[Note, ...] = ()
     if len(matrix.groups) == 1:
@@ -51,4 +70,4 @@ def _refuse_objects(rows: list[list[SourceText]]) -> None:
                 )
 
 
-FORMAT: Final = GridFormat(begins_as_matrix, _parse)
+FORMAT: Final = GridFormat(_matches, _parse)

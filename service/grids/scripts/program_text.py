@@ -33,6 +33,11 @@ _NAMES: Final = re.compile(
     r"(?::=?|=)(?!=)\s*){0,4}"
     r"(?:\(sym \d+ ?[x×] ?\d+ matrix\)\s*)?"
 )
+# A function of MATLAB, Octave or Julia: function R = rotx(phi) … end.
+_FUNCTION: Final = re.compile(
+    r"\s*function\s+(?:\[?(?P<output>\w{1,40})\]?\s*=\s*)?\w{1,40}\s*"
+    r"(?:\([\w, ~]{0,100}\))?[ \t]*[\n;,](?P<body>(?s:.)*?)(?:(?<=[\s;])end(?:function)?[\s;]*)?"
+)
 # A name on a line of its own above its value: MATLAB's ``ans =``.
 _TITLE: Final = re.compile(
     r"\s*(?:[^\W\d][\w{}^]{0,20}(?:\([\w,: ]{0,40}\))?[ \t]*:?=[ \t]*\r?\n\s*){1,3}"
@@ -91,6 +96,17 @@ def without_title(source: SourceText) -> SourceText:
     """Return the text without a first line that is only a name, such as ``ans =``."""
     title = _TITLE.match(source.text)
     return source.cut(title.end(), len(source.text)) if title else source
+
+
+def without_function(source: SourceText) -> SourceText:
+    """Return the body of the one function in a text, if the body sets the function's output."""
+    found = _FUNCTION.fullmatch(source.text)
+    if found is None or "function" in found["body"]:
+        return source
+    body = source.cut(*found.span("body"))
+    output = found["output"]
+    is_output = re.compile(rf"(?:^|;)[ \t]*(?:return\s|{output or 'return'}[ \t]*=)", re.MULTILINE)
+    return body if not output or is_output.search(body.text) else source
 
 
 def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:

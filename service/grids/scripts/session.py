@@ -12,9 +12,9 @@ from service.grids.cutting.pairs import CLOSES
 from service.grids.cutting.source_text import SourceText, joined
 
 _MARK: Final = re.compile(
-    r"^[ \t]*(?:(?P<input>(?:Trial|EDU)?>>>?|In ?\[\d{0,5}\] ?:=?|\(%i\d{1,5}\)|octave:\d{1,5}>"
+    r"^[ \t]*(?:(?P<input>(?:Trial|EDU)?>>>?|In ?\[\d{0,5}\] ?:=?|\(?%i\d{1,5}\)?|octave:\d{1,5}>"
     r"|sage:|julia>)"
-    r"|Out ?\[\d{0,5}\] ?(?://\w{1,20})?[=:]|\(%o\d{1,5}\))[ \t]*",
+    r"|Out ?\[\d{0,5}\] ?(?://\w{1,20})?[=:]|\(?%o\d{1,5}\)?)[ \t]*",
     re.MULTILINE,
 )
 # Python's prompt before the second and later lines of an input.

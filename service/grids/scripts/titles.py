@@ -20,7 +20,9 @@ _BARS: Final = "|│┃║"
 # The separators of rows; the first that at least two lines have is the one of the table.
 _SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
 # A bracket that is not the unit in a header.
-_PROGRAM: Final = re.compile(r"\[(?!(?:in )?(?:[cm]?m|deg|rad|°)\])|■|(?<!\w)(?:dict|np|sp)(?!\w)")
+_PROGRAM: Final = re.compile(
+    r"\[(?!(?:in )?(?:[cm]?m|deg|rad|°)\])|■|<<|(?<!\w)(?:dict|np|sp)(?!\w)"
+)
 _ENVIRONMENT: Final = re.compile(r"\\(?:begin|end) ?\{(?!document\})|\\[\[\]]|\$\$")
 _PADDING: Final = " \t;,"
 _EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
