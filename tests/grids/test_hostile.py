@@ -32,7 +32,7 @@ FRAGMENTS = [
     ":: 3 axis, RRR, stdDH\n", "| j | theta | d | a | alpha | offset |\n", "dict(a=", "[{'a': ",
     "R << ", "Matrix3d R;\n", "function R = f(x)\n", "(1, 2)\n", "%o5 ", "(a, α, d, θ) = (",
     "d1, d4 = 1, 2\n", "pd.DataFrame([[", "T = f(DH)\n", "for i in DH:\n",
-    "print(DH)\n", "3×4 Matrix{Num}:\n",
+    "{|\n", "\n|-\n", "\n| ", "print(DH)\n", "3×4 Matrix{Num}:\n",
     "Table 1:", "degrees\n", "，", "关节", "theta[1]", "% theta d a alpha\n", "\\begin{tblr}{",
 ]  # fmt: skip
 

@@ -90,7 +90,7 @@ def _tag(source: SourceText, table: _Table, tag: re.Match[str], end: int) -> int
     if name == "tr" and not closes:
         table.rows.append([])
     elif name in {"td", "th"} and not closes:
-        _refuse_span(source, start, end)
+        refuse_span(source, start, end)
         table.cell_at = end
         if not table.rows:
             table.rows.append([])
@@ -122,7 +122,8 @@ def _table_tag(table: _Table, place: tuple[int, int], *, closes: bool) -> None:
         raise GridError("two_tables", say("There are two tables here; paste one of them."), place)
 
 
-def _refuse_span(source: SourceText, start: int, end: int) -> None:
+def refuse_span(source: SourceText, start: int, end: int) -> None:
+    """Raise GridError if the attributes in [start, end) make a cell span others."""
     for span in _SPAN.finditer(source.text, start, end):
         if span[1] != "1":
             raise GridError(

@@ -1,11 +1,14 @@
-"""Cells between vertical bars: tables in Markdown, and drawn tables."""
+"""Cells between vertical bars: tables in Markdown and MediaWiki, and drawn tables."""
 
 import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.markup import without_tags
-from service.grids.cutting.source_text import SourceText
+from service.grids.cutting.source_text import SourceText, joined
+from service.grids.formats.html import refuse_span
+from service.grids.scripts.program_text import text_around
+from service.grids.scripts.titles import check_units
 from service.translations import say
 
 _BARS: Final = "|│┃║"
@@ -15,6 +18,14 @@ _DOUBLE: Final = re.compile(r"\|\|")
 _RULE: Final = re.compile(r"[\s|:+\-=_│┃║─━═┼╪╬┬┴├┤┌┐└┘╭╮╰╯┏┓┗┛┣┫┳┻╋╔╗╚╝╠╣╦╩╒╕╘╛╞╡╤╧╟╢┠┨┯┷]+")
 
 
+# MediaWiki: separators of cells, attributes of a cell, and marks of style.
+_WIKI_CELL: Final = re.compile(r"\|\||!!")
+_WIKI_ATTRIBUTES: Final = re.compile(
+    r"(?:\s{0,4}[a-z]{2,12}\s?=\s?(?:\"[^\"|]{0,80}\"|\w{1,20})){1,6}\s{0,4}\|"
+)
+_WIKI_STYLE: Final = re.compile(r"'{2,3}|</?(?:math|nowiki)>")
+
+
 def _matches(text: str) -> bool:
     lines = [line.strip() for line in text.strip().splitlines() if line.strip()]
     barred = [line for line in lines if _BAR.search(line)]
@@ -22,7 +33,9 @@ def _matches(text: str) -> bool:
 
 
 def _parse(source: SourceText) -> Grid:
-    rows = []
+    rows: list[list[SourceText]] = []
+    if source.text.lstrip().startswith("{|"):
+        return grid("MediaWiki", _wiki_rows(source), source.whole)
     for line in map(SourceText.strip, source.lines()):
         if not line.text or _is_rule(line.text):
             continue
@@ -48,6 +61,29 @@ def _cells(line: SourceText) -> list[SourceText]:
     if len(pieces) > 1 and not pieces[-1].text:
         pieces = pieces[:-1]
     return [without_tags(piece) for piece in pieces]
+
+
+def _wiki_rows(source: SourceText) -> list[list[SourceText]]:
+    rows: list[list[SourceText]] = [[]]
+    _, *lines = [line for line in map(SourceText.strip, source.lines()) if line.text]
+    for line in lines:
+        if line.text.startswith("|-"):
+            rows.append([])
+        elif line.text.startswith("|+"):
+            check_units(line)
+        elif line.text[0] in "|!" and line.text != "|}":
+            pieces = line.cut(1, len(line.text)).split(_WIKI_CELL)
+            rows[-1] += [_wiki_cell(piece) for piece in pieces]
+        elif line is not lines[-1] or line.text != "|}":
+            raise text_around(line)
+    return rows
+
+
+def _wiki_cell(piece: SourceText) -> SourceText:
+    if attributes := _WIKI_ATTRIBUTES.match(piece.text):
+        refuse_span(piece, 0, attributes.end())
+        piece = piece.cut(attributes.end(), len(piece.text))
+    return without_tags(joined(piece.split(_WIKI_STYLE), piece.at))
 
 
 FORMAT: Final = GridFormat(_matches, _parse)

@@ -173,16 +173,7 @@ def _is_few_words(line: str) -> bool:
 def _check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
     """Raise GridError if a sentence before or after the table may change its meaning."""
     for line in (*before, *after):
-        # The unit may apply to the table.
-        if UNIT.search(_FREEDOM.sub("", line.text)):
-            raise GridError(
-                "text_around",
-                say(
-                    "This line names a unit, but not its columns. Delete the line, and write the "
-                    "units into the headers, such as theta [deg]."
-                ),
-                line.whole,
-            )
+        check_units(line)
     corrections = [line for line in (*before, *after) if _EXCHANGES.search(line.text)]
     corrections += [line for line in after if _CORRECTS.search(line.text)]
     if corrections:
@@ -193,6 +184,20 @@ def _check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
                 "delete the sentence."
             ),
             corrections[0].whole,
+        )
+
+
+def check_units(line: SourceText) -> None:
+    """Raise GridError for a sentence with the name of a unit."""
+    # The unit may apply to the table.
+    if UNIT.search(_FREEDOM.sub("", line.text)):
+        raise GridError(
+            "text_around",
+            say(
+                "This line names a unit, but not its columns. Delete the line, and write the "
+                "units into the headers, such as theta [deg]."
+            ),
+            line.whole,
         )
 
 
