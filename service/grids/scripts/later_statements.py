@@ -22,7 +22,9 @@ _TELLS: Final = re.compile(
     re.IGNORECASE,
 )
 # Toolboxes, whose matrices have another order.
-_TOOLBOX: Final = re.compile(r"link|revolute|prismatic|dhrobot|rigidbody|setfixed", re.IGNORECASE)
+_TOOLBOX: Final = re.compile(
+    r"link[(.]|revolute|prismatic|dhrobot|rigidbody|setfixed", re.IGNORECASE
+)
 _PARAMETER: Final = re.compile(
     r"(?<![^\W\d_])(?:a|d|r|(?i:al|alpha|alfa|th|theta|twist|offset|angle)|[αθ])_?[ijn]?(?![^\W_])"
 )
@@ -42,7 +44,7 @@ _LONGEST: Final = 400
 # The number of rows.
 _COUNTED: Final = (
     r"(?<![\w.])(?:len|length|size|numel|nrows|height)\({table}(?:,\s?[01])?\)"
-    r"|(?<![\w.]){table}\.shape\[0\]"
+    r"|(?<![\w.]){table}\.(?:shape\[0\]|rows(?!\w))"
 )
 _STRING: Final = re.compile(r"(?<=[(,=\[{ ])(['\"])[^'\"\n]{0,200}\1")
 # The table and its name: DH = [, dh = np.array([.
@@ -60,16 +62,18 @@ _LISTED: Final = re.compile(
     rf"\[(?P<value>[^\[\]]*(?:\[[^\[\]]*\][^\[\]]*)*)\sfor\s(?P<names>{_NAMES})\sin\s(?P<over>[^\[\]]*)\]"
 )
 _ASSIGNED: Final = re.compile(
-    rf"(?P<left>{_NAMES}(?:\{{[\w+ -]{{1,20}}\}}|\([\w:,+ -]{{1,20}}\))?(?:\s?,\s?{_NAMES}){{0,5}})"
-    r"\s?=(?!=)\s?(?P<right>.+)",
+    rf"(?P<left>\[?{_NAMES}(?:\{{[\w+ -]{{1,20}}\}}|\([\w:,+ -]{{1,20}}\))?"
+    rf"(?:\s?,\s?{_NAMES}){{0,5}}\]?)\s?=(?!=)\s?(?P<right>.+)",
     re.DOTALL,
 )
 _SHOWN: Final = re.compile(
-    rf"(?:\w{{1,12}}\.)?(?:disp|display|print|println|pprint|pretty|fprintf|printf)\(.*\)|{_NAMES}"
-    r"(?:\{\d{1,2}\})?|(?:import|from|syms|clc|format|end\w{0,6})(?!\w)[^=]*",
+    r"(?:\w{1,12}\.)?(?:disp|display|print|println|pprint|pretty|fprintf|printf)\(.*\)"
+    rf"|{_NAMES}(?:\{{\d{{1,2}}\}})?(?:\s?[*@]\s?{_NAMES}(?:\{{\d{{1,2}}\}})?){{0,12}}"
+    r"|(?:import|from|syms|clc|format|end\w{0,6})(?!\w)[^=]*|if __name__ == '':",
     re.DOTALL,
 )
-_LITERAL: Final = re.compile(r"(?<![\w)\]}])[\[{](?!\s{0,4}[\]}])")
+# A matrix or a list, but not an empty list or a list of strings.
+_LITERAL: Final = re.compile(r"(?<![\w)\]}])[\[{](?!\s{0,4}(?:[\]}]|''))")
 _IS_TABLE: Final = re.compile(r"dh|tab|param", re.IGNORECASE)
 # The first line of an output, such as "3×4 Matrix{Num}:" or "DH =".
 _ECHO: Final = re.compile(
@@ -82,6 +86,7 @@ _PRINTED: Final = re.compile(
     r"\s{0,40}(?:(?:import|from)\s[^\n]{0,80}\n){0,4}(?:\w{1,12}\.)?(?:print|disp|display)\("
     r"(?:[\w.]{1,20}\()?\w{1,40}(?:=\w{1,12}|\.to_\w{1,12}\()?(?:,[^()\n]{0,200})?\){1,2}[ \t;]*\n"
 )
+_SET: Final = re.compile(r"([^\W\d]\w*)\s?=(?!=)")
 _WORD: Final = re.compile(r"[^\W\d]\w*")
 
 
@@ -164,7 +169,8 @@ def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool
     text = _IN_ORDER.sub(_ROW, re.sub(_COUNTED.format(table=table), "1", statement))
     if not text:
         return True
-    if len(text) > _LONGEST or _TOOLBOX.search(text) or tells(text):
+    is_set = not taken.isdisjoint(_SET.findall(text))
+    if is_set or len(text) > _LONGEST or _TOOLBOX.search(text) or tells(text):
         return False
     text = _STRING.sub("''", text)
     if loop := _LOOP.match(text):
@@ -175,14 +181,14 @@ def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool
     names, right = set(_WORD.findall(assigned["left"])), assigned["right"]
     if names & (taken | rows - {_ROW}) or any(map(_IS_TABLE.search, names)):
         return False
-    if listed := _LISTED.fullmatch(right):
+    if listed := _LISTED.search(right):
         if not _iterates(listed, table, rows, taken):
             return False
-        right = f"({listed['value']})"
+        right = f"{right[: listed.start()]}({listed['value']}){right[listed.end() :]}"
     elif row := _use_of(table).fullmatch(right):
         rows |= names
         return row["row"] is not None
-    return not _LITERAL.search(right) and _is_argument(right, table, rows)
+    return _is_argument(right, table, rows)
 
 
 def _iterates(loop: re.Match[str], table: str, rows: set[str], taken: set[str]) -> bool:
@@ -199,17 +205,17 @@ def _iterates(loop: re.Match[str], table: str, rows: set[str], taken: set[str]) 
 def _use_of(*names: str) -> re.Pattern[str]:
     return re.compile(
         rf"(?<![\w.])(?:{'|'.join(sorted(names))})(?!\w)"
-        r"(?P<row>\[[\w +-]{1,12}(?:,\s?:)?\]|\([\w +-]{1,12},\s?:\))?"
+        r"(?P<row>\[[\w +-]{1,12}(?:,\s?:)?\]|\([\w +-]{1,12},\s?:\)|\.row\([\w +-]{1,12}\))?"
     )
 
 
 def _is_argument(text: str, table: str, rows: set[str]) -> bool:
     """True if the table and its rows are only arguments of functions, or are shown."""
+    if _LITERAL.search(text):
+        return False
     for use in _use_of(table, *rows).finditer(text):
         before, after = text[: use.start()].rstrip(), text[use.end() :].lstrip()
-        is_alone = not before and not after
-        if not (
-            is_alone or (before.removesuffix("*")[-1:] in {"(", ","} and after[:1] in {")", ","})
-        ):
+        is_within = before.removesuffix("*")[-1:] in {"(", ","} and after[:1] in {")", ","}
+        if (before or after) and not is_within:
             return False
     return True

@@ -135,11 +135,12 @@ def _listed_rows(statement: SourceText) -> list[list[SourceText]]:
         return _frame_rows(arguments(call[1]))
     items = _items(value) if value.text.startswith("{") else []
     listed = [item.value for item in items if item.value.text[:1] in CLOSES]
-    others = [item for item in items if item.key.text not in _TITLES]
-    texts = [each.text for item in others for each in (item.key, item.value) if each not in listed]
-    if len(listed) != 1 or any(tells(text) or _UNIT.search(text) for text in texts):
-        return []
-    return _rows_of(listed[0])
+    is_clear = not any(
+        _UNIT.search(text) or (item.key.text not in _TITLES and tells(text))
+        for item in items
+        for text in (item.key.text, item.value.text * (item.value not in listed))
+    )
+    return _rows_of(listed[0]) if len(listed) == 1 and is_clear else []
 
 
 def _frame_rows(given: list[SourceText]) -> list[list[SourceText]]:
@@ -227,7 +228,11 @@ def _row_items(statement: SourceText) -> list[list[_Item]]:
     value = _value(statement)
     if value.text.startswith("{"):
         # JSON may name the list and the robot: {"robot": "RR", "table": [{…}, {…}]}.
-        items = [item for item in _items(value) if item.key.text not in _TITLES]
+        items = [
+            item
+            for item in _items(value)
+            if item.key.text not in _TITLES or _UNIT.search(item.value.text)
+        ]
         if len(items) != 1:
             return []
         value = items[0].value

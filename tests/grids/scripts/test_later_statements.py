@@ -24,7 +24,9 @@ def rows(text: str) -> list[list[str]]:
         "for k=1:2, T = T*dh(DH(k,:)); end",
         "for k = 1:n\n A(:,:,k) = dh(DH(k,1), DH(k,2), DH(k,3), DH(k,4));\nend",
         "disp('DH table:'); disp(DH)",
+        "T = array2table(DH, 'VariableNames', {'a', 'alpha', 'd', 'theta'})",
         "T = fkine(DH);\np = T(1:3, 4)",
+        "[T, A] = fkine(DH);\nA{1}*A{2}",
         "DH =\n[ a1, pi/2, 0, q1]\n[ a2, 0, d2, q2]",
         "\n2×4 Matrix{Num}:\n a1  1.5708   0  q1\n a2  0  d2  q2",
     ],
@@ -44,6 +46,9 @@ def test_statements_of_matlab_and_julia_may_use_the_table(later: str) -> None:
         "for i, row in enumerate(DH):\n    T = T @ dh(row[0], row[1], row[2], row[3])",
         "for a, alpha, d, theta in DH:\n    T = T @ dh(a, alpha, d, theta)",
         "Ts = [dh(*row) for row in DH]\nT = Ts[0] @ Ts[1]",
+        "T = reduce(np.matmul, [dh(*row) for row in DH])",
+        "for i in range(DH.rows):\n    T = T * dh(*DH.row(i))",
+        "if __name__ == '__main__':\n    print(DH)",
         "print(tabulate(DH, headers=['a', 'alpha', 'd', 'theta']))",
         "robot = Robot(DH)\nprint('Done', DH.shape[0])",
     ],
@@ -63,11 +68,13 @@ def test_the_toolbox_reads_a_matrix_in_its_own_order() -> None:
         # another table, or a part of it
         "DH = fliplr(DH)", "DH(1,2) = 0;", "DH(:,2) = DH(:,2)*pi/180;", "DH(3,:) = [0 0 0 q3];",
         "DH2 = f(DH);", "table = f(DH)", "M = [0 0 0 q1; 0 0 0 q2];", "T = f(DH, [4 3 1 2])",
-        "M = DH;\nM(:,2) = 0;", "DHn = [DH; 0 0 0 0];", "x = y = DH",
+        "M = DH;\nM(:,2) = 0;", "DHn = [DH; 0 0 0 0];", "x = y = DH", "[DH, T] = f(DH)",
         "for i = 1:2\n  DH(i,2) = f(i);\nend", "if x\n  T = dh(DH(1,:));\nend", "DH += 1",
         "DH[:, 1] = 0", "DH *= 2", "DH.sort()", "DH[0][1] = 0", "DH.append([0, 0, 0, 0])",
         "del DH[0]", "np.random.shuffle(DH)", "np.multiply(DH, 2, out=DH)", "DH, x = f(DH)",
-        "for row in DH:\n  row[1] = 3", "for r in DH:\n  r *= 2", "row = DH[0]\nrow[1] = 3",
+        "for row in DH:\n  row[1] = 3", "for r in DH:\n  r *= 2", "DH.row_del(0)",
+        "DH.row_swap(0, 1)", "T = f([r for r in DH if r[0]])", "T = f([2*r for r in DH])",
+        "row = DH[0]\nrow[1] = 3",
         "for DH in x:\n  print(DH)", "eval('DH = 1')", "from m import DH; DH = f(1)",
         # another unit
         "T = dh(deg2rad(DH(1,:)));", "T = dh(DH(1,:)*pi/180);", "T = dhd(DH(1,:), 'degrees');",
@@ -79,7 +86,9 @@ def test_the_toolbox_reads_a_matrix_in_its_own_order() -> None:
         "function T = dh(theta, d, a, alpha)\nT = 1;\nend", "T = dh(DH(1,:)');", "T = f(DH(:,1));",
         "for row = DH\n  T = T*dh(row);\nend", "T = fliplr(DH);",
         # another value of a letter
-        "q1 = 0;", "a1 = 2*x;",
+        "q1 = 0;", "a1 = 2*x;", "T = f(DH), d2 = 5", "disp(1), d2 = f(5)",
+        # a second matrix
+        "disp([0 0 0 q1; 0 0 0 q2])", "T = pd.DataFrame(DH, columns=['theta', 'd', 'a', 'alpha'])",
         # the output of another table
         "DH =\n[ a1, pi, 0, q1]\n[ a2, 0, d2, q2]", "T =\n[ a1, pi/2, 0, q1]\n[ a2, 0, d2, q2]",
         "\n2×4 Matrix{Num}:\n a1  90  0  q1\n a2  0  d2  q2\n a3  0  0  q3",

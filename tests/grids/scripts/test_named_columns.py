@@ -99,6 +99,8 @@ def test_the_columns_of_a_data_frame_may_be_in_any_order() -> None:
         f'{{"angles": "deg", "dh": {LINES}}}',
         f'{{"lengths": "mm", "dh": {LINES}}}',
         f'{{"length": "m", "dh": {LINES}}}',
+        f'{{"robot": "an arm, angles in degrees", "dh": {LINES}}}',
+        f'{{"title": "lengths in mm", "dh": {ITEMS}}}',
         f'{{"dh_in_degrees": {LINES}}}',
         f'{{"order": "other", "dh": {LINES}}}',
         f'{{"columns": "theta, d, a, alpha", "dh": {LINES}}}',
