@@ -37,6 +37,12 @@ _LABEL: Final = re.compile(
 _AND: Final = re.compile(
     r"(?:\A|\s)(?:and|und|y|et|with|mit|con|avec)(?:\s[^\W\d_]{3,20}){0,2}\s*\Z", re.IGNORECASE
 )
+# Words that change the parameter after them: "minus theta = q1".
+_CHANGED: Final = re.compile(
+    r"(?<!\w)(?:minus|plus|negative|half|twice|double|not|cos|sin|tan|menos|moins|nicht|halb|doppelt)"
+    r"\s*\Z",
+    re.IGNORECASE,
+)
 # Names before their values: (a, α, d, θ) = (l1, 0, 0, θ1).
 _ONE: Final = r"\s{0,4}\\?(?:alpha|alfa|α|theta|th|θ|ϑ|a|d)_?\{?(?:[\d₀-₉]{0,2}|[ijᵢ])\}?\s{0,4}"
 _GROUP: Final = re.compile(
@@ -106,6 +112,8 @@ def _items(source: SourceText) -> list[_Item]:
             written = _AND.sub("", written)
         value = unquoted(source.cut(name.end(), name.end() + len(written)).strip())
         is_within = len(found) % len(_COLUMNS) > 0
+        if _CHANGED.search(text, max(0, name.start() - 20), name.start()):
+            return []
         if label is None or _NOT_ONE.search(value.text) or (is_within and _LETTER.search(gap)):
             return []
         letter = _LETTERS.get(name["name"], name["name"])

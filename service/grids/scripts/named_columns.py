@@ -151,7 +151,9 @@ def _frame_rows(given: list[SourceText]) -> list[list[SourceText]]:
         if key in named or key not in _KEYWORDS:
             return []
         named[key] = each.cut(keyword.end() if keyword else 0, len(each.text))
-    rows = _rows_of(named["data"]) if "data" in named else []
+    # The index may be the names of parameters, and then each row is one.
+    is_counted = "index" not in named or not re.search(r"[^\W\d]", named["index"].text)
+    rows = _rows_of(named["data"]) if "data" in named and is_counted else []
     if "columns" not in named or not rows:
         return rows
     headers = _list(named["columns"])

@@ -41,6 +41,7 @@ _INLINE: Final = re.compile(
 _COMMAND: Final = re.compile(
     r"\\(?:(?:sub){0,2}section|(?:sub)?paragraph|chapter|title|emph|text(?:bf|it))\*?\{([^{}]{0,200})\}"
 )
+_ONLY_COMMAND: Final = re.compile(r"\\[a-z][^$]*\Z")
 # A legend of the stars that mark joint variables.
 _LEGEND: Final = re.compile(r"\*+\)?\s?[=:]")
 _WORD: Final = re.compile(
@@ -158,7 +159,7 @@ def _is_padded(line: str) -> bool:
 def _is_prose(line: str) -> bool:
     """True if a line has words, and no signs of a formula or of headers."""
     plain = _INLINE.sub(" ", _COMMAND.sub(r"\1 ", line)).strip()
-    if _is_few_words(plain) or (line and not plain):
+    if _is_few_words(plain) or (not plain and _ONLY_COMMAND.match(line)):
         return True
     line = plain
     if len({name[0] for name in _PARAMETER.finditer(line.lower())}) > 1:

@@ -110,6 +110,8 @@ def test_the_columns_of_a_data_frame_may_be_in_any_order() -> None:
         f'{{"base": {{"d": 1}}, "dh": {LINES}}}',
         f'{{"dh": {LINES}, "offsets": [0, 1]}}',
         f'{{"arm": {{"dh": {LINES}}}}}',
+        "pd.DataFrame([[1, 2, 3, 4]] * 4, index=['a', 'alpha', 'd', 'theta'])",
+        "pd.DataFrame([[l1, l2], [0, 0], [0, 0], [q1, q2]], index=['a', 'alpha', 'd', 'theta'])",
         f"pd.DataFrame({LINES}, columns=names)",
         f"pd.DataFrame({LINES}, columns='theta d a alpha'.split())",
         f"pd.DataFrame({LINES}, [1, 2], ['theta', 'd', 'a', 'alpha'])",
