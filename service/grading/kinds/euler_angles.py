@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from service.catalogue.parts.euler_angles import EulerAnglesSpec
-from service.grading.diagnosis.lists.angle import has_arctangent
+from service.grading.diagnosis.lists.angle import is_arctangent
 from service.grading.diagnosis.lists.euler_triple import WrongTriple, explain_triple
 from service.grading.diagnosis.lists.value_list import slips_of
 from service.grading.feedback import Finding
@@ -185,7 +185,7 @@ def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence
 
 def _arctangents(entries: Sequence[Entry]) -> list[bool]:
     expressions = [entry.expression for entry in entries]
-    return [each is not None and has_arctangent(each.tree) for each in expressions]
+    return [each is not None and is_arctangent(each.tree) for each in expressions]
 
 
 def _explained(

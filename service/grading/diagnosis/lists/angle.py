@@ -191,14 +191,14 @@ def half_turn(case: WrongValue) -> Hypotheses:
 )
 def swapped_atan2(case: WrongValue) -> Hypotheses:
     """The arguments of atan2 were exchanged."""
-    # If the angle is a constant without an arctangent, a wrong quarter turn is more likely.
-    if np.ptp(case.expected) > ROUNDED_VALUE or has_arctangent(case.expression.tree):
+    # If the angle is a constant and no arctangent, a wrong quarter turn is more likely.
+    if np.ptp(case.expected) > ROUNDED_VALUE or is_arctangent(case.expression.tree):
         yield Written(np.pi / 2 - case.expected, finding_on(case, ARGUMENTS_SWAPPED))
 
 
-def has_arctangent(tree: Node) -> bool:
-    """True if the formula contains an arctangent."""
-    return _calls(tree, "atan2", "atan")
+def is_arctangent(tree: Node) -> bool:
+    """True if the formula is an arctangent, not only contains one."""
+    return isinstance(tree, Call) and tree.function in ("atan2", "atan")
 
 
 def _calls(tree: Node, *functions: str) -> bool:

@@ -234,8 +234,8 @@ def angle_too_many(case: WrongEntry) -> Formulas:
     for symbol in _joint_angles(case):
         finding = says(
             say(
-                "{angle} does not belong in a sine or cosine here: the direction of a link is the "
-                "sum of the joint angles up to it, and of none after it.",
+                "{angle} does not belong in a sine or cosine here: check which joint angles add up "
+                "to this direction.",
                 angle=case.spelling.name(symbol),
             ),
         )

@@ -175,8 +175,12 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
 
     def direction(joint: Joint) -> Sentence:
         first = exercise.joints[0].index - 1
-        screw = screws()[exercise.joints.index(joint)]
-        cosine = screw[5] if joint.prismatic else screw[2]
+        at = exercise.joints.index(joint)
+        cosine = screws()[at, 5 if joint.prismatic else 2]
+        # Earlier joints turn the axis, unless they turn about an axis along z.
+        turning = [not each.prismatic for each in exercise.joints[:at]]
+        if (np.abs(screws()[:at][turning, 2]) < 1 - SAME_MOTION).any():
+            cosine = 0.0
         if cosine < -1 + SAME_MOTION:
             return say("Its axis points opposite to {axis}.", axis=f"z{first}")
         if cosine > 1 - SAME_MOTION:

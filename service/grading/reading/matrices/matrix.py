@@ -103,11 +103,16 @@ def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[lis
 
 def _row(row: object, i: int, quantities: Quantities, reader: Reader) -> list[Entry]:
     kinds = quantities[i]
-    if row is None:
+    if _is_empty(row):
         return [MISSING] * len(kinds)
     if not isinstance(row, list) or len(row) != len(kinds):
         return _of_wrong_length(len(row) if isinstance(row, list) else None, len(kinds))
     return [_entry(raw, (i, j), quantities, reader) for j, raw in enumerate(row)]
+
+
+def _is_empty(row: object) -> bool:
+    entries = row if isinstance(row, list) else [row]
+    return all(each is None or (isinstance(each, str) and not each.strip()) for each in entries)
 
 
 def _entry(raw: object, place: tuple[int, int], quantities: Quantities, reader: Reader) -> Entry:

@@ -63,3 +63,9 @@ def test_asin_loses_the_quadrant() -> None:
     finding = diagnose_angle(wrong("asin(sin(q1))", "q1"))
     assert finding.code == "lost_quadrant"
     assert "asin" in finding.hint
+
+
+def test_an_arctangent_in_a_sum_need_not_be_exchanged() -> None:
+    """Exchanging the arguments of atan2(0, 1) + π/2 gives π, not 0."""
+    assert diagnose_angle(wrong("atan2(0, 1) + pi/2", "0")).code == "quarter_turn"
+    assert diagnose_angle(wrong("atan2(1, 0)", "0")).code == "swapped_atan2"

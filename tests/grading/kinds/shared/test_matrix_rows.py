@@ -121,7 +121,7 @@ def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
     assert report.verdict is Verdict.PARTIAL
 
 
-@pytest.mark.parametrize("entries", [["0", "0", "0"], ["0"] * 5, [], "0 0 0 1", 1, {"1": "0"}])
+@pytest.mark.parametrize("entries", [["0", "0", "0"], ["0"] * 5, "0 0 0 1", 1, {"1": "0"}])
 def test_a_row_of_the_wrong_length_affects_only_itself(entries: object, arm: Exercise) -> None:
     report = graded_pose(arm, [*POSE[:3], entries])
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.UNREADABLE]

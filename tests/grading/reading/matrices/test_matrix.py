@@ -128,6 +128,14 @@ def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.MISSING]
 
 
+@pytest.mark.parametrize("empty", [None, [], "", " ", ["", ""], ["", None, "", ""]])
+def test_every_kind_of_empty_row_costs_the_same(empty: object, arm: Exercise) -> None:
+    report = part(handed_in(arm, {"pose": [*POSE[:2], empty, POSE[3]]}), "pose")
+    assert report.rows[2].verdict is Verdict.MISSING
+    wrong = part(handed_in(arm, {"pose": [*POSE[:2], ["5", "6", "7", "8"], POSE[3]]}), "pose")
+    assert report.points <= wrong.points
+
+
 def test_a_row_of_the_wrong_length_affects_only_itself(arm: Exercise) -> None:
     text = FORMATS["CSV"]([*POSE[:3], ["0", "0", "1"]])
     report = pasted(arm, text)
