@@ -117,8 +117,12 @@ def _table_in(statement: SourceText, source: SourceText) -> RobotTable | None:
 
 def _check_later(statement: SourceText, later: list[SourceText]) -> None:
     """Raise GridError if a later statement may change the table of a statement."""
-    name = _NAME.match(statement.text)
-    if change := first_change(later, name[0].rstrip("= \t") if name else ""):
+    found = _NAME.match(statement.text)
+    name = found[0].rstrip("= \t") if found else ""
+    if later and later[0].text.strip() == f"{name} =":
+        # MATLAB prints the table below its name; a statement has an = or a call.
+        later = [each for each in later[1:] if "=" in each.text or "(" in each.text]
+    if change := first_change(later, name):
         raise text_around(change)
 
 

@@ -24,6 +24,21 @@ def test_the_lists_are_columns(text: str) -> None:
     assert [[cell.text for cell in row] for row in robot.grid.rows] == ROWS
 
 
+MATLAB_TABLE = (
+    "T = table([0;l2],[0;pi/2],[0;0],[q1;q2],'VariableNames',{'a','alpha','d','theta'})\n\nT =\n\n"
+    "  2x4 table\n\n    a     alpha    d    theta\n    __    _____    _    _____\n\n"
+    "    0     0        0    q1\n    l2    1.5708   0    q2\n"
+)
+
+
+def test_the_output_below_a_table_of_matlab_is_left_out() -> None:
+    robot = read_robot(MATLAB_TABLE)
+    assert robot is not None
+    assert [[cell.text for cell in row] for row in robot.grid.rows] == ROWS
+    with pytest.raises(GridError):
+        read_robot(f"{MATLAB_TABLE}\nT.alpha = deg2rad(T.alpha)")
+
+
 def test_a_list_of_yaml_has_a_row_in_each_item() -> None:
     robot = read_robot(
         "- {a: 0, alpha: 0, d: 0, theta: q1}\n- {a: l2, alpha: pi/2, d: 0, theta: q2}"
