@@ -8,6 +8,7 @@ from pydantic import Field
 from service.catalogue.files.fields import GivenOrFree, Screw
 from service.catalogue.part import PartSpec
 from service.catalogue.robots.formulas import WrittenFormulas, screws_of
+from service.catalogue.robots.robot import Joint
 from service.catalogue.robots.screw_robot import Reference
 from service.catalogue.shapes import AnswerShape, choices, numbered
 
@@ -45,16 +46,17 @@ class ScrewAxesSpec(PartSpec):
         """The axes, if the file gives them."""
         return None if self.expected is None else screws_of("expected", self.expected)
 
-    def count(self, joints: Sequence[object]) -> int:
-        """The number of required axes for a robot with these joints."""
-        return len(self.expected or joints)
+    def numbers(self, joints: Sequence[Joint]) -> range:
+        """The numbers of the required axes: those of the joints, or from 1 for given axes."""
+        first = 1 if self.expected or not joints else joints[0].index
+        return range(first, first + len(self.expected or joints))
 
     def shape(self, reference: Reference | None) -> ScrewAxesShape:
         """The shape of a list of six-vectors."""
-        if self.expected is not None:
-            rows = numbered(len(self.expected))
-        else:
-            rows = [str(joint.index) for joint in reference.joints] if reference else []
+        numbers = self.numbers(reference.joints if reference else ())
         return ScrewAxesShape(
-            columns=numbered(6), rows=rows, frame=self.frame, directions=self.directions
+            columns=numbered(6),
+            rows=[str(number) for number in numbers],
+            frame=self.frame,
+            directions=self.directions,
         )

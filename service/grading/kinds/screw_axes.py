@@ -60,18 +60,18 @@ class ExpectedScrews:
 
 def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix:
     """Read a six-vector for each joint, in a list or a pasted text."""
-    count = part.count(grading.exercise.joints)
-    quantities = (SCREW,) * count
+    numbers = part.numbers(grading.exercise.joints)
+    quantities = (SCREW,) * len(numbers)
     if isinstance(answer, str) and answer.strip():
         try:
-            grid = screw_grid(answer, count, grading.reader)
+            grid = screw_grid(answer, numbers, grading.reader)
         except GridError as error:
             raise UnreadableAnswerError(from_grid_error(error)) from error
         rows = matrix_of_grid(grid, quantities, grading.reader)
-        if count != WIDTH or not _columns_are_axes(part, rows, grading):
+        if len(numbers) != WIDTH or not _columns_are_axes(part, rows, grading):
             return rows
         return _by_columns(rows, columns_as_axes(grid), grading)
-    return read_matrix(screw_rows(answer, count), quantities, grading.reader)
+    return read_matrix(screw_rows(answer, numbers), quantities, grading.reader)
 
 
 def _columns_are_axes(part: ScrewAxesSpec, rows: StudentMatrix, grading: Grading) -> bool:

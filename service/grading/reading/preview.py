@@ -143,7 +143,7 @@ def _preview(text: str, exercise: Exercise, spec: PartSpec, reader: Reader) -> P
     if isinstance(spec, FramesSpec):
         return _frames(text, frame_labels(exercise.robot, spec.convention), reader)
     if isinstance(spec, ScrewAxesSpec):
-        grid = screw_grid(text, spec.count(exercise.joints), reader)
+        grid = screw_grid(text, spec.numbers(exercise.joints), reader)
     else:
         grid = pasted_grid(text, reader)
     quantity: Kind = "angle" if spec.pasted_as == "angles" else "number"

@@ -140,7 +140,8 @@ def _places(
         () if product or other else indices_of(text)
         for text, product, other in zip(texts, products, changed, strict=True)
     ]
-    named, unusual = places_of(names, count)
+    first = int(labels[0])
+    named, unusual = places_of(names, range(first, first + count))
     found = [None if place is None else place - 1 for place in named]
     for i, place in enumerate(found):
         if place is not None and place in found[:i]:

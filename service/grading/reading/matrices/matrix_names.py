@@ -45,30 +45,32 @@ def is_product(name: str) -> bool:
     return (_PRODUCT.search(plain) or _SIDE_BY_SIDE.search(_COMMAND.sub(" ", plain))) is not None
 
 
-def places_of(names: Sequence[Indices], count: int) -> tuple[tuple[_Place, ...], str]:
-    """Return the number (or None) of each named link transform, and a note on unusual counting."""
-    # The numbers are 1 to ``count``.
-    # There are several ways to count: A0 may be the first link, and 12 may be the twelfth link or
-    # the link between frames 1 and 2. The way that gives the most link transforms is chosen. The
-    # note is empty for usual counting.
+def places_of(names: Sequence[Indices], numbers: range) -> tuple[tuple[_Place, ...], str]:
+    """Return the place (or None) of each named link transform, and a note on unusual counting."""
+    # ``numbers`` are the robot's own numbers of its links. There are several ways to count: by the
+    # robot's numbers or from 1, A0 may be the first link, and 12 may be the twelfth link or the
+    # link between frames 1 and 2. The way that gives the most link transforms is chosen, of equal
+    # ways the first. The note is empty for usual counting.
+    from_one = range(1, len(numbers) + 1)
     readings = [
-        (tuple(_valid(way(name, count), count) for name in names), unusual)
-        for way, unusual in _WAYS
+        (tuple(_place(way(name, counted[-1]), counted) for name in names), unusual)
+        for counted, ways in ((numbers, _WAYS[:2]), (from_one, _WAYS))
+        for way, unusual in ways
     ]
     return max(readings, key=lambda reading: len(set(reading[0]) - {None}))
 
 
-def _valid(place: _Place, count: int) -> _Place:
-    return place if place is not None and 1 <= place <= count else None
+def _place(number: int | None, numbers: range) -> _Place:
+    return numbers.index(number) + 1 if number is not None and number in numbers else None
 
 
-def _number(index: str, count: int) -> int:
-    return int(index) if index.isdigit() else count
+def _number(index: str, last: int) -> int:
+    return int(index) if index.isdigit() else last
 
 
-def _by_number(name: Indices, count: int) -> _Place:
+def _by_number(name: Indices, last: int) -> int | None:
     # A_2 has the link's number, T^1_2 the link's two frames.
-    numbers = [_number(index, count) for index in name]
+    numbers = [_number(index, last) for index in name]
     if len(numbers) == 1 and (len(name[0]) == 1 or name[0][0] != "0"):
         return numbers[0]
     if len(numbers) == 2 and abs(numbers[0] - numbers[1]) == 1:
@@ -76,33 +78,34 @@ def _by_number(name: Indices, count: int) -> _Place:
     return None
 
 
-def _by_frames(name: Indices, count: int) -> _Place:
+def _by_frames(name: Indices, last: int) -> int | None:
     # T_{12} has the link's two frames in one number.
     if len(name) == 1 and len(name[0]) == 2 and name[0].isdigit():
-        return _by_number(tuple(name[0]), count)
-    return _by_number(name, count)
+        return _by_number(tuple(name[0]), last)
+    return _by_number(name, last)
 
 
-def _from_zero(name: Indices, count: int) -> _Place:
+def _from_zero(name: Indices, last: int) -> int | None:
     # The first link is A_0.
-    return int(name[0]) + 1 if len(name) == 1 and name[0].isdigit() else _by_number(name, count)
+    return int(name[0]) + 1 if len(name) == 1 and name[0].isdigit() else _by_number(name, last)
 
 
-def _from_frame_one(name: Indices, count: int) -> _Place:
+def _from_frame_one(name: Indices, last: int) -> int | None:
     # The first link is T_{12}.
     pair = tuple(name[0]) if len(name) == 1 and name[0].isdigit() else name
-    numbers = [_number(index, count + 1) for index in pair]
+    numbers = [_number(index, last + 1) for index in pair]
     return min(numbers) if len(numbers) == 2 and abs(numbers[0] - numbers[1]) == 1 else None
 
 
-def _by_last_frame(name: Indices, count: int) -> _Place:
+def _by_last_frame(name: Indices, last: int) -> int | None:
     # All names start from frame 0: T_{02} is the second matrix.
     pair = tuple(name[0]) if len(name) == 1 else name
-    return _number(pair[1], count) if len(pair) == 2 and pair[0] == "0" else None
+    return _number(pair[1], last) if len(pair) == 2 and pair[0] == "0" else None
 
 
-# Ways to count, the most usual first, each with the template of its note.
-_WAYS: Final[tuple[tuple[Callable[[Indices, int], _Place], str], ...]] = (
+# Ways to count, the most usual first, each with the template of its note. A way gives the number
+# of a link; the number of the last link is its second argument.
+_WAYS: Final[tuple[tuple[Callable[[Indices, int], int | None], str], ...]] = (
     (_by_number, ""),
     (_by_frames, ""),
     (_from_zero, template("The names count from 0; the matrices were read as {matrices}.")),

@@ -39,8 +39,8 @@ _IN_HEADER: Final = (
 )
 
 
-def screw_grid(text: str, count: int, reader: Reader) -> Grid:
-    """Return the ``count`` screw axes in a pasted text, each a row of six cells.
+def screw_grid(text: str, numbers: range, reader: Reader) -> Grid:
+    """Return the screw axes of the joints ``numbers`` in a pasted text, each a row of six cells.
 
     A matrix of another form is returned unchanged. Raises GridError if there is no matrix.
     """
@@ -49,35 +49,35 @@ def screw_grid(text: str, count: int, reader: Reader) -> Grid:
     try:
         grid = pasted_grid(plain, reader)
     except GridError:
-        vectors = _of_vectors(plain, count, reader)
+        vectors = _of_vectors(plain, numbers, reader)
         if vectors is None:
             raise
         return vectors
     widths = {len(row) for row in grid.rows}
     if widths == {WIDTH}:
         return grid
-    if len(grid.rows) == WIDTH and widths == {count}:
+    if len(grid.rows) == WIDTH and widths == {len(numbers)}:
         return _of_columns(grid)
-    return _of_halves_in_cells(grid, count) or _of_vectors(plain, count, reader) or grid
+    return _of_halves_in_cells(grid, numbers) or _of_vectors(plain, numbers, reader) or grid
 
 
-def screw_rows(answer: object, count: int) -> object:
+def screw_rows(answer: object, numbers: range) -> object:
     """Return the rows of a JSON answer; an answer of another form is returned unchanged."""
     # An axis may have its halves as [ω, v] or {"omega": ω, "v": v}. A single axis needs no list
     # around it.
     if isinstance(answer, dict):
-        places = _places(list(answer), count)
+        places = _places(list(answer), numbers)
         if places is None:
             return answer
-        rows: list[object] = [None] * count
+        rows: list[object] = [None] * len(numbers)
         for place, axis in zip(places, answer.values(), strict=True):
             rows[place] = axis
         answer = rows
     if not isinstance(answer, list):
         return answer
-    if count == 1 and len(answer) > 1:
+    if len(numbers) == 1 and len(answer) > 1:
         answer = [answer]
-    if count != WIDTH and len(answer) == WIDTH and _is_table(answer, count):
+    if len(numbers) != WIDTH == len(answer) and _is_table(answer, len(numbers)):
         return [list(axis) for axis in zip(*answer, strict=True)]
     return [_one_axis(axis) for axis in answer]
 
@@ -117,7 +117,7 @@ def columns_as_axes(grid: Grid) -> Note:
     return Note("columns_as_axes", say("The columns were read as the axes."), place)
 
 
-def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
+def _of_halves_in_cells(grid: Grid, numbers: range) -> Grid | None:
     # Rows are ordered by their numbers, if they have any. None if a header names another vector,
     # such as q.
     rows = [[(cell, _vector_in(cell)) for cell in row] for row in grid.rows]
@@ -137,7 +137,7 @@ def _of_halves_in_cells(grid: Grid, count: int) -> Grid | None:
         axes.append([*vectors[halves.index(0)], *vectors[halves.index(1)]])
     labels = ["" if row[0][1] else row[0][0].text for row in rows]
     if any(map(indices_of, labels)):
-        placed = _placed(labels, axes, count)
+        placed = _placed(labels, axes, numbers)
         return None if placed is None else replace(grid, rows=tuple(map(tuple, placed)))
     return replace(grid, rows=tuple(map(tuple, axes)))
 
@@ -160,7 +160,7 @@ def _vector_in(cell: GridCell) -> list[GridCell]:
     return [number.strip() for number in numbers] if len(numbers) == _HALF else []
 
 
-def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
+def _of_vectors(text: str, numbers: range, reader: Reader) -> Grid | None:
     try:
         found = pasted_grids(text, reader)
     except GridError:
@@ -170,23 +170,27 @@ def _of_vectors(text: str, count: int, reader: Reader) -> Grid | None:
     if len(vectors) != len(found):
         return None
     if all(len(vector) == WIDTH for vector in vectors):
-        rows = _placed(names, vectors, count)
+        rows = _placed(names, vectors, numbers)
     elif all(len(vector) == _HALF for vector in vectors):
-        halves = [_half(name) for name in names]
-        first, second = (
-            _placed(
-                [name for name, half in zip(names, halves, strict=True) if half == wanted],
-                [vector for vector, half in zip(vectors, halves, strict=True) if half == wanted],
-                count,
-            )
-            for wanted in (0, 1)
-        )
-        if None in halves or first is None or second is None:
-            return None
-        rows = [[*omega, *velocity] for omega, velocity in zip(first, second, strict=True)]
+        rows = _of_halves(names, vectors, numbers)
     else:
         return None
     return None if rows is None else Grid("vectors", tuple(map(tuple, rows)))
+
+
+def _of_halves(
+    names: Sequence[str], vectors: Sequence[Sequence[GridCell]], numbers: range
+) -> list[Sequence[GridCell]] | None:
+    # All names count in the same way. None if the names contradict each other.
+    halves = [_half(name) for name in names]
+    places, _ = places_of([indices_of(name) for name in names], numbers)
+    found = dict(zip(zip(places, halves, strict=True), vectors, strict=True))
+    if set(halves) != {0, 1} or None in places or len(found) < len(vectors):
+        return None
+    empty = [SourceText.of("")] * _HALF
+    return [
+        [*found.get((i + 1, 0), empty), *found.get((i + 1, 1), empty)] for i in range(len(numbers))
+    ]
 
 
 def _cells(grid: Grid) -> list[GridCell]:
@@ -198,25 +202,25 @@ def _cells(grid: Grid) -> list[GridCell]:
 
 
 def _placed(
-    names: Sequence[str], vectors: Sequence[Sequence[GridCell]], count: int
+    names: Sequence[str], vectors: Sequence[Sequence[GridCell]], numbers: range
 ) -> list[Sequence[GridCell]] | None:
     # None if the names contradict each other.
-    places = _places(names, count)
+    places = _places(names, numbers)
     if places is None:
         return None
     by_place = dict(zip(places, vectors, strict=True))
     width = len(vectors[0])
-    return [by_place.get(i, [SourceText.of("")] * width) for i in range(count)]
+    return [by_place.get(i, [SourceText.of("")] * width) for i in range(len(numbers))]
 
 
-def _places(names: Sequence[str], count: int) -> list[int] | None:
+def _places(names: Sequence[str], numbers: range) -> list[int] | None:
     # If all names are empty, the places are in the given order. None if a place is unknown or
     # taken.
-    if not names or len(names) > count:
+    if not names or len(names) > len(numbers):
         return None
     if not any(names):
         return [*range(len(names))]
-    found, _ = places_of([indices_of(name) for name in names], count)
+    found, _ = places_of([indices_of(name) for name in names], numbers)
     places = [place - 1 for place in found if place is not None]
     return places if len(set(places)) == len(names) else None
 

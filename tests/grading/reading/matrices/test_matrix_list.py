@@ -1,6 +1,6 @@
 """Read all link transforms of an arm from one text."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import pytest
 
@@ -9,6 +9,7 @@ from service.grading import PartReport, Verdict
 from service.grading.reading.preview import preview_pasted
 from tests.grading.support.exercise_texts import all_codes
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, part
+from tests.grading.support.wrist import A4, A5, A6, WRIST
 
 A1 = "[c1 -s1 0 a1*c1; s1 c1 0 a1*s1; 0 0 1 0; 0 0 0 1]"
 A2 = "[c2 -s2 0 a2*c2; s2 c2 0 a2*s2; 0 0 1 0; 0 0 0 1]"
@@ -89,6 +90,18 @@ def test_texts_in_a_list_are_ordered_by_their_names(
     report = pasted(arm, answer)
     assert full_marks(report), report
     assert all_codes(report) == notes | {"blank_before_sign"}
+
+
+@pytest.mark.parametrize("names", ["A6 A4 A5", "T56 T34 T45", "T_6^5 T_4^3 T_5^4", "A3 A1 A2"])
+def test_links_may_have_the_numbers_of_the_joints(
+    names: str, make_exercise: Callable[[str], Exercise]
+) -> None:
+    wrist = make_exercise(WRIST)
+    texts = [f"{name} = {a}" for name, a in zip(names.split(), (A6, A4, A5), strict=True)]
+    for answer in (texts, "\n".join(texts)):
+        report = pasted(wrist, answer)
+        assert full_marks(report), report
+        assert all_codes(report) == {"matrix_order"}
 
 
 def test_a_list_of_texts_under_the_wrong_names_is_wrong(arm: Exercise) -> None:

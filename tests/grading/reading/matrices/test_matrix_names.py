@@ -11,8 +11,9 @@ from service.grading.reading.matrices.matrix_names import (
 from tests.together import together
 
 
-def places(names: str, count: int) -> list[int | None]:
-    return list(places_of([indices_of(name.strip()) for name in names.split("|")], count)[0])
+def places(names: str, count: int, first: int = 1) -> list[int | None]:
+    numbers = range(first, first + count)
+    return list(places_of([indices_of(name.strip()) for name in names.split("|")], numbers)[0])
 
 
 @together(
@@ -53,9 +54,40 @@ def test_names_mean_these_places(names: str, count: int, expected: list[int | No
     assert places(names, count) == expected
 
 
+@together(
+    "names",
+    [
+        "A4 | A5 | A6", "T34 | T45 | T56", "T_4^3 | T_5^4 | T_6^5", "{}^3T_4 | {}^4T_5 | {}^5T_6",
+        "T_{3,4} | T_{4,5} | T_{5,tool}", "A4 | A5 | Ae", "A1 | A2 | A3", "T01 | T12 | T23",
+        "A0 | A1 | A2", "A1 | A2 | An",
+    ],
+)  # fmt: skip
+def test_names_of_a_wrist_count_by_its_joints_or_from_one(names: str) -> None:
+    assert places(names, 3, first=4) == [1, 2, 3]
+
+
+@pytest.mark.parametrize(
+    ("names", "expected"),
+    [
+        ("A2 | A3 | A4", [1, 2, 3]),
+        ("A2 | A3", [1, 2]),
+        ("A3 | A4", [2, 3]),
+        ("A1 | A2", [1, 2]),
+        ("A3 | A2 | A1", [3, 2, 1]),
+        ("A4 | A1", [3, None]),
+        ("A4 | A4", [3, 3]),
+        ("T12 | T23 | T34", [1, 2, 3]),
+        ("T12 | T23", [1, 2]),
+        ("T01 | T12", [1, 2]),
+    ],
+)
+def test_the_robots_own_numbers_come_first(names: str, expected: list[int | None]) -> None:
+    assert places(names, 3, first=2) == expected
+
+
 def test_names_may_count_from_zero_or_from_one() -> None:
     def unusual(*names: str) -> str:
-        return places_of([indices_of(name) for name in names], len(names))[1]
+        return places_of([indices_of(name) for name in names], range(1, len(names) + 1))[1]
 
     assert unusual("A0", "A1")
     assert not unusual("A1", "A2")

@@ -1,6 +1,6 @@
 """Read screw axes as students write them."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
@@ -10,6 +10,7 @@ from service.grading import Verdict
 from service.grading.reading.preview import preview_pasted
 from tests.grading.support.exercise_texts import all_codes
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
+from tests.grading.support.wrist import WRIST
 
 PART = "space-screws"
 
@@ -55,6 +56,17 @@ COLUMNS = {
 }
 
 
+# The axes of the spherical wrist by the numbers of its joints, that of joint 5 first.
+BY_JOINTS: dict[str, Any] = {
+    "rows": "S5 = [0; 1; 0; 0; 0; 0]\nS4 = [0; 0; 1; 0; 0; 0]\nS6 = [0; 0; 1; 0; 0; 0]",
+    "halves": "w5 = [0 1 0], v5 = [0 0 0]\nw4 = [0 0 1], v4 = [0 0 0]\nw6 = [0 0 1], v6 = [0 0 0]",
+    "a table": "| i | ω | v |\n|---|---|---|\n| 5 | (0,1,0) | (0,0,0) |\n"
+    "| 4 | (0,0,1) | (0,0,0) |\n| 6 | (0,0,1) | (0,0,0) |",
+    "an object": {"S5": [0, 1, 0, 0, 0, 0], "S4": [0, 0, 1, 0, 0, 0], "S6": [0, 0, 1, 0, 0, 0]},
+    "from one": "S2 = [0; 1; 0; 0; 0; 0]\nS1 = [0; 0; 1; 0; 0; 0]\nS3 = [0; 0; 1; 0; 0; 0]",
+}
+
+
 @pytest.fixture
 def rpr(catalogue: Mapping[str, Exercise]) -> Exercise:
     return catalogue["planar-rpr-poe"]
@@ -91,6 +103,26 @@ def test_the_preview_has_the_same_rows(text: str, rpr: Exercise) -> None:
         ["0", "0", "0", "1", "0", "0"],
         ["0", "0", "1", "0", "-L1", "0"],
     ]
+
+
+@pytest.mark.parametrize("answer", BY_JOINTS.values(), ids=BY_JOINTS)
+def test_axes_may_have_the_numbers_of_the_joints(
+    answer: Any, make_exercise: Callable[[str], Exercise]
+) -> None:
+    report = part(handed_in(make_exercise(WRIST), {"screws": answer}), "screws")
+    assert full_marks(report), report
+
+
+def test_halves_count_in_the_same_way(make_exercise: Callable[[str], Exercise]) -> None:
+    # v1 is missing; v2 and v3 alone would be those of the joints 2 and 3, the first two.
+    arm = make_exercise(
+        WRIST.replace("theta4", "theta2").replace("theta6", "theta4").replace("theta5", "theta3")
+    )
+    text = "w1 = [0 0 1]\nw2 = [0 1 0], v2 = [0 0 0]\nw3 = [0 0 1], v3 = [0 0 0]"
+    report = part(handed_in(arm, {"screws": text}), "screws")
+    assert {(row, verdict) for (row, _), verdict in not_correct(report).items()} == {
+        ("2", Verdict.MISSING)
+    }
 
 
 def test_an_absent_axis_is_missing(rpr: Exercise) -> None:
