@@ -66,7 +66,7 @@ def read_grids(text: str) -> tuple[NamedGrid, ...]:
     pieces = latex_list.several(source) if latex.FORMAT.matches(source.text) else _several(source)
     # Names and products alone are no matrix: let the reader of a matrix refuse the text.
     pieces = pieces or [(source.cut(0, 0), source)]
-    if len(pieces) > GRID_LIMITS.rows:
+    if len(pieces) > GRID_LIMITS.matrices:
         raise too_many_matrices(source.whole)
     found = [NamedGrid(name, _read(piece)) for name, piece in pieces]
     return tuple(each for i, each in enumerate(found) if not _is_made_later(each, found[i + 1 :]))

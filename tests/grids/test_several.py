@@ -116,7 +116,7 @@ def test_an_unreadable_matrix_does_not_affect_the_others() -> None:
         (f"A_1 = {TEX[0]} \\cdot {TEX[1]}", "text_around", r"\cdot"),
         (f"A_1 = {TEX[0]}, A_2 = {TEX[1]} \\cdot 2", "text_around", r"\cdot 2"),
         (f"A_1 = {TEX[0]} \\begin{{bmatrix}} a", "unbalanced_environment", r"\begin{bmatrix}"),
-        ("\n".join(f"A{i} = [1 2; 3 4]" for i in range(14)), "too_many_matrices", None),
+        ("\n".join(f"A{i} = [1 2; 3 4]" for i in range(25)), "too_many_matrices", None),
         ("", "empty", ""),
     ],
 )

@@ -61,10 +61,8 @@ class GridFormat:
 
 def too_many_matrices(whole: Span) -> GridError:
     """Return the error for a text with too many matrices."""
-    # An arm may not have so many links.
-    message = say(
-        "A pasted text has at most {most} matrices; yours has more.", most=GRID_LIMITS.rows
-    )
+    most = GRID_LIMITS.matrices
+    message = say("A pasted text has at most {most} matrices; yours has more.", most=most)
     return GridError("too_many_matrices", message, whole)
 
 

@@ -48,7 +48,7 @@ def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     found: list[tuple[SourceText, SourceText]] = []
     after = 0
     innermost = _innermost(source)
-    if len(innermost) > GRID_LIMITS.rows:
+    if len(innermost) > GRID_LIMITS.matrices:
         raise too_many_matrices(source.whole)
     for start, end in innermost:
         front = source.cut(after, start)

@@ -125,6 +125,23 @@ def test_halves_count_in_the_same_way(make_exercise: Callable[[str], Exercise]) 
     }
 
 
+@pytest.mark.parametrize(
+    "layout",
+    [
+        "w{i} = [0 0 1], v{i} = [0 -{i} 0]",
+        "w{i} = np.array([0, 0, 1])\nv{i} = np.array([0, -{i}, 0])",
+        r"\hat{{\omega}}_{{{i}}} = (0,0,1), v_{{{i}}} = (0,-{i},0),",
+        r"\omega_{{{i}}} = \pmatrix{{0\\0\\1}}, v_{{{i}}} = \pmatrix{{0\\-{i}\\0}} \\",
+    ],
+)
+def test_twelve_axes_may_be_halves(layout: str, make_exercise: Callable[[str], Exercise]) -> None:
+    expected = [["0", "0", "1", "0", f"-{i}", "0"] for i in range(1, 13)]
+    arm = make_exercise(f"{WRIST}expected = {expected}\n")
+    text = "\n".join(layout.format(i=i) for i in range(1, 13))
+    report = part(handed_in(arm, {"screws": text}), "screws")
+    assert full_marks(report), report
+
+
 def test_an_absent_axis_is_missing(rpr: Exercise) -> None:
     report = part(handed_in(rpr, {PART: "S1 = [0 0 1 0 0 0]; S3 = [0 0 1 0 -L1 0]"}), PART)
     assert {(row, verdict) for (row, _), verdict in not_correct(report).items()} == {
