@@ -68,15 +68,16 @@ def _listed(answer: object, labels: tuple[str, ...], grading: Grading) -> tuple[
     ordered: list[object] = [[None] * 4] * len(labels)
     for place, matrix in zip(places, answer, strict=True):
         ordered[place] = matrix
-    matrices = []
+    matrices, refused = [], 0
     for matrix in ordered:
         try:
             matrices.append(read_matrix(matrix, HOMOGENEOUS, grading.reader))
         except UnreadableAnswerError as error:
-            if not isinstance(matrix, str):
-                raise UnreadableAnswerError(_wrong_shape(labels)) from error
-            # A pasted text that cannot be read costs only itself.
+            # A matrix that cannot be read costs only itself.
             matrices.append(unreadable_matrix(error.finding, HOMOGENEOUS, grading.reader))
+            refused += not isinstance(matrix, str)
+    if refused == len(answer):
+        raise UnreadableAnswerError(_wrong_shape(labels))
     return (with_notes(matrices[0], notes), *matrices[1:])
 
 

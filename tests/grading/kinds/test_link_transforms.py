@@ -70,7 +70,17 @@ def test_an_omitted_matrix_is_missing_and_others_are_graded(scara: Exercise) -> 
     assert part.points == pytest.approx(8 - (0.91 + 0.18))
 
 
-@pytest.mark.parametrize("answer", [5, "x", {}, [5], [[["1"]] * 9], [IDENTITY] * 5, [[]]])
+@pytest.mark.parametrize(
+    "long", [[*A4, list("0000")], [list("0000")] * 40, [list("00000")] * 4, [], None, 5, {}]
+)
+def test_a_matrix_of_the_wrong_size_affects_only_itself(scara: Exercise, long: object) -> None:
+    part = graded(scara, table=table(TABLE), links=[*LINKS[:3], long])["links"]
+    assert {row for row, _ in wrong_cells(part)} == {"A4.1", "A4.2", "A4.3", "A4.4"}
+    # As without the fourth matrix.
+    assert part.points == pytest.approx(8 - (0.91 + 0.18))
+
+
+@pytest.mark.parametrize("answer", [5, "x", {}, [5], [[["1"]] * 9], [IDENTITY] * 5, [[]], [5] * 4])
 def test_an_answer_without_matrices_is_unreadable(scara: Exercise, answer: object) -> None:
     part = graded(scara, links=answer)["links"]
     assert part.verdict is Verdict.UNREADABLE
