@@ -79,9 +79,10 @@ def _by_number(name: Indices, last: int) -> int | None:
 
 
 def _by_frames(name: Indices, last: int) -> int | None:
-    # T_{12} has the link's two frames in one number.
-    if len(name) == 1 and len(name[0]) == 2 and name[0].isdigit():
-        return _by_number(tuple(name[0]), last)
+    # T_{12} and T_{910} have the link's two frames in one number.
+    if len(name) == 1 and len(name[0]) > 1 and name[0].isdigit():
+        links = range(1, last + 1)
+        return next((i for i in links if name[0] in (f"{i - 1}{i}", f"{i}{i - 1}")), None)
     return _by_number(name, last)
 
 
