@@ -24,7 +24,8 @@ _ASSIGNED: Final = re.compile(r"(?<![\w.])(\w{1,21})[ \t]{0,40}[-+*/]?=(?!=)")
 _LAST: Final = re.compile(
     r"(?<![\w.])[A-Za-z]\w{0,20}\s{0,9},\s{0,9}([A-Za-z]\w{0,20})\s{0,9}=(?!=)"
 )
-_NAME: Final = re.compile(r"(?<![\w.\\])[A-Za-z]\w*(?![\w(\[])")
+# A letter in a value. The z of the cell ``z = 0`` is the name of a value in a list.
+_NAME: Final = re.compile(r"(?<![\w.\\])[A-Za-z]\w*(?![\w(\[]|[ \t]*=(?!=))")
 _MOST: Final = 40
 
 

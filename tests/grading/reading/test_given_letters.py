@@ -6,6 +6,8 @@ import pytest
 
 from service.catalogue import Exercise
 from service.grading.reading.preview import PastedPreview, preview_pasted
+from tests.grading.support.exercise_texts import Make, all_codes, graded, one_part
+from tests.grading.support.submitting import full_marks
 
 HEADERS = "a,alpha,d,theta"
 ROWS = ("0, pi/2, d1, q1", "a2, 0, 0, q2", "-a2/2, 0, 0, q3")
@@ -83,3 +85,30 @@ def test_letters_that_change_places_are_refused(catalogue: Mapping[str, Exercise
     read = preview_pasted(text, catalogue["planar-rr"], "table")
     assert read.problem is not None
     assert read.problem.code == "given_value"
+
+
+# An exercise without letters for lengths.
+NUMBERS = '[symbols]\nphi = { kind = "angle", description = "an angle" }\n'
+LISTS = {
+    one_part("position", 'expected = ["0.5*cos(phi)", "0.3", "0"]', NUMBERS): (
+        "z = 0, x = 0.5 cos(phi), y = 0.3",
+        "x = 0.5 cos(phi), z = 0, y = 0.3",
+        "y = 0.3, z = 0, x = 0.5 cos(phi)",
+        "[z = 0, x = 0.5 cos(phi), y = 0.3]",
+    ),
+    one_part("euler_angles", 'sequence = "RPY"\nexpected = ["phi", "0.2", "0.1"]', NUMBERS): (
+        "gamma = 0.1, beta = 0.2, alpha = phi",
+        "beta = 0.2, alpha = phi, gamma = 0.1",
+    ),
+}
+
+
+@pytest.mark.parametrize(
+    ("exercise", "text"), [(exercise, text) for exercise, texts in LISTS.items() for text in texts]
+)
+def test_a_list_is_ordered_by_the_names_of_numbers(
+    exercise: str, text: str, make_exercise: Make
+) -> None:
+    report = graded(make_exercise(exercise), text)
+    assert full_marks(report), report
+    assert all_codes(report) == {"ordered_by_names"}
