@@ -114,7 +114,8 @@ _LEFT_OFF: _Written = (None, _as_it_is)
 
 
 def _listed(answer: object, names: ListNames, reader: Reader, tails: Sequence[Tail]) -> list[Entry]:
-    values, count = _flat(answer), len(names.quantities)
+    count = len(names.quantities)
+    values = [answer] if count == 1 and not isinstance(answer, list) else _flat(answer)
     left_aside = _left_aside(values, count, reader, tails)
     values = values[: len(values) - len(left_aside)]
     is_nested = all(isinstance(value, list) for value in values)

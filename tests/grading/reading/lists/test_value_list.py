@@ -146,3 +146,22 @@ def test_equations_in_a_list_are_read_with_notes(make_exercise: Make) -> None:
     report = graded(make_exercise(POINT), "x = l\ny = k")
     assert not_correct(report) == {}
     assert all_codes(report) == {"equation"}
+
+
+ROOT = one_part(
+    "vector", 'components = [{ name = "n", quantity = "number", expected = "sqrt(3)/2" }]'
+)
+
+
+@pytest.mark.parametrize("answer", [0.866, [0.866], [[0.866]], "0.866"])
+def test_a_single_value_needs_no_list_around_it(answer: object, make_exercise: Make) -> None:
+    assert full_marks(graded(make_exercise(ROOT), answer))
+
+
+@pytest.mark.parametrize("answer", [True, {"m": 0.866}, [[]]])
+def test_anything_but_a_value_is_refused(answer: object, make_exercise: Make) -> None:
+    assert graded(make_exercise(ROOT), answer).verdict is Verdict.UNREADABLE
+
+
+def test_one_number_is_no_list_of_two(make_exercise: Make) -> None:
+    assert all_codes(graded(make_exercise(POINT), 0.866)) == {"wrong_shape"}
