@@ -143,9 +143,13 @@ def _preview(text: str, exercise: Exercise, spec: PartSpec, reader: Reader) -> P
     if isinstance(spec, FramesSpec):
         return _frames(text, frame_labels(exercise.robot, spec.convention), reader)
     if isinstance(spec, ScrewAxesSpec):
-        grid = screw_grid(text, spec.numbers(exercise.joints), reader)
+        numbers = spec.numbers(exercise.joints)
+        grid = screw_grid(text, numbers, reader).with_empty_rows(len(numbers))
     else:
         grid = pasted_grid(text, reader)
+        # Transforms and rotations are square.
+        if spec.kind in ("transform", "rotation"):
+            grid = grid.with_empty_rows(max(map(len, grid.rows)))
     quantity: Kind = "angle" if spec.pasted_as == "angles" else "number"
     return PastedPreview(_rows(grid, quantity, reader), grid.notes)
 
@@ -197,7 +201,8 @@ def _matrices(text: str, labels: Sequence[str], reader: Reader) -> PastedPreview
             typed = text[slice(*grid.span)]
             rows.append((CellPreview(f"A{label}", "", grid.span, typed, problem=problem),))
         elif grid is not None:
-            rows += _rows(grid, "number", reader, f"A{label}.")
+            square = grid.with_empty_rows(max(map(len, grid.rows)))
+            rows += _rows(square, "number", reader, f"A{label}.")
             notes += grid.notes
     return PastedPreview(tuple(rows), tuple(notes))
 

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from service.expressions.errors import Note, Span, TextError
@@ -29,6 +29,22 @@ class Grid:
     format: str
     rows: tuple[tuple[GridCell, ...], ...]
     notes: tuple[Note, ...] = ()
+    # The empty rows with separators, each with the number of rows above it.
+    empty: tuple[tuple[int, tuple[GridCell, ...]], ...] = ()
+
+    def with_empty_rows(self, most: int) -> "Grid":
+        """Return the grid with its empty rows, if it then has at most ``most`` rows.
+
+        Otherwise the empty rows are only layout.
+        """
+        width = max(map(len, self.rows))
+        fits = len(self.rows) + len(self.empty) <= most
+        if not self.empty or not fits or any(len(row) < width for _, row in self.empty):
+            return self
+        rows = list(self.rows)
+        for above, row in reversed(self.empty):
+            rows.insert(above, row[:width])
+        return replace(self, rows=tuple(rows), empty=())
 
     @property
     def size(self) -> str:
@@ -86,7 +102,13 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
     Raises GridError if all cells are empty or the grid is too large.
     """
     tidied = [[tidy(cell) for cell in row] for row in rows]
-    filled = [row for row in tidied if any(cell.text for cell in row)]
+    filled: list[list[GridCell]] = []
+    empty: list[tuple[int, tuple[GridCell, ...]]] = []
+    for row in tidied:
+        if any(cell.text for cell in row):
+            filled.append(row)
+        elif len(row) > 1:
+            empty.append((len(filled), tuple(row)))
     if not filled:
         raise GridError("empty", say("All cells of this table or matrix are empty."), whole)
     filled = _without_empty_columns(filled)
@@ -100,7 +122,7 @@ def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid
             found=widest,
         )
         raise GridError("too_many_columns", message, whole)
-    return Grid(name, tuple(map(tuple, filled)), tuple(notes))
+    return Grid(name, tuple(map(tuple, filled)), tuple(notes), tuple(empty))
 
 
 def tidy(cell: GridCell) -> GridCell:

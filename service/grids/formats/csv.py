@@ -21,12 +21,13 @@ def _matches(text: str) -> bool:
 
 def _parse(source: SourceText) -> Grid:
     rows = split_cells(source, ",", brackets=True)
-    rows = [[row[0].strip(), *row[1:]] for row in rows if any(cell.text.strip() for cell in row)]
-    labels = [_LABEL.match(row[0].text) for row in rows]
-    if all(labels) and len(set(map(len, rows))) == 1:
+    rows = [[row[0].strip(), *row[1:]] for row in rows if len(row) > 1 or row[0].text.strip()]
+    filled = [row for row in rows if any(cell.text.strip() for cell in row)]
+    labels = [_LABEL.match(row[0].text) for row in filled]
+    if all(labels) and len(set(map(len, filled))) == 1:
         rows = [
             [row[0].cut(*label.span(1)), row[0].cut(label.end(), len(row[0].text)), *row[1:]]
-            for row, label in zip(rows, labels, strict=True)
+            for row, label in zip(filled, labels, strict=True)
             if label
         ]
     return grid("CSV", rows, source.whole)

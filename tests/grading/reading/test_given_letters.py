@@ -89,7 +89,7 @@ def test_letters_that_change_places_are_refused(catalogue: Mapping[str, Exercise
 
 # An exercise without letters for lengths.
 NUMBERS = '[symbols]\nphi = { kind = "angle", description = "an angle" }\n'
-LISTS = {
+NAMED_LISTS = {
     one_part("position", 'expected = ["0.5*cos(phi)", "0.3", "0"]', NUMBERS): (
         "z = 0, x = 0.5 cos(phi), y = 0.3",
         "x = 0.5 cos(phi), z = 0, y = 0.3",
@@ -104,7 +104,8 @@ LISTS = {
 
 
 @pytest.mark.parametrize(
-    ("exercise", "text"), [(exercise, text) for exercise, texts in LISTS.items() for text in texts]
+    ("exercise", "text"),
+    [(exercise, text) for exercise, texts in NAMED_LISTS.items() for text in texts],
 )
 def test_a_list_is_ordered_by_the_names_of_numbers(
     exercise: str, text: str, make_exercise: Make

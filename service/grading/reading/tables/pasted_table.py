@@ -102,10 +102,12 @@ def table_of(
     named = None if found is not None else columns_in_comments(comments)
     if found is None:
         columns, labels, more = _columns_in_order(grid, named or [*map(Header, order)])
-        body = grid.rows
     else:
         columns, labels, more = _columns_by_headers(grid.rows[0], found)
-        body = grid.rows[1:]
+    headings = int(found is not None)
+    if labels is None:
+        grid = grid.with_empty_rows(headings + len(reader.vocabulary.joints))
+    body = grid.rows[headings:]
     findings = (*findings, *more)
     if not body:
         raise GridError(

@@ -128,6 +128,15 @@ def test_three_rows_leave_the_fourth_missing(arm: Exercise) -> None:
     assert [row.verdict for row in report.rows] == [Verdict.CORRECT] * 3 + [Verdict.MISSING]
 
 
+@pytest.mark.parametrize("at", range(4))
+def test_a_pasted_empty_row_does_not_move_the_rows_below_it(at: int, arm: Exercise) -> None:
+    lines = [", ".join(row) for row in POSE]
+    report = pasted(arm, "\n".join([*lines[:at], ", , ,", *lines[at + 1 :]]))
+    wanted = [Verdict.CORRECT] * 4
+    wanted[at] = Verdict.MISSING
+    assert [row.verdict for row in report.rows] == wanted
+
+
 @pytest.mark.parametrize("empty", [None, [], "", " ", ["", ""], ["", None, "", ""]])
 def test_every_kind_of_empty_row_costs_the_same(empty: object, arm: Exercise) -> None:
     report = part(handed_in(arm, {"pose": [*POSE[:2], empty, POSE[3]]}), "pose")

@@ -220,3 +220,11 @@ def test_indices_of_headers_do_not_decide_the_convention(
     report = pasted(catalogue[RRRP.exercise], text)
     assert full_marks(report)
     assert infos(report) == ["convention_hint"]
+
+
+def test_an_empty_row_of_a_table_stays_in_its_place(catalogue: Mapping[str, Exercise]) -> None:
+    text = "l2, 0, l1, q1\n, , ,\n0, 0, l4, q3\n0, 0, q4, 0"
+    report = part(handed_in(catalogue["rrrp"], {"table": text}), "table")
+    verdicts = [row.verdict for row in report.rows]
+    assert verdicts[1] is Verdict.MISSING
+    assert verdicts[0] is verdicts[2] is verdicts[3] is Verdict.CORRECT
