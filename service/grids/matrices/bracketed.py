@@ -32,7 +32,7 @@ def _matches(text: str) -> bool:
 
 def _parse(source: SourceText) -> Grid:
     if in_brackets := _lines(source):
-        return grid("rows in brackets", lists.rows(in_brackets), source.whole)
+        return grid("brackets", lists.rows(in_brackets), source.whole)
     matrix = unwrap(source)
     notes: tuple[Note, ...] = ()
     if len(matrix.groups) == 1:
