@@ -129,7 +129,7 @@ class KeyRing:
         return signed_session(caller.key_id, expires_at, self.secret.session_secret)
 
     def close(self) -> None:
-        """Save when keys were last used, and stop the threads."""
+        """Stop the threads, and save the times at which keys were last used."""
         self._known_lookups.close()
         self._new_lookups.close()
         self._thread.shutdown()

@@ -64,7 +64,7 @@ class ListShape(AnswerShape):
 
 
 def matrix_shape(rows: int, columns: int) -> MatrixShape:
-    """The shape of a matrix of this size."""
+    """Return the shape of a matrix with this number of rows and columns."""
     return MatrixShape(columns=numbered(columns), rows=numbered(rows))
 
 

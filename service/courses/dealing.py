@@ -57,7 +57,7 @@ def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
 def assigned_seed(
     connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
 ) -> tuple[LearnerTerms, Exercise, str | None]:
-    """Return an assignment's rules for a learner, the exercise, and the learner's seed.
+    """Return three things: the rules of an assignment for a learner, the exercise, and the seed.
 
     The seed determines the learner's variant. The seed is None if there are no variants. Raises
     CourseError.

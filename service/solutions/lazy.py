@@ -25,7 +25,7 @@ def motion(joints: Sequence[Joint]) -> _Rows:
 
 
 def poses(exercise: Exercise, size: int) -> list[_Rows]:
-    """Return motions that need no knowledge: the identity and the ``motion`` of all joints."""
+    """Return the poses that a lazy student would write: the identity, and all joints moved."""
     # ``size`` is 3 (rotations) or 4.
     of_joints = [motion(exercise.joints)] if exercise.joints else []
     return [[row[:size] for row in rows[:size]] for rows in (IDENTITY, *of_joints)]

@@ -32,7 +32,7 @@ class PositionSpec(PosePartSpec):
         return list_of("expected[{j}]", self.expected, ["length"] * len(self.expected))
 
     def shape(self, _: Reference | None) -> ListShape:
-        """The shape of a list of lengths."""
+        """The shape of the answer: a list of lengths."""
         return list_shape((letter, "length") for letter in self.coordinates)
 
     @model_validator(mode="after")

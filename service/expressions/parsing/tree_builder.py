@@ -173,7 +173,7 @@ class Builder:
         return Call("sqrt", (operand,), start, operand.end)
 
     def call(self, function: Token, arguments: list[Node], end: int) -> Node:
-        """Build a function of arguments in brackets.
+        """Build the syntax tree of a function with arguments in brackets, such as atan2(y, x).
 
         Raises UnreadableError for a wrong number of arguments.
         """

@@ -87,7 +87,7 @@ class JudgedFrames:
 
 
 def home_samples(exercise: Exercise, samples: Samples) -> Samples:
-    """Return the samples with all joint variables 0."""
+    """Return the samples, with the value 0 for every joint variable."""
     return samples.cached(
         "home", lambda: Samples(at_home(exercise.joints, samples.values, samples.count))
     )

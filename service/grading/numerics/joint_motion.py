@@ -23,7 +23,7 @@ def changes(values: Numbers) -> Numbers:
 
 
 def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
-    """Return a mask of the values whose change with the joints is ``motion`` or −``motion``."""
+    """Return a mask of the values that change by ``motion`` or −``motion`` if the joints move."""
     # Values are ``(..., samples)``, ``motion`` is ``(..., samples / 2)``. The mask is false for
     # NaN.
     either_sign = np.array([motion, -motion])

@@ -67,7 +67,7 @@ class _Item:
 
 
 def describes_columns(text: str) -> bool:
-    """True if a text seems to contain a dictionary."""
+    """True if a text seems to contain a table as dictionaries, named lists or a data frame."""
     # LaTeX has braces and colons, too.
     if "DataFrame(" in text:
         return True

@@ -53,7 +53,7 @@ def signed_response(
     now: datetime,
     locale: str = "",
 ) -> str:
-    """Return the signed response with the links. Raises LtiError.
+    """Return the signed response that gives the platform links to exercises. Raises LtiError.
 
     ``locale`` is the language of reports on files.
     """

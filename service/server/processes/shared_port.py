@@ -46,7 +46,7 @@ class ConnectionCounts:
         return any(count != _AWAY for count in self.numbers)
 
     def stop_listening(self, index: int) -> None:
-        """Note that the process with this index does not listen any more."""
+        """Record that the process with this index no longer accepts connections."""
         self.numbers[index] = _AWAY
 
 

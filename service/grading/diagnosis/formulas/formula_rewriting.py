@@ -107,7 +107,7 @@ def first_term_negated(node: Node) -> Node:
 
 
 def without_degrees(node: Node) -> Node:
-    """Return the number without the unit degrees, so that it means radians."""
+    """Return the number without its unit degrees. The number itself does not change."""
     return node.operand if isinstance(node, Unit) and node.unit == "deg" else node
 
 

@@ -64,7 +64,7 @@ class WrongSum:
         return cls(case, addends(case))
 
     def named(self, names: Iterable[str]) -> str:
-        """Return these symbols in words, by the names that the student uses."""
+        """Return a phrase with the names of the symbols, as the student spells them."""
         return listed([self.case.spelling.names.get(name, name) for name in names])
 
     def subsets(self) -> Iterator[tuple[tuple[str, ...], Numbers]]:

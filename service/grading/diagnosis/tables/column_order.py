@@ -49,7 +49,7 @@ _PERMUTED = register(
 
 
 def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
-    """Yield the table with its columns rearranged in each way that suits the cells better."""
+    """Yield the table in each order of columns that fits the cells better than the written one."""
     # For example, a column with joint variables must be d or θ, and a column with lengths a or d.
     # Only the orders that suit the cells best are tried, the likeliest first.
     if table.reread is None or _suits(table, grading):

@@ -33,7 +33,7 @@ from service.translations import say
 
 @dataclass(frozen=True, slots=True)
 class TableRows:
-    """The rows of a DH table, in which mistakes are tried."""
+    """The rows of a wrong DH table; each possible mistake is tried on them."""
 
     # The cells (rows, 4) at one sample, with all joint variables 0.
     constants: Numbers

@@ -165,7 +165,7 @@ def _at_home(_: Names) -> SlipWords:
 
 
 def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
-    """Return a function that describes the direction of a joint's axis in the home position."""
+    """Return a function that says in words which way the axis of a joint points."""
 
     # The axes are computed on the first call of the returned function.
     @cache

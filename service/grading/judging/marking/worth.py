@@ -75,7 +75,7 @@ class CellWorth:
 
     @cached_property
     def units(self) -> dict[int, int]:
-        """The cost of a wrong cell that needs no knowledge, for each group of cells."""
+        """For each group, the cost of a wrong cell whose right entry needs no knowledge."""
         units = dict.fromkeys(self.groups, self.unit)
         if not self.is_fixed:
             least: dict[int, int] = {}
