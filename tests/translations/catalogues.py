@@ -137,7 +137,7 @@ def as_po(found: Catalog) -> bytes:
     # Babel's own comment names a holder of rights and a year.
     found.header_comment = "# Translations of DH Grader; the terms are those of glossary.md."
     write_po(
-        out, found, width=100, omit_header=False, include_lineno=False, sort_by_file=True,
+        out, found, width=0, omit_header=False, no_location=True, sort_by_file=True,
         ignore_obsolete=True,
     )  # fmt: skip
     kept = [
