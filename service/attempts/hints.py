@@ -82,6 +82,26 @@ def take(
     attempt = connection.execute(
         select(attempts).where(attempts.c.id == attempt_id).with_for_update()
     ).one()
+    refused, is_taken = _ruling(connection, attempt, wanted)
+    if refused is not None or is_taken:
+        return refused
+    values: dict[str, Any] = {name: getattr(wanted, name) for name in HintStepOf.__slots__}
+    values |= {"attempt": attempt.number, "price": prices[wanted.step - 1], "at": now}
+    connection.execute(insert(hints).values(values))
+    return None
+
+
+def refusal(
+    connection: Connection, attempt: Row[Any], wanted: HintStepOf
+) -> HintRefusedError | None:
+    """Return the error if this step of a hint is refused now, else None. Record nothing."""
+    return _ruling(connection, attempt, wanted)[0]
+
+
+def _ruling(
+    connection: Connection, attempt: Row[Any], wanted: HintStepOf
+) -> tuple[HintRefusedError | None, bool]:
+    # The second value is True if the learner has taken the step before.
     # Steps are counted for each cell, row or part: another message there does not start them again.
     earlier = connection.execute(
         select(hints.c.step, hints.c.attempt, attempts.c.answers_digest)
@@ -93,24 +113,18 @@ def take(
         .order_by(hints.c.step)
     ).all()
     if wanted.step <= len(earlier):
-        return None
+        return None, True
+    # Errors are not raised, because that would roll back other jobs of the transaction.
     if wanted.step > len(earlier) + 1:
-        # Not raised, because that would roll back other jobs of the transaction.
-        return HintRefusedError(
-            "earlier-step-first", say("Take the earlier steps of this hint first.")
-        )
+        first = say("Take the earlier steps of this hint first.")
+        return HintRefusedError("earlier-step-first", first), False
     if earlier and (
         earlier[-1].attempt >= attempt.number
         or earlier[-1].answers_digest == attempt.answers_digest
     ):
-        return HintRefusedError(
-            "try-first",
-            say("Change your answer and hand it in again. Then the next hint opens."),
-        )
-    values: dict[str, Any] = {name: getattr(wanted, name) for name in HintStepOf.__slots__}
-    values |= {"attempt": attempt.number, "price": prices[wanted.step - 1], "at": now}
-    connection.execute(insert(hints).values(values))
-    return None
+        change = say("Change your answer and hand it in again. Then the next hint opens.")
+        return HintRefusedError("try-first", change), False
+    return None, False
 
 
 def hints_before(connection: Connection, attempt_id: str) -> list[TakenHint]:

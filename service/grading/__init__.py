@@ -1,7 +1,15 @@
 """Grade answers to an exercise, without clock, disk or network."""
 
 from service.catalogue import FeedbackLevel
-from service.grading.grade import GradedAnswers, Submission, UnknownPartError, grade, graded_answers
+from service.grading.grade import (
+    GradedAnswers,
+    Submission,
+    UnknownPartError,
+    grade,
+    graded_answers,
+    is_all_right,
+    report_on_part,
+)
 from service.grading.report import (
     CellReport,
     Correction,
@@ -36,4 +44,6 @@ __all__ = [
     "Verdict",
     "grade",
     "graded_answers",
+    "is_all_right",
+    "report_on_part",
 ]

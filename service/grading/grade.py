@@ -1,6 +1,6 @@
 """Grade a submission: read and judge each answer, and return a report."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
@@ -99,6 +99,37 @@ def grade(exercise: Exercise, submission: Submission) -> Report:
 
 def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
     """Grade a submission once, for reports at several feedback levels."""
+    grading = _begun(exercise, submission)
+    parts = tuple(_reports(submission.answers, grading))
+    left_out = grading.reader.budget.has_left_out
+    return GradedAnswers(exercise, parts, grading.corrects, left_out)
+
+
+def report_on_part(exercise: Exercise, submission: Submission, part_id: str) -> PartReport | None:
+    """Return the report on one part as in ``grade``; None if the exercise has no such part.
+
+    The answers to later parts are not read.
+    """
+    for report in _reports(submission.answers, _begun(exercise, submission)):
+        if report.part == part_id:
+            [shown] = parts_at_level([report], submission.feedback, None)
+            return shown
+    return None
+
+
+def is_all_right(exercise: Exercise, submission: Submission) -> bool:
+    """True if the answers to all parts of the exercise are right.
+
+    If an answer is missing, nothing is read; nothing is read after the first wrong answer.
+    """
+    if any(submission.answers.get(part.id) is None for part in exercise.parts):
+        return False
+    grading = replace(_begun(exercise, submission), explains=False)
+    reports = _reports(submission.answers, grading)
+    return all(report.verdict is Verdict.CORRECT for report in reports)
+
+
+def _begun(exercise: Exercise, submission: Submission) -> Grading:
     for part_id in submission.answers:
         if exercise.part(part_id) is None:
             raise UnknownPartError(part_id, exercise)
@@ -107,12 +138,15 @@ def graded_answers(exercise: Exercise, submission: Submission) -> GradedAnswers:
     budget = WorkBudget(answers=submission.answers)
     reader = Reader.of(exercise, samples, submission.angle_unit, budget)
     corrects = submission.feedback is FeedbackLevel.FULL
-    grading = Grading(exercise, samples, reader, corrects=corrects, echo=submission.echo)
+    return Grading(exercise, samples, reader, corrects=corrects, echo=submission.echo)
+
+
+def _reports(answers: Mapping[str, object], grading: Grading) -> Iterator[PartReport]:
+    # A part is graded when its report is taken.
     graded: dict[str, _Graded] = {}
-    for part in exercise.parts:
-        graded[part.id] = _graded(part, submission.answers, graded, grading)
-    parts = tuple(each.report for each in graded.values())
-    return GradedAnswers(exercise, parts, corrects, budget.has_left_out)
+    for part in grading.exercise.parts:
+        graded[part.id] = _graded(part, answers, graded, grading)
+        yield graded[part.id].report
 
 
 @dataclass(frozen=True)

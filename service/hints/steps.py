@@ -6,6 +6,7 @@ than the message.
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Final
 
 from service.catalogue import Exercise, PartSpec, Robot
@@ -14,8 +15,8 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.catalogue.parts.find_slip import FindSlipSpec
 from service.catalogue.parts.frames import FramesSpec
 from service.catalogue.parts.link_transforms import LinkTransformsSpec
-from service.grading import Report
 from service.grading.kinds.find_slip import MARKED
+from service.grading.misconception import all_records
 from service.grading.report import (
     Feedback,
     PartReport,
@@ -29,6 +30,10 @@ from service.kinematics.dh import Convention
 from service.translations import Sentence, say
 
 STEPS: Final = 3
+# The codes of messages on mistakes that no record of a misconception has.
+_WITHOUT_RECORD: Final = frozenset(
+    {"frames_of_other_convention", "no_joint_variable", "slip_elsewhere"}
+)
 _IN_WORDS: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 # The rule for a message whose code has no record of its own.
 _OF_KIND: Final[Mapping[str, RuleName]] = {
@@ -72,12 +77,28 @@ def has_hints(message: Feedback, verdict: Verdict) -> bool:
     return message.severity is Severity.ERROR and verdict not in unread
 
 
+def may_have_hints(topic: Topic, answers: Mapping[str, object]) -> bool:
+    """True if the report on some answers to the same parts could have this message."""
+    return answers.get(topic.part) is not None and topic.code in _codes()
+
+
+@cache
+def _codes() -> frozenset[str]:
+    return _WITHOUT_RECORD.union(*(record.codes for record in all_records()))
+
+
 def hint_step(
-    exercise: Exercise, topic: Topic, step: int, answers: Mapping[str, object], report: Report
+    exercise: Exercise,
+    topic: Topic,
+    step: int,
+    answers: Mapping[str, object],
+    told: PartReport | None,
 ) -> HintStep | None:
-    """Return step 1, 2 or 3 of the hint for a message; None if the report has no such message."""
+    """Return step 1, 2 or 3 of the hint for a message; None if the report has no such message.
+
+    ``told`` is the report on the part of the topic.
+    """
     part = exercise.part(topic.part)
-    told = next((each for each in report.parts if each.part == topic.part), None)
     message = None if told is None else _message(told, topic)
     if part is None or told is None or message is None:
         return None

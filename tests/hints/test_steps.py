@@ -1,15 +1,19 @@
 """A hint names the axes of a table row."""
 
+import ast
 from collections.abc import Mapping
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import pytest
 
+from service import grading
 from service.catalogue import Exercise, FeedbackLevel
 from service.grading.misconception import Record, all_records
 from service.grading.report import Verdict, messages_of
-from service.hints.steps import Topic, has_hints, hint_step
+from service.hints.steps import Topic, has_hints, hint_step, may_have_hints
+from tests.docs.codes import sources
 from tests.grading.diagnosis.traces import answered, exercises
 from tests.grading.support.submitting import handed_in
 from tests.together import together
@@ -23,7 +27,8 @@ RECORDS = [record for record in all_records() if record.codes and record.example
 def steps_of(exercise: Exercise, answer: Any, topic: Topic) -> list[str]:
     answers = {topic.part: answer}
     report = handed_in(exercise, answers, feedback=HINTS)
-    found = [hint_step(exercise, topic, step, answers, report) for step in (1, 2, 3)]
+    [told] = [each for each in report.parts if each.part == topic.part]
+    found = [hint_step(exercise, topic, step, answers, told) for step in (1, 2, 3)]
     return [each.text for each in found if each]
 
 
@@ -54,6 +59,28 @@ def test_a_message_that_the_report_does_not_have_has_no_hint(
     assert steps_of(exercise, "a1 0 0 θ1\na2 0 0 θ2", TWIST) == []
 
 
+def test_a_hint_may_be_asked_for_each_code_of_a_mistake() -> None:
+    # Findings on mistakes have the default severity, and a reading error is made by another
+    # function.
+    made = [
+        node
+        for text in sources(Path(grading.__file__).parent).values()
+        for node in ast.walk(ast.parse(text))
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == "Finding"
+    ]
+    codes = {
+        each.args[0].value
+        for each in made
+        # The engine adds the code of a record to a finding without a code.
+        if isinstance(each.args[0], ast.Constant)
+        and each.args[0].value
+        and not {"severity", "reading"} & {keyword.arg for keyword in each.keywords}
+    }
+    assert "slip_elsewhere" in codes
+    asked = [Topic("table", code) for code in codes]
+    assert [topic for topic in asked if not may_have_hints(topic, {"table": "0"})] == []
+
+
 def test_an_unreadable_or_empty_cell_has_no_hint(catalogue: Mapping[str, Exercise]) -> None:
     rows = [{"a": "sin(", "alpha": "", "d": 0, "theta": "theta1"}, {"a": "a2"}]
     report = handed_in(catalogue["planar-rr"], {"table": {"rows": rows}}, feedback=HINTS)
@@ -77,7 +104,8 @@ def test_each_message_on_a_mistake_has_all_steps(record: Record) -> None:
                 first = places[0] if places else None
                 place = (first.row, first.cell) if first else (None, None)
                 topic = Topic(found.part, message.code, *place)
-                steps = [hint_step(exercise, topic, k, answers, report) for k in (1, 2, 3)]
+                assert may_have_hints(topic, answers)
+                steps = [hint_step(exercise, topic, k, answers, found) for k in (1, 2, 3)]
                 texts = {step.text for step in steps if step}
                 assert len(texts) == 3, message
 

@@ -72,7 +72,7 @@ def routes(
         Its price reduces the points of the learner's later attempts at the exercise. The same step
         costs nothing again. Before the next step, the learner hands in another answer.
         """
-        from service.attempts.hints import HintStepOf, attempt_with_course, take
+        from service.attempts.hints import HintStepOf, attempt_with_course, refusal, take
         from service.attempts.regrades.outdated import attempted_exercise
 
         access.require_allowed_origin(request, origins)
@@ -92,9 +92,11 @@ def routes(
         exercise = attempted_exercise(named, row)
         if prices is None or exercise is None:
             raise _refused("no-hints", say("Recorded attempts at this exercise have no hints."))
-        hint = await run_in_turns(request, partial(_hint, exercise, row, body, feedback))
         wanted = HintStepOf(body.part, body.code, body.row or "", body.cell or "", body.step)
-        refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))
+        refused = await read(store, lambda it: refusal(it, row, wanted))
+        if refused is None:
+            hint = await run_in_turns(request, partial(_hint, exercise, row, body, feedback))
+            refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))
         if refused is not None:
             raise _refused(refused.name, message_of(refused))
         language = language_of(request)

@@ -77,11 +77,11 @@ def routes(
         if store is None:
             raise not_recorded()
         exercise = exercise_or_404(catalogue, exercise_id)
-        body = await read_body(AttemptRequest, request)
         caller = access.caller(request)
+        await practice(caller, exercise.plain_id)
+        body = await read_body(AttemptRequest, request)
         if caller.learner not in (None, body.learner):
             raise access_problem("other-learner")
-        await practice(caller, exercise.plain_id)
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
         terms = AttemptTerms(exercise.attempts, exercise.feedback_at)
         recorder = Recorder(store, feedback, monitor)

@@ -59,8 +59,8 @@ def routes(
         exercise and the service allow; `feedback` may ask for less.
         """
         exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
-        body = await read_body(GradeRequest, request)
         await practice.check(access.caller(request), exercise.plain_id)
+        body = await read_body(GradeRequest, request)
         language = language_of(request)
         report = await run_in_turns(request, lambda: _report(exercise, body, (), language))
         return told_json(report, language)

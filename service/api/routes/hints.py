@@ -29,12 +29,12 @@ from service.contract.grading import (
     ValidTable,
 )
 from service.figures.drawing.style import Theme
-from service.grading import Submission, grade
+from service.grading import Submission, report_on_part
 from service.grading.report import RuleName
 from service.hints.choices import other_choices
 from service.hints.picture import rule_picture
 from service.hints.rules import RULES
-from service.hints.steps import STEPS, Topic, hint_step
+from service.hints.steps import STEPS, Topic, hint_step, may_have_hints
 from service.kinematics.dh import Convention
 from service.translations import say
 
@@ -71,8 +71,8 @@ def routes(
         answer. Messages on unreadable or empty entries have no hints.
         """
         exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
-        body = await read_body(HintRequest, request)
         await practice.check_hints(access.caller(request), exercise)
+        body = await read_body(HintRequest, request)
         found = await run_in_turns(request, partial(hint_for, exercise, body, feedback))
         language = language_of(request)
         content = found.model_dump_json(exclude_none=True, context=language.translation)
@@ -98,8 +98,8 @@ def routes(
         lies elsewhere on its z axis. For a table that is not right there are none.
         """
         exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
-        body = await read_body(ChoicesRequest, request)
         await practice.check(access.caller(request), exercise.plain_id)
+        body = await read_body(ChoicesRequest, request)
         found = await run_in_turns(request, partial(choices_for, exercise, body))
         language = language_of(request)
         return told_json(found.model_dump_json(context=language.translation), language)
@@ -142,7 +142,11 @@ def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint
             say("There are no hints"),
         )
     topic = Topic(body.part, body.code, body.row, body.cell)
-    step = hint_step(exercise, topic, body.step, submission.answers, grade(exercise, submission))
+    step = None
+    # Otherwise nothing is read.
+    if may_have_hints(topic, submission.answers):
+        told = report_on_part(exercise, submission, topic.part)
+        step = hint_step(exercise, topic, body.step, submission.answers, told)
     if step is None:
         raise ProblemError(
             HTTPStatus.NOT_FOUND,

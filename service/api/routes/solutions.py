@@ -18,7 +18,7 @@ from service.api.permissions.access import Access
 from service.api.turns import run_in_turns
 from service.catalogue import Exercise, FeedbackLevel
 from service.catalogue.attempts import AttemptsSpec
-from service.grading import Verdict, grade
+from service.grading import is_all_right
 from service.solutions import ModelSolution, solve
 from service.submissions.body import GradeRequest
 from service.translations import say
@@ -41,14 +41,6 @@ class SolvedExercises:
 
 def _solved(exercise: Exercise) -> bytes:
     return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
-
-
-def has_full_marks(exercise: Exercise, body: GradeRequest) -> bool:
-    """True if the answers to all parts of the exercise are right."""
-    report = grade(exercise, body.submission(FeedbackLevel.SCORE))
-    return len(report.parts) == len(exercise.parts) and all(
-        part.verdict is Verdict.CORRECT for part in report.parts
-    )
 
 
 def routes(
@@ -89,17 +81,23 @@ def routes(
         An exercise that counts has none: its assignment says when its solution is shown.
         """
         exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
+        await practice.check_solution(access.caller(request), exercise.plain_id)
+        if exercise.attempts != AttemptsSpec():
+            raise _not_shown()
         body = await read_body(GradeRequest, request)
         require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-        await practice.check_solution(access.caller(request), exercise.plain_id)
-        counts = exercise.attempts != AttemptsSpec()
-        if counts or not await run_in_turns(request, partial(has_full_marks, exercise, body)):
-            raise ProblemError(
-                HTTPStatus.FORBIDDEN,
-                say("The solution is shown after full marks, and not for exercises that count."),
-                "solution-not-shown",
-                say("The solution is not shown"),
-            )
+        submission = body.submission(FeedbackLevel.SCORE)
+        if not await run_in_turns(request, partial(is_all_right, exercise, submission)):
+            raise _not_shown()
         return await solutions.answer(exercise)
 
     return router
+
+
+def _not_shown() -> ProblemError:
+    return ProblemError(
+        HTTPStatus.FORBIDDEN,
+        say("The solution is shown after full marks, and not for exercises that count."),
+        "solution-not-shown",
+        say("The solution is not shown"),
+    )

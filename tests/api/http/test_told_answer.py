@@ -91,7 +91,7 @@ def test_a_hint_is_in_the_language_of_the_reader(
 ) -> None:
     step = HintStep("α", say("Look at {axis}.", axis="z1"), Convention.STANDARD)
     monkeypatch.setattr(hints, "hint_step", lambda *_: step)
-    body = {"answers": {}, "part": "table", "code": "sign", "step": 1}
+    body = {"answers": {"table": "0"}, "part": "table", "code": "sign", "step": 1}
     shown = client.post("/v1/exercises/planar-rr/hints?lang=de", json=body)
     assert (shown.json()["title"], shown.json()["text"]) == ("α", "Sehen Sie sich z1 an.")
     assert shown.headers["content-language"] == "de"

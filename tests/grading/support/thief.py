@@ -8,7 +8,7 @@ from typing import Any
 
 from service.catalogue import Exercise, FeedbackLevel, PartSpec
 from service.expressions import ExpressionError, Vocabulary, read
-from service.grading import PartReport, Submission, Verdict, grade
+from service.grading import PartReport, Submission, Verdict, grade, report_on_part
 from service.grading.report import messages_of
 from service.hints.steps import STEPS, Topic, hint_step
 from tests.grading.support.sheets import Grid, Sheet, sheet_of
@@ -100,13 +100,14 @@ class Thief:
         if not self.with_hints:
             return
         answers = {self.part.id: self.sheet.posted(self.grid)}
-        whole = grade(self.exercise, Submission(answers, feedback=self.level))
+        submission = Submission(answers, feedback=self.level)
+        told = report_on_part(self.exercise, submission, self.part.id)
         for message, places, _ in messages_of(report):
             for place in places or (None,):
                 at = (place.row, place.cell) if place else (None, None)
                 topic = Topic(self.part.id, message.code, *at)
                 for step in range(1, STEPS + 1):
-                    hint = hint_step(self.exercise, topic, step, answers, whole)
+                    hint = hint_step(self.exercise, topic, step, answers, told)
                     if hint is not None:
                         self.hints.add(hint.text)
                         yield from (hint.title, hint.text)
