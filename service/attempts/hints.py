@@ -91,7 +91,7 @@ def take(
     return None
 
 
-def refusal(
+def hint_refusal(
     connection: Connection, attempt: Row[Any], wanted: HintStepOf
 ) -> HintRefusedError | None:
     """Return the error if this step of a hint is refused now, else None. Record nothing."""

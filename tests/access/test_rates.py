@@ -1,9 +1,12 @@
 """Rate limits, counted in memory and in a real Redis."""
 
 import asyncio
+import math
 import subprocess
+import time
 from collections.abc import Iterator
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
@@ -69,6 +72,45 @@ def test_without_redis_each_process_counts_on_its_own(caplog: pytest.LogCaptureF
     rates = Rates("", "1/day", "redis+unix:///nowhere")
     assert waits(rates, (NOBODY, "a"), (NOBODY, "a"), (COURSE, "a")) == [False, True, False]
     assert "does not respond" in caplog.text
+    rates.close()
+
+
+def asked(rates: Rates, *numbers: int) -> list[bool]:
+    async def ask() -> list[bool]:
+        return [await rates.seconds_to_wait(COURSE, "10.0.0.1", number) == 0 for number in numbers]
+
+    return asyncio.run(ask())
+
+
+def test_each_submission_of_a_batch_counts_and_a_refused_batch_does_not(store: str) -> None:
+    rates = Rates("6/day;60/month", store=store)
+    assert rates.most_at_once(COURSE) == 6
+    assert rates.most_at_once(NOBODY) == math.inf
+    assert asked(rates, 4, 3, 2, 1) == [True, False, True, False]
+    rates.close()
+    # A request that one limit refuses counts in no other one.
+    rates = Rates("4/day;1/month", store=store + ("?db=1" if "redis" in store else ""))
+    assert asked(rates, 1, 1, 1, 1, 1) == [True, False, False, False, False]
+    rates.close()
+
+
+@pytest.mark.parametrize("earlier", [1, 5, 10])
+@pytest.mark.parametrize("second", [0.5, 7.3, 59.9])
+def test_after_the_seconds_to_wait_a_batch_is_allowed(
+    monkeypatch: pytest.MonkeyPatch, earlier: int, second: float
+) -> None:
+    clock = SimpleNamespace(now=6e8 + second)
+    monkeypatch.setattr(time, "time", lambda: clock.now)
+    rates = Rates("10/minute")
+    assert asked(rates, earlier) == [True]
+    for batch in (10, 6, 1, 10):
+        wait = asyncio.run(rates.seconds_to_wait(COURSE, "10.0.0.1", batch))
+        if wait:
+            assert wait <= 120
+            clock.now += wait - 1.1
+            assert wait == 1 or asked(rates, batch) == [False]
+            clock.now += 1.1
+            assert asked(rates, batch) == [True]
     rates.close()
 
 

@@ -28,7 +28,7 @@ from tests.attempts.databases import new_file
 
 ARM = "stanford-arm"
 _TEXT = "[" + "(" * 12_900 + ")" * 12_900 + "]"
-COSTLY = {part: _TEXT for part in ("table", "links", "pose")}
+COSTLY = dict.fromkeys(("table", "links", "pose"), _TEXT)
 HINT = {"part": "table", "code": "sign", "row": "1", "cell": "alpha", "step": 1}
 # The routes that students use; each has the path below an exercise, and its further fields.
 STUDENTS: Mapping[str, Mapping[str, Any]] = {
@@ -81,7 +81,7 @@ def test_a_costly_body_is_read_where_it_is_graded(
     client: httpx.Client, readings: list[str]
 ) -> None:
     # Otherwise the other tests here would test nothing.
-    cheap = {part: "(" for part in COSTLY}
+    cheap = dict.fromkeys(COSTLY, "(")
     assert posted(client, f"/v1/exercises/{ARM}/grade", {"answers": cheap}).status_code == 200
     assert posted(client, "/v1/preview", {"text": "("}).status_code == 200
     assert readings == ["of", "read"]
@@ -173,7 +173,7 @@ def test_a_hint_reads_no_later_part(client: httpx.Client, monkeypatch: pytest.Mo
         return graded(part, *others)
 
     monkeypatch.setitem(grade.__globals__, "_graded", noted)
-    cheap = {part: "(" for part in COSTLY}
+    cheap = dict.fromkeys(COSTLY, "(")
     answer = posted(client, f"/v1/exercises/{ARM}/hints", body_of("hints", cheap))
     assert answer.status_code == 404
     assert asked == ["table"]

@@ -33,6 +33,7 @@ from service.api.document.openapi import example
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import Access
 from service.api.permissions.rights import RIGHTS
+from service.api.routes import grading
 from service.attempts.storage.database import in_transaction
 from service.attempts.storage.tables import (
     assignments,
@@ -50,6 +51,7 @@ from service.contract.courses import LinksRequest, NewAssignment, NewCourse, New
 from service.courses import roll
 from service.courses.assignments import add_assignment
 from service.courses.links import issue_links
+from service.grading import Report, Submission, grade
 from service.web import Tutoring, web_routes
 from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
@@ -653,6 +655,46 @@ def test_the_setting_says_which_routes_need_no_key(
 def test_without_keys_nobody_makes_tokens(client: httpx.Client) -> None:
     made = client.post("/v1/tokens", json={"learner": "ada"})
     assert made.json()["type"].endswith("tokens-not-made")
+
+
+def test_each_submission_of_a_batch_counts_as_a_request(
+    guarded: Guarded, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rates = Rates("64/hour", "3/hour")
+    app = application(
+        catalogue, access=Access(open_access("grade"), keys=guarded.ring), rates=rates
+    )
+    limited = replace(guarded, app=app)
+    key = guarded.credentials["grade"][0]
+    graded: list[str] = []
+
+    def noted(exercise: Exercise, submission: Submission) -> Report:
+        graded.append(exercise.id)
+        return grade(exercise, submission)
+
+    monkeypatch.setattr(grading, "grade", noted)
+
+    def batch(number: int, credential: str = key) -> tuple[int, int]:
+        submissions = [{"exercise": "scara", "answers": {}}] * number
+        content = json.dumps({"submissions": submissions})
+        answer = limited.ask("POST", "/v1/grade", credential, content=content)
+        if answer.status_code == 429:
+            assert answer.json()["type"].endswith("too-often")
+            assert 0 < int(answer.headers["Retry-After"]) <= 2 * 3600
+        if answer.status_code == 422:
+            assert answer.json()["type"].endswith("batch-too-large")
+            assert "at most 3 in one request" in answer.json()["detail"]
+        return answer.status_code, len(graded)
+
+    # A class with the largest batch within the limit is graded.
+    assert batch(60) == (200, 60)
+    # Four are left: the request itself counts as one of them.
+    assert batch(5) == (429, 60)
+    assert batch(3) == (200, 63)
+    assert batch(1) == (429, 63)
+    assert batch(4, "") == (422, 63)
+    assert batch(2, "") == (200, 65)
+    rates.close()
 
 
 def test_too_many_requests_get_429_with_retry_after(

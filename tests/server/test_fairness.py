@@ -6,7 +6,7 @@ import random
 import pytest
 
 from service.time_slices import FIRST_SLICE
-from tests.server.simulated import Process
+from tests.server.simulated import ORDINARY, Process
 
 Waits = list[float]
 # Seconds of a grading of the costliest body.
@@ -90,6 +90,30 @@ def test_99_percent_of_wrong_tables_on_eight_connections_wait_for_at_most_twenty
     process.run(60.0, *map(student, range(1, 9)))
     mean = slower * sum(WRONG) / len(WRONG)
     assert sorted(found)[int(0.99 * len(found))] <= 20 * mean
+
+
+@pytest.mark.long
+def test_a_batch_takes_as_long_as_its_submissions_one_after_the_other(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    def seconds(*batches: int) -> float:
+        process = Process(monkeypatch)
+        ends: Waits = []
+
+        async def autograder() -> None:
+            for number in batches:
+                await process.ask("autograder", 1, 600, *[ORDINARY] * number)
+            ends.append(process.now)
+
+        async def other(number: int, address: str) -> None:
+            while True:
+                await process.ask(address, number, 600, COSTLIEST)
+
+        others = [other(number, f"other {number % 4}") for number in range(1, 17)]
+        process.run(30.0, autograder(), *others)
+        return ends[0]
+
+    assert seconds(64) == pytest.approx(seconds(*[1] * 64), rel=0.1)
 
 
 def test_the_processor_is_never_idle_while_a_request_waits(

@@ -72,7 +72,7 @@ def routes(
         Its price reduces the points of the learner's later attempts at the exercise. The same step
         costs nothing again. Before the next step, the learner hands in another answer.
         """
-        from service.attempts.hints import HintStepOf, attempt_with_course, refusal, take
+        from service.attempts.hints import HintStepOf, attempt_with_course, hint_refusal, take
         from service.attempts.regrades.outdated import attempted_exercise
 
         access.require_allowed_origin(request, origins)
@@ -93,7 +93,7 @@ def routes(
         if prices is None or exercise is None:
             raise _refused("no-hints", say("Recorded attempts at this exercise have no hints."))
         wanted = HintStepOf(body.part, body.code, body.row or "", body.cell or "", body.step)
-        refused = await read(store, lambda it: refusal(it, row, wanted))
+        refused = await read(store, lambda it: hint_refusal(it, row, wanted))
         if refused is None:
             hint = await run_in_turns(request, partial(_hint, exercise, row, body, feedback))
             refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))

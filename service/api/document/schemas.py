@@ -58,11 +58,14 @@ def tidy_schemas(document: Schema) -> None:
     """Give each model and enumeration a named schema, and sort the schemas by name."""
     components = document.setdefault("components", {})
     tidying = _Tidying()
+    operations = [each for path in document["paths"].values() for each in path.values()]
+    # A schema of requests and responses has the form of requests.
+    for operation in operations:
+        tidying.visit_request(operation)
     for name, schema in components.get("schemas", {}).items():
         tidying.name(name, schema)
-    for path in document["paths"].values():
-        for operation in path.values():
-            tidying.visit_operation(operation)
+    for operation in operations:
+        tidying.visit_responses(operation)
     components["schemas"] = dict(sorted(tidying.named.items()))
 
 
@@ -70,13 +73,16 @@ class _Tidying:
     def __init__(self) -> None:
         self.named: Schema = {}
 
-    def visit_operation(self, operation: Schema) -> None:
+    def visit_request(self, operation: Schema) -> None:
         for parameter in operation.get("parameters", ()):
             parameter["schema"] = self.tidied(parameter["schema"])
-        asked = operation.get("requestBody", {"content": {}})
-        for message in (asked, *operation["responses"].values()):
+        for content in operation.get("requestBody", {}).get("content", {}).values():
+            content["schema"] = self.tidied(content["schema"], is_sent=False)
+
+    def visit_responses(self, operation: Schema) -> None:
+        for message in operation["responses"].values():
             for content in message.get("content", {}).values():
-                content["schema"] = self.tidied(content["schema"], is_sent=message is not asked)
+                content["schema"] = self.tidied(content["schema"])
 
     def name(self, name: str, schema: Schema, *, is_sent: bool = True) -> Schema:
         name = public_name(name)
@@ -129,7 +135,7 @@ class _Tidying:
         fields = {}
         for name, field in schema["properties"].items():
             if name not in required:
-                field = _without_null(field)
+                field = _without_null(field) if is_sent else _without_null_default(field)
                 added_later = field.pop(ADDED_LATER, False)
                 if "default" in field:
                     default = json.dumps(field.pop("default"))
@@ -145,12 +151,16 @@ class _Tidying:
 def _without_null(field: Schema) -> Schema:
     # The service leaves the field out instead of sending null.
     forms = [form for form in field.get("anyOf", ()) if form != _NULL]
-    rest = {key: value for key, value in field.items() if key != "anyOf"}
-    if rest.get("default", ()) is None:
-        del rest["default"]
+    rest = {key: value for key, value in _without_null_default(field).items() if key != "anyOf"}
     if len(forms) == 1:
         return {**forms[0], **rest}
     return {**rest, "anyOf": forms} if forms else rest
+
+
+def _without_null_default(field: Schema) -> Schema:
+    # In requests, such a field may also be null.
+    is_none = field.get("default", ()) is None
+    return {key: value for key, value in field.items() if key != "default" or not is_none}
 
 
 def _texts(schema: Schema) -> Schema:

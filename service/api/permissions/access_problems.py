@@ -113,6 +113,14 @@ ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
         template("These are more requests than are allowed. Come again in {seconds} seconds."),
         retry_after="{seconds}",
     ),
+    "batch-too-large": AccessProblem(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        template("The batch is too large"),
+        template(
+            "Each submission counts as a request. {number} at once are never allowed here: send "
+            "at most {most} in one request."
+        ),
+    ),
     "busy": AccessProblem(
         HTTPStatus.SERVICE_UNAVAILABLE,
         template("The service has a lot to do"),

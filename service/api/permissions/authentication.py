@@ -1,7 +1,10 @@
 """Middleware that authenticates the callers of requests and limits their rates."""
 
+from collections.abc import Awaitable, Callable
+from functools import partial
 from typing import Final, Protocol
 
+from fastapi import Request
 from starlette.requests import HTTPConnection
 from starlette.types import ASGIApp, Receive, Send
 from starlette.types import Scope as AsgiScope
@@ -18,11 +21,19 @@ _COUNTED: Final = ("/v1/", "/tutor", "/lti/")
 _HEALTH: Final = ("/healthz", "/readyz")
 
 
+# The key of a request's ASGI scope under which the authentication leaves a function that counts
+# submissions towards the caller's limit.
+COUNT: Final = "dh_grader.count"
+
+
 class RequestRates(Protocol):
     """Counts the requests of callers, to limit their rates."""
 
-    async def seconds_to_wait(self, caller: Caller, address: str) -> int:
-        """Count a request; return 0 if it is allowed, otherwise the seconds to wait."""
+    def most_at_once(self, caller: Caller) -> float:
+        """Return the most requests that may be counted for the caller at once."""
+
+    async def seconds_to_wait(self, caller: Caller, address: str, requests: int = 1) -> int:
+        """Count requests; return 0 if they are allowed, otherwise the seconds to wait."""
 
     def close(self) -> None:
         """Stop the counting threads."""
@@ -51,10 +62,31 @@ class AuthenticationMiddleware:
                     scope, receive, send
                 )
                 return
+            scope = {**scope, COUNT: partial(_count, self._rates, identity.caller, address)}
         inner = {**scope, IDENTITY: identity}
         if identity.caller.owner:
             inner[CLIENT] = Client(identity.caller.owner, _most_shares(identity.caller))
         await self.app(inner, receive, send)
+
+
+async def count_submissions(request: Request, number: int) -> None:
+    """Count each submission of a batch as a request of the caller.
+
+    Raises ProblemError if the caller's limit does not allow the whole batch.
+    """
+    count: Callable[[int], Awaitable[None]] | None = request.scope.get(COUNT)
+    if count is not None:
+        await count(number)
+
+
+async def _count(rates: RequestRates, caller: Caller, address: str, number: int) -> None:
+    most = rates.most_at_once(caller)
+    if number > most:
+        raise access_problem("batch-too-large", number=number, most=int(most))
+    # The request itself has been counted.
+    seconds = await rates.seconds_to_wait(caller, address, number - 1) if number > 1 else 0
+    if seconds:
+        raise access_problem("too-often", seconds=seconds)
 
 
 def _most_shares(caller: Caller) -> float:

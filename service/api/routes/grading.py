@@ -17,6 +17,7 @@ from service.api.http.problems import ProblemError, failed
 from service.api.http.told_answer import in_languages, told_json
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access, require_reach
+from service.api.permissions.authentication import count_submissions
 from service.api.turns import give_way, run_in_turns
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.contract.grading import GradeManyResponse
@@ -75,12 +76,16 @@ def routes(
     async def grade_many(request: Request) -> Response:
         """Grade submissions to any exercises, each as if it were alone. Nothing is recorded.
 
+        Each submission counts as a request towards the limits of the service. If they do not allow
+        all submissions now, the answer is 429, and nothing is graded.
+
         The results have the order of the submissions. If a submission cannot be graded
         because its exercise or one of its parts does not exist, its result is a problem;
         the others are graded.
         """
         caller, language = access.caller(request), language_of(request)
         body = await read_body(GradeManyRequest, request)
+        await count_submissions(request, len(body.submissions))
         results = []
         for i, submission in enumerate(body.submissions):
             if i:

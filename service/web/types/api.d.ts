@@ -4,19 +4,19 @@ declare namespace Api {
   type AngleUnit = "radians" | "degrees";
   type AssignedPoints = { exercise: string; points: number; };
   type AssignmentChange = {
-    title?: string;
-    exercises?: AssignedPoints[];
-    opens?: string;
-    due?: string;
-    closes?: string;
-    limit?: number;
-    late_worth?: number;
-    feedback?: FeedbackLevel[];
-    practice?: Practice;
-    solution?: ShowSolution;
-    variants?: boolean;
+    title?: string | null;
+    exercises?: AssignedPoints[] | null;
+    opens?: string | null;
+    due?: string | null;
+    closes?: string | null;
+    limit?: number | null;
+    late_worth?: number | null;
+    feedback?: FeedbackLevel[] | null;
+    practice?: Practice | null;
+    solution?: ShowSolution | null;
+    variants?: boolean | null;
     renew_variants?: boolean;
-    hint_prices?: number[];
+    hint_prices?: number[] | null;
   };
   type AssignmentState = "not_open" | "open" | "late" | "closed";
   type Attempt = {
@@ -49,13 +49,13 @@ declare namespace Api {
     earlier_reports: EarlierReport[];
     hints: TakenHint[];
   };
-  type AttemptHintRequest = { part: string; code: string; row?: string; cell?: string; step: number; };
+  type AttemptHintRequest = { part: string; code: string; row?: string | null; cell?: string | null; step: number; };
   type AttemptList = { attempts: AttemptSummary[]; next?: string; };
   type AttemptOverride = { points?: number; reason: string; author: string; at: string; };
   type AttemptRequest = {
     answers: Record<string, unknown>;
     angle_unit?: AngleUnit;
-    feedback?: FeedbackLevel;
+    feedback?: FeedbackLevel | null;
     echo?: boolean;
     learner: string;
   };
@@ -100,7 +100,7 @@ declare namespace Api {
     extensions: Extension[];
   };
   type CourseAssignmentList = { assignments: CourseAssignment[]; };
-  type CourseChange = { title?: string; zone?: string; };
+  type CourseChange = { title?: string | null; zone?: string | null; };
   type CourseLearner = { learner: string; name: string; email?: string; link_until?: string; };
   type CourseList = { courses: Course[]; };
   type DealRequest = { learner: string; exercise: string; };
@@ -188,7 +188,7 @@ declare namespace Api {
   type ExerciseSubmission = {
     answers: Record<string, unknown>;
     angle_unit?: AngleUnit;
-    feedback?: FeedbackLevel;
+    feedback?: FeedbackLevel | null;
     echo?: boolean;
     exercise: string;
   };
@@ -206,7 +206,7 @@ declare namespace Api {
     parts: PartSummary[];
   };
   type ExerciseSymbol = { name: string; kind: Quantity; unit: string; description: string; joint?: number; };
-  type Extension = { learner: string; due?: string; closes?: string; limit?: number; };
+  type Extension = { learner: string; due?: string | null; closes?: string | null; limit?: number | null; };
   type Feedback = {
     code: string;
     severity: Severity;
@@ -259,18 +259,23 @@ declare namespace Api {
     formulas?: TableInFormulas;
   };
   type FramesRequest = {
-    exercise?: string;
-    table?: TableToDraw;
-    placed?: PlacedToDraw;
-    joints?: number[][];
+    exercise?: string | null;
+    table?: TableToDraw | null;
+    placed?: PlacedToDraw | null;
+    joints?: number[][] | null;
     symbols?: Record<string, number>;
     angle_unit?: AngleUnit;
-    figure?: Theme;
+    figure?: Theme | null;
   };
   type FramesShape = { form: "frames"; columns: string[]; rows: string[]; joints: string[]; convention: Convention; };
   type GradeManyRequest = { submissions: ExerciseSubmission[]; };
   type GradeManyResponse = { results: GradeResult[]; };
-  type GradeRequest = { answers: Record<string, unknown>; angle_unit?: AngleUnit; feedback?: FeedbackLevel; echo?: boolean; };
+  type GradeRequest = {
+    answers: Record<string, unknown>;
+    angle_unit?: AngleUnit;
+    feedback?: FeedbackLevel | null;
+    echo?: boolean;
+  };
   type GradeResult = { report?: Report; problem?: Problem; };
   type Gradebook = { course: string; columns: GradebookColumn[]; rows: GradebookRow[]; };
   type GradebookColumn = { assignment: string; exercise: string; points: number; };
@@ -280,22 +285,22 @@ declare namespace Api {
   type HandInRequest = {
     answers: Record<string, unknown>;
     angle_unit?: AngleUnit;
-    feedback?: FeedbackLevel;
+    feedback?: FeedbackLevel | null;
     echo?: boolean;
     exercise: string;
-    learner?: string;
+    learner?: string | null;
   };
   type Hint = { step: number; steps: number; title: string; text: string; picture?: string; lesson?: string; };
   type HintFigures = { part: string; code: string; taken: number[]; };
   type HintRequest = {
     answers: Record<string, unknown>;
     angle_unit?: AngleUnit;
-    feedback?: FeedbackLevel;
+    feedback?: FeedbackLevel | null;
     echo?: boolean;
     part: string;
     code: string;
-    row?: string;
-    cell?: string;
+    row?: string | null;
+    cell?: string | null;
     step: number;
   };
   type IdenticalAnswers = { learners: number; attempts: number; wrong: string[]; among: string[]; };
@@ -303,7 +308,7 @@ declare namespace Api {
   type LearnerList = { learners: CourseLearner[]; };
   type LearnerVariant = { exercise: string; variant: string; seed: string; deals: number; values?: Record<string, string>; };
   type LearnerVariants = { learner: string; variants: LearnerVariant[]; };
-  type LearnersRequest = { learners?: NewLearner[]; csv?: string; };
+  type LearnersRequest = { learners?: NewLearner[] | null; csv?: string | null; };
   type LinkList = { links: PersonalLink[]; };
   type LinkTransform = { text: string; latex: string; label: string; };
   type LinkTransformsShape = {
@@ -314,7 +319,7 @@ declare namespace Api {
     convention: Convention;
     frames: FrameFreedom;
   };
-  type LinksRequest = { learners?: string[]; renew?: boolean; days?: number; };
+  type LinksRequest = { learners?: string[] | null; renew?: boolean; days?: number; };
   type ListComponent = { name: string; quantity: Quantity; };
   type ListShape = { form: "list"; rows: string[]; components: ListComponent[]; sequence?: string; axes?: RotationAxes; };
   type LittleWorth = { rows: string[]; points: number; message: string; };
@@ -345,22 +350,22 @@ declare namespace Api {
   type NewAssignment = {
     title: string;
     exercises: AssignedPoints[];
-    opens?: string;
-    due?: string;
-    closes?: string;
-    limit?: number;
-    late_worth?: number;
-    feedback?: FeedbackLevel[];
-    practice?: Practice;
-    solution?: ShowSolution;
-    variants?: boolean;
+    opens?: string | null;
+    due?: string | null;
+    closes?: string | null;
+    limit?: number | null;
+    late_worth?: number | null;
+    feedback?: FeedbackLevel[] | null;
+    practice?: Practice | null;
+    solution?: ShowSolution | null;
+    variants?: boolean | null;
     renew_variants?: boolean;
-    hint_prices?: number[];
+    hint_prices?: number[] | null;
     id: string;
   };
   type NewCourse = { id: string; title: string; zone: string; };
-  type NewLearner = { learner?: string; name: string; family_name?: string; email?: string; };
-  type OverrideRequest = { points?: number; reason: string; author?: string; };
+  type NewLearner = { learner?: string | null; name: string; family_name?: string | null; email?: string | null; };
+  type OverrideRequest = { points?: number | null; reason: string; author?: string | null; };
   type OwnAssignment = {
     id: string;
     title: string;
@@ -473,7 +478,13 @@ declare namespace Api {
   type PreviewManyRequest = { exercise: string; part: string; angle_unit?: AngleUnit; entries: EntryToPreview[]; };
   type PreviewManyResponse = { results: Preview[]; };
   type PreviewNote = { code: string; message: string; span: [number, number]; };
-  type PreviewRequest = { text: string; exercise?: string; part?: string; angle_unit?: AngleUnit; quantity?: Quantity; };
+  type PreviewRequest = {
+    text: string;
+    exercise?: string | null;
+    part?: string | null;
+    angle_unit?: AngleUnit;
+    quantity?: Quantity;
+  };
   type PrintedFormula = { text: string; latex: string; mathml: string; };
   type PrintedMatrix = { text: string; latex: string; };
   type Problem = {
@@ -497,7 +508,7 @@ declare namespace Api {
     failures?: string[];
     next?: string;
   };
-  type RegradeRequest = { apply?: boolean; force?: boolean; cursor?: string; };
+  type RegradeRequest = { apply?: boolean; force?: boolean; cursor?: string | null; };
   type RemovalRequest = { apply?: boolean; with_attempts?: boolean; learner: string; };
   type Report = {
     exercise: string;
@@ -510,7 +521,7 @@ declare namespace Api {
     score: number;
     parts: PartReport[];
   };
-  type RevokeLinksRequest = { learners?: string[]; };
+  type RevokeLinksRequest = { learners?: string[] | null; };
   type RevokedLinks = { revoked: number; };
   type RotationAxes = "moving" | "fixed";
   type RowFigures = { answered: number; correct: number; share?: number; label: string; cells: CellFigures[]; };
@@ -525,14 +536,14 @@ declare namespace Api {
   type ScoreState = "waiting" | "sent" | "refused";
   type ScrewAxesShape = { form: "screw_axes"; columns: string[]; rows: string[]; frame: ScrewFrame; directions: FrameFreedom; };
   type ScrewFrame = "space" | "body";
-  type SendAgainRequest = { assignment?: string; learner?: string; failed?: boolean; };
+  type SendAgainRequest = { assignment?: string | null; learner?: string | null; failed?: boolean; };
   type SentAgain = { queued: number; };
   type Severity = "error" | "warning" | "hint" | "info";
   type ShowSolution = "never" | "after_full" | "after_due";
   type Situation = "offset" | "sliding" | "parallel" | "turned";
   type TableInFormulas = { cells: PrintedFormula[][]; converted?: ConvertedRow[]; pose?: PrintedFormula[][]; };
   type TableRow = { a: string; alpha: string; d: string; theta: string; };
-  type TableToDraw = { rows: unknown; convention?: Convention; structure?: string; formulas?: boolean; };
+  type TableToDraw = { rows: unknown; convention?: Convention; structure?: string | null; formulas?: boolean; };
   type TakenHint = {
     attempt: string;
     part: string;
@@ -544,7 +555,7 @@ declare namespace Api {
     at: string;
   };
   type Theme = "auto" | "light" | "dark";
-  type TokenRequest = { learner: string; exercises?: string[]; minutes?: number; };
+  type TokenRequest = { learner: string; exercises?: string[] | null; minutes?: number; };
   type TokenResponse = { token: string; learner: string; expires_at: string; };
   type UnreadCell = { row: string; column: string; error: PreviewError; };
   type ValidTable = { change: string; rows: TableRow[]; };
