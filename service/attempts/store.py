@@ -2,8 +2,8 @@
 
 import asyncio
 import tempfile
-from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from collections.abc import Awaitable, Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager, nullcontext
 from datetime import UTC, datetime
 from typing import IO, Final, TypeVar
@@ -45,6 +45,8 @@ _READERS: Final = 2
 # The time limit of a tutor's query, including its wait for others (seconds): longer than the
 # limit of a statement in PostgreSQL.
 _READ_TIMEOUT: Final = 70.0
+# Seconds until a paused export looks whether the store has been closed.
+_LONGEST_WAIT: Final = 0.5
 # Larger exports are buffered on the disk (bytes).
 _IN_MEMORY: Final = 1024 * 1024
 
@@ -94,9 +96,9 @@ class AttemptStore:
         if self._writer is not None:
             self._writer.close()
             self._writer = None
-        if self._readers is not None:
-            self._readers.shutdown()
-            self._readers = None
+        readers, self._readers = self._readers, None
+        if readers is not None:
+            readers.shutdown()
         self.engine.dispose()
 
     async def standing(
@@ -155,11 +157,28 @@ class AttemptStore:
         form: GradesFormat,
         title: str,
         counting: Callable[[str], Counting],
+        give_way: Callable[[], Awaitable[None]],
     ) -> IO[bytes]:
-        """Return a file with the attempts in a format. The caller closes the file."""
+        """Return a file with the attempts in a format. The caller closes the file.
+
+        ``give_way`` is awaited after each page of attempts.
+        """
+        # Python runs one thread at a time. An export without pauses would hold up the thread of the
+        # event loop for milliseconds, whenever that has waited for a socket.
+        loop = asyncio.get_running_loop()
+
+        def pause() -> None:
+            turn = asyncio.run_coroutine_threadsafe(_awaited(give_way), loop)
+            while not turn.done() and self._readers is not None:
+                wait([turn], _LONGEST_WAIT)
+            if not turn.done():
+                turn.cancel()
+                raise StoreDownError("the store has been closed")
+            turn.result()
+
         return await self.read(
             lambda connection: _file_of(
-                written(graded_attempts(connection, wanted, counting), form, title)
+                written(graded_attempts(connection, wanted, counting, pause), form, title)
             )
         )
 
@@ -228,6 +247,10 @@ class AttemptStore:
     def _running(self) -> AttemptWriter:
         assert self._writer is not None, "the store has not been started"
         return self._writer
+
+
+async def _awaited(give_way: Callable[[], Awaitable[None]]) -> None:
+    await give_way()
 
 
 def _file_of(lines: Iterable[bytes]) -> IO[bytes]:

@@ -7,12 +7,16 @@ import threading
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
+from functools import cache
+from itertools import islice
 from typing import Any, Final
 
 from tests.attack.honest import EXERCISE, GRADE
 from tests.benchmarks.server import request
+from tests.load.wrong_answers import tables
 from tests.server.raw import Service
 from tests.worst.bodies import KNOWN
+from tests.worst.entry_points import Attack
 from tests.worst.seeds import links_of
 
 HEAD = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\n"
@@ -22,6 +26,8 @@ SOURCE = "127.0.0.3"
 MANY = 16
 
 Flood = Callable[[Service, ExitStack, float], str]
+# Takes the number of a connection, and returns the address of its client.
+Source = Callable[[int], str]
 
 
 def half_open(heads: int) -> Flood:
@@ -128,6 +134,9 @@ def _spelled(value: Any, number: int) -> Any:
     return value
 
 
+# Brackets that a pasted table may not have; as many as a pasted text may have characters.
+_BRACKETS: Final = "[" + "(" * 12_900 + ")" * 12_900 + "]"
+
 # The costliest bodies, one for each kind of work.
 KINDS: Final = {
     "sines in degrees": (GRADE, KNOWN["links of sines in degrees"]),
@@ -135,6 +144,12 @@ KINDS: Final = {
     "unread cells": (GRADE, KNOWN["unread cells in another unit"]),
     "many previews": ("/v1/previews", KNOWN["many previews of halves"]),
     "frames": ("/v1/frames", KNOWN["a free table of long cells"]),
+    "brackets": (
+        GRADE,
+        Attack(
+            "grade", EXERCISE, {"answers": dict.fromkeys(("table", "links", "pose"), _BRACKETS)}
+        ),
+    ),
 }
 
 
@@ -147,6 +162,17 @@ def of_kind(kind: str) -> Callable[[int], bytes]:
     return numbered
 
 
+@cache
+def _honest_bodies() -> list[bytes]:
+    several = islice(tables(seed=2, wrong=0.5), 500)
+    return [request(f"/v1/exercises/{each.exercise}/grade", each.content) for each in several]
+
+
+def one_honest(number: int) -> bytes:
+    """Return the bytes of a request with an ordinary submission."""
+    return _honest_bodies()[number % len(_honest_bodies())]
+
+
 def from_one_address(_: int) -> str:
     return SOURCE
 
@@ -157,11 +183,11 @@ def from_addresses(number: int) -> str:
 
 def costly(
     body: Callable[[int], bytes] = one_costly,
-    source: Callable[[int], str] = from_one_address,
+    source: Source = from_one_address,
     *,
     again: bool = True,
 ) -> Flood:
-    """Return a flood of costly requests on 16 connections."""
+    """Return a flood of requests on 16 connections, by default of costly ones."""
 
     # If `again` is false, each request opens a new connection.
     def flood(running: Service, opened: ExitStack, until: float) -> str:
@@ -186,7 +212,7 @@ def costly(
             thread.start()
         for thread in threads:
             thread.join()
-        return f"{next(answered)} costly requests answered"
+        return f"{next(answered)} requests answered"
 
     return flood
 

@@ -1,12 +1,28 @@
-"""Simulate how long clients wait for each other."""
+"""Simulate how long clients wait for each other, and measure when work may give way."""
 
 import itertools
 import random
+import sys
+import time
+from collections.abc import Callable, Iterator, Mapping
+from types import FrameType
 
 import pytest
 
+from service import time_slices
 from service.time_slices import FIRST_SLICE
 from tests.server.simulated import ORDINARY, Process
+from tests.worst.bodies import ARM, KNOWN
+from tests.worst.entry_points import (
+    FILE,
+    GRADE,
+    PREVIEW,
+    Attack,
+    Target,
+    floor_seconds,
+    forget,
+)
+from tests.worst.exercises import exercises
 
 Waits = list[float]
 # Seconds of a grading of the costliest body.
@@ -196,3 +212,89 @@ def test_a_course_site_has_a_share_for_each_student(
     assert len(ends) == 30
     # The last ones of an address, fewer than eight, have fewer shares.
     assert ends[-1] == pytest.approx(expected, rel=0.2)
+
+
+# The most work between two checkpoints, in floors; twice what docs/performance.md says, because of
+# the machine.
+STEP = 220
+_PAIRS = 12_900
+# Texts that only look like a table or a matrix.
+_HOSTILE: Mapping[str, str] = {
+    "brackets": "[" + "(" * _PAIRS + ")" * _PAIRS + "]",
+    "brackets one after the other": "[" + "()" * _PAIRS + "]",
+    "open brackets": "[(" * _PAIRS,
+    "braces": "{" * _PAIRS + "}" * _PAIRS,
+    "quotes": "['" + "''" * _PAIRS,
+    "dollars": "[" + "$ $" * (_PAIRS // 2) + "]",
+    "commas": "[" + "," * 2 * _PAIRS + "]",
+    "blanks": "[" + "1 " * _PAIRS + "]",
+    "lines": "1\n" * _PAIRS,
+}
+BODIES: Mapping[str, Attack] = {
+    **{name: each for name, each in KNOWN.items() if each.entry != FILE},
+    **{
+        f"a submission of {name}": Attack(
+            GRADE, ARM, {"answers": dict.fromkeys(("table", "links", "pose"), text)}
+        )
+        for name, text in _HOSTILE.items()
+    },
+    **{
+        f"a preview of {name}": Attack(
+            PREVIEW, ARM, {"text": text, "exercise": ARM, "part": "links"}
+        )
+        for name, text in _HOSTILE.items()
+    },
+}
+
+
+class _Steps:
+    """Measures the processor time between two checkpoints, in place of the clock of slices."""
+
+    def __init__(self) -> None:
+        self.longest = 0.0
+        self._last = time.thread_time()
+        self._place = ""
+        # Where the longest step ended.
+        self.place = ""
+
+    def __call__(self) -> float:
+        frame = sys._getframe(1)
+        # ``working_time`` looks at the clock without giving way.
+        if frame.f_code.co_name in ("checkpoint", "_slice"):
+            self.end(frame.f_back)
+        return time.perf_counter()
+
+    def end(self, frame: FrameType | None) -> None:
+        now = time.thread_time()
+        if now - self._last > self.longest:
+            self.longest = now - self._last
+            self.place = "" if frame is None else f"{frame.f_code.co_filename}:{frame.f_lineno}"
+        self._last = now
+
+
+@pytest.fixture(scope="module")
+def target() -> Iterator[Target]:
+    found = exercises()
+    target = Target({each.exercise: found[each.exercise] for each in BODIES.values()})
+    yield target
+    target.close()
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", BODIES)
+def test_work_gives_way_before_others_have_waited_long(
+    name: str, target: Target, monkeypatch: pytest.MonkeyPatch, figure: Callable[[str], None]
+) -> None:
+    def step() -> tuple[float, str]:
+        forget()
+        before = floor_seconds()
+        with monkeypatch.context() as context:
+            steps = _Steps()
+            context.setattr(time_slices, "perf_counter", steps)
+            assert target.answer(BODIES[name]) in (200, 201, 422)
+            steps.end(None)
+        return steps.longest / max(before, floor_seconds()), steps.place
+
+    longest, place = min(step() for _ in range(3))
+    figure(f"{name}: gives way after at most {longest:.0f} × the floor, at {place}")
+    assert longest < STEP, place

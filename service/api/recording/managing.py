@@ -1,6 +1,6 @@
 """Routes for tutors: export and change recorded attempts."""
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Awaitable, Callable
 from dataclasses import asdict
 from functools import partial
 from http import HTTPStatus
@@ -29,6 +29,7 @@ from service.api.recording.listing import (
     may_reach,
 )
 from service.api.recording.store import NO_STORE, ask, private, unknown_attempt
+from service.api.turns import give_way
 from service.attempts.attempt import AttemptFilter, GradesFormat
 from service.attempts.errors import (
     BadCursorError,
@@ -112,13 +113,15 @@ def routes(
             exercise, learner, since, until, course=course, assignment=assignment
         )
         rules = counting_rules(catalogue)
-        file = await ask(store, lambda it: it.export(wanted, form, exercise or "", rules))
+        turn = partial(give_way, request)
+        file = await ask(store, lambda it: it.export(wanted, form, exercise or "", rules, turn))
         ending, kind = _KINDS.get(form, _CSV)
         headers = {
             **NO_STORE,
             "Content-Disposition": f'attachment; filename="{_stem(form, exercise)}.{ending}"',
         }
-        return StreamingResponse(_pieces(file), 200, headers, kind, BackgroundTask(file.close))
+        pieces = _pieces(file, turn)
+        return StreamingResponse(pieces, 200, headers, kind, BackgroundTask(file.close))
 
     @router.post(
         "/attempts/{attempt_id}/override",
@@ -284,9 +287,11 @@ def _change(changed: "RegradedAttempt", language: Language) -> AttemptChange:
     return made.model_copy(update={"reasons": reasons})
 
 
-async def _pieces(file: IO[bytes]) -> AsyncIterator[bytes]:
+async def _pieces(file: IO[bytes], give_way: Callable[[], Awaitable[None]]) -> AsyncIterator[bytes]:
+    # A client may want the pieces compressed.
     while piece := file.read(_PIECE):
         yield piece
+        await give_way()
 
 
 def _stem(form: GradesFormat, exercise: str | None) -> str:

@@ -4,9 +4,9 @@ import json
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
-from typing import Final, Literal
+from typing import Any, Final, Literal
 
-from sqlalchemy import Connection, select
+from sqlalchemy import Connection, Result, select
 
 from service.attempts.attempt import AttemptFilter, GradesFormat, ListedAttempt
 from service.attempts.results.listing import LISTED, condition
@@ -16,6 +16,9 @@ from service.catalogue.attempts import AttemptsSpec
 from service.formats.shared import spreadsheet
 
 Counting = Literal["best", "last"]
+
+# The attempts that are read at once. An export of them takes about two milliseconds.
+_PAGE: Final = 100
 
 
 def counting_rules(exercises: Mapping[str, Exercise]) -> Callable[[str], Counting]:
@@ -40,23 +43,33 @@ class GradedAttempt:
 
 
 def graded_attempts(
-    connection: Connection, wanted: AttemptFilter, counting: Callable[[str], Counting]
+    connection: Connection,
+    wanted: AttemptFilter,
+    counting: Callable[[str], Counting],
+    pause: Callable[[], None] = lambda: None,
 ) -> Iterator[GradedAttempt]:
     """Yield the wanted attempts, sorted by exercise, learner and time.
 
     ``counting`` takes the id of an exercise and returns the rule for the attempt that counts.
+    ``pause`` is called after each page of attempts.
     """
     ordered = (
         select(*LISTED)
         .where(condition(wanted))
         .order_by(attempts.c.exercise, attempts.c.learner, attempts.c.at, attempts.c.number)
-        .execution_options(yield_per=1000)
+        .execution_options(yield_per=_PAGE)
     )
-    found = (ListedAttempt(**row._mapping) for row in connection.execute(ordered))
+    found = _paged(connection.execute(ordered), pause)
     for (exercise, _), group in groupby(found, lambda each: (each.exercise, each.learner)):
         of_learner = list(group)
         chosen = _counting_attempt(of_learner, counting(exercise))
         yield from (GradedAttempt(each, each is chosen) for each in of_learner)
+
+
+def _paged(rows: Result[Any], pause: Callable[[], None]) -> Iterator[ListedAttempt]:
+    for page in rows.partitions():
+        yield from (ListedAttempt(**row._mapping) for row in page)
+        pause()
 
 
 def _counting_attempt(of_learner: Iterable[ListedAttempt], rule: Counting) -> ListedAttempt | None:

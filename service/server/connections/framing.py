@@ -19,6 +19,9 @@ _BARE_NEWLINE: Final = re.compile(rb"(?<!\r)\n")
 _CHUNK_SIZE: Final = re.compile(rb"([0-9A-Fa-f]{1,8})[ \t]*(?:;.*)?")
 # The least number of bytes that a line of a chunked body counts: even a short line costs work.
 _LEAST_LINE: Final = 64
+# The bytes of a body or chunk that are passed on at once; fewer only at its end. Each piece wakes
+# the task of its request, which costs much more than to keep a byte of a slow client.
+_PART: Final = 16 * 1024
 # The most bytes of a request line besides its address: the method and the version.
 _REST_OF_LINE: Final = 64
 
@@ -162,6 +165,8 @@ class Framing:
         return self._take(size)
 
     def _part_of_body(self) -> bytes | None:
+        if len(self._buffer) < min(self._left, _PART):
+            return None
         piece = self._take(min(self._left, len(self._buffer)))
         self._left -= len(piece)
         self.content += len(piece)

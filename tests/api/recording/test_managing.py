@@ -14,8 +14,11 @@ from sqlalchemy import text
 
 from service.api.application import application
 from service.api.permissions.access import Access
+from service.attempts.attempt import AttemptFilter, GradesFormat
+from service.attempts.errors import StoreDownError
 from service.attempts.regrades import outdated as regrading
 from service.attempts.regrades import steps as regrade_steps
+from service.attempts.results import grades
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, load_catalogue, shipped_folder
 from tests.api.conftest import InProcess
@@ -78,6 +81,51 @@ def corrected(folder: Path) -> Mapping[str, Exercise]:
     changed = text.replace('["a2", "180deg",', '["a2", "0",')
     (folder / "scara.toml").write_text(changed.partition("[[checks]]")[0], encoding="utf-8")
     return load_catalogue(folder)
+
+
+def test_an_export_gives_way_after_each_page(
+    store: AttemptStore, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(grades, "_PAGE", 2)
+    for learner in "abcde":
+        recorded(store, catalogue["scara"], learner, RIGHT)
+    turns = 0
+
+    async def give_way() -> None:
+        nonlocal turns
+        turns += 1
+        await asyncio.sleep(0)
+
+    for form in GradesFormat:
+        turns = 0
+        asyncio.run(
+            store.export(AttemptFilter("scara"), form, "x", lambda _: "best", give_way)
+        ).close()
+        assert turns == 3
+
+
+def test_an_export_that_waits_for_its_turn_ends_with_the_store(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    recorded(store, catalogue["scara"], "ada", RIGHT)
+
+    async def story() -> None:
+        waits = asyncio.Event()
+
+        async def give_way() -> None:
+            waits.set()
+            await asyncio.Event().wait()
+
+        export = store.export(
+            AttemptFilter("scara"), GradesFormat.CSV, "x", lambda _: "best", give_way
+        )
+        running = asyncio.ensure_future(export)
+        await waits.wait()
+        await asyncio.to_thread(store.close)
+        with pytest.raises(StoreDownError):
+            await running
+
+    asyncio.run(story())
 
 
 def test_attempts_are_exported(

@@ -157,3 +157,22 @@ def test_the_size_of_a_chunk_is_a_number(size: bytes) -> None:
 def test_empty_lines_before_a_request_are_ignored() -> None:
     assert read(Framing(), b"\r\n\r\n" + GET, [0]) == [GET]
     assert refused(b"\r\n" * MAX_FRAME) is HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE
+
+
+@pytest.mark.parametrize("length", [None, 40_000])
+def test_a_body_that_comes_byte_by_byte_is_passed_on_in_few_pieces(length: int | None) -> None:
+    framing = Framing()
+    framing.receive(SIZED)
+    framing.piece()
+    framing.expect_body(length)
+    pieces = []
+    for byte in (b"" if length else b"9C40\r\n") + b"x" * 40_000:
+        framing.receive(bytes([byte]))
+        if piece := framing.piece():
+            pieces.append(piece)
+    # Every byte is counted, whether it has been passed on or not.
+    assert len(framing) + framing.content >= 40_000 - 2
+    assert len(pieces) <= 4
+    if length:
+        assert b"".join(pieces) == b"x" * length
+        assert framing.whole
