@@ -4,9 +4,10 @@ Work is counted instead of timed, so that the same submission gives the same rep
 """
 
 import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Self
+from typing import Any, Final, Self
 
 from service.expressions.reading_work import reading_cost
 from service.grids.cutting.limits import GRID_LIMITS
@@ -25,6 +26,9 @@ SYMBOLS_PER_REPAIR = 100
 # The characters of pasted texts that are cut into cells; the symbols in the cells are counted again
 # when they are read. The longest allowed text leaves half its length for the other parts.
 MAX_PASTED = 36_000
+# The brackets and quotation marks in these texts, for which partners are searched. The longest pose
+# has 4,100 of them.
+MAX_PASTED_SIGNS = 8_000
 
 # The unit is the least work of a grading: multiplying out six links at all samples.
 MAX_EXPLANATIONS = 145.0
@@ -32,8 +36,9 @@ MAX_EXPLANATIONS = 145.0
 MAX_SEARCHES = 280.0
 # The limit for reading, searches and explanations together.
 MAX_WORK = 285.0
-# The work of reading a symbol, of cutting a pasted character into a cell, and of a repair.
-SYMBOL_WORK, PASTED_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1.5
+# The work of reading a symbol, of cutting a pasted character into a cell, of finding the partner of
+# a pasted bracket, and of a repair.
+SYMBOL_WORK, PASTED_WORK, SIGN_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1 / 200, 1.5
 
 # The MathML of the pose of a seven-joint arm has 57,000 characters. Nobody reads longer formulas.
 MAX_PRINTED = 60_000
@@ -43,6 +48,9 @@ MAX_PRINTED = 60_000
 MAX_SYMBOLS_DRAWN = 16_000
 SYMBOLS_PER_FIGURE = 2_200
 SYMBOLS_PER_PRINTED_NODE = 2.5
+
+
+_SIGN: Final = re.compile(r"""[][(){}'"]""")
 
 
 @dataclass(slots=True)
@@ -57,6 +65,8 @@ class WorkBudget:
     repairs: int = MAX_REPAIRS
     # The characters that may still be cut into cells.
     pasted: int = MAX_PASTED
+    # The brackets and quotation marks whose partners may still be searched.
+    pasted_signs: int = MAX_PASTED_SIGNS
     # The work left for explaining mistakes, on which no verdict depends.
     explanations: float = MAX_EXPLANATIONS
     # The work left for finding the intended table: values of unread cells, other column orders.
@@ -67,6 +77,9 @@ class WorkBudget:
     has_left_out: bool = False
     # The texts that could not be read.
     unreadable: set[object] = field(default_factory=set)
+    # What was found in each pasted text, by the way of reading it; each text is charged once.
+    found: dict[tuple[object, ...], Any] = field(default_factory=dict)
+    _charged: set[str] = field(default_factory=set)
     # The whole submission; the work for reading its later parts is reserved.
     answers: object = None
     _expected: int = -1
@@ -85,6 +98,7 @@ class WorkBudget:
         read = (
             SYMBOL_WORK * max(MAX_SYMBOLS - max(self.symbols, 0), self._expected)
             + PASTED_WORK * (MAX_PASTED - max(self.pasted, 0))
+            + SIGN_WORK * (MAX_PASTED_SIGNS - max(self.pasted_signs, 0))
             + REPAIR_WORK * (MAX_REPAIRS - max(self.repairs, 0))
         )
         return MAX_WORK - read - (MAX_SEARCHES - self.searches)
@@ -115,6 +129,15 @@ class WorkBudget:
         """Charge the reading of a text; return True if it may be read."""
         self.symbols -= symbols
         return self.symbols >= 0
+
+    def charge_pasted(self, text: str) -> bool:
+        """Charge the cutting of a pasted text, only once; return True if it may be cut."""
+        checkpoint()
+        if text not in self._charged:
+            self._charged.add(text)
+            self.pasted -= len(text)
+            self.pasted_signs -= len(_SIGN.findall(text))
+        return self.pasted >= 0 and self.pasted_signs >= 0
 
     def charge_printing(self, nodes: int) -> bool:
         """Charge the printing of a formula of ``nodes``; return True if it may be printed."""

@@ -4,8 +4,9 @@ import re
 from dataclasses import replace
 from typing import Final
 
-from service.grids.cutting.grid import Grid, GridError, GridFormat
+from service.grids.cutting.grid import Grid, GridError, GridFormat, too_many_cells
 from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.once import remembering
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats import (
     columns,
@@ -29,6 +30,7 @@ from service.grids.scripts.script import RobotTable
 from service.grids.scripts.session import session_outputs
 from service.grids.scripts.titles import without_fence, without_titles
 from service.grids.scripts.toolbox_print import describes_print, read_print
+from service.time_slices import checkpoint
 from service.translations import say
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
@@ -50,6 +52,7 @@ _SEPARATOR_LINE: Final = re.compile(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
 _THIN_SPACE: Final = "\\,"
 
 
+@remembering
 def read_grid(text: str, *, of_table: bool = False) -> Grid:
     """Return the grid in a pasted text, in linear time. Raises only GridError, for any text."""
     # The length of the text is bounded by ``GRID_LIMITS``. With ``of_table``, later statements of a
@@ -69,6 +72,7 @@ def read_grid(text: str, *, of_table: bool = False) -> Grid:
     return replace(found, notes=(*notes, *found.notes)) if notes else found
 
 
+@remembering
 def read_robot(text: str) -> RobotTable | None:
     """Return the DH table of the robot that a pasted script describes; None for any other text.
 
@@ -107,21 +111,14 @@ def _limited(text: str) -> SourceText:
     if not source.text.strip():
         raise GridError("empty", say("Nothing is written here."), (0, len(text)))
     if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
-        raise GridError(
-            "too_many_cells",
-            say(
-                "This has more than {most:,} commas, tabs, bars and line ends; "
-                "paste only the table or matrix.",
-                most=GRID_LIMITS.separators,
-            ),
-            (0, len(text)),
-        )
+        raise too_many_cells((0, len(text)))
     return source
 
 
 def grid_of(source: SourceText) -> Grid:
     """Return the grid in a piece of a pasted text. Raises GridError if there is none."""
     for candidate in FORMATS:
+        checkpoint()
         if candidate.matches(source.text):
             return candidate.parse(source)
     raise GridError(

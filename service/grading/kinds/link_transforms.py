@@ -64,7 +64,7 @@ def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentL
 def _listed(answer: object, labels: tuple[str, ...], grading: Grading) -> tuple[StudentMatrix, ...]:
     if not isinstance(answer, list) or not 0 < len(answer) <= len(labels):
         raise UnreadableAnswerError(_wrong_shape(labels))
-    places, notes = places_in_list(answer, labels)
+    places, notes = places_in_list(answer, labels, grading.reader)
     ordered: list[object] = [[None] * 4] * len(labels)
     for place, matrix in zip(places, answer, strict=True):
         ordered[place] = matrix

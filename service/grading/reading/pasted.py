@@ -1,18 +1,18 @@
 """Read the grids (tables and matrices) in pasted texts, and report errors in them."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from functools import reduce
 from itertools import islice
-from typing import Final
+from typing import Final, TypeVar
 
 from service.expressions.characters.decimal_comma import with_points
 from service.grading.feedback import Finding
 from service.grading.reading.entry import Entry, Reader
 from service.grading.reading.given_letters import with_given_letters
 from service.grading.reading.tables.words import ANGLE_UNITS, METRES
-from service.grading.work_budget import MAX_PASTED
+from service.grading.work_budget import MAX_PASTED, MAX_PASTED_SIGNS
 from service.grids import (
     GRID_LIMITS,
     Grid,
@@ -24,7 +24,10 @@ from service.grids import (
     read_grids,
     read_robot,
 )
+from service.time_slices import checkpoint
 from service.translations import say
+
+R = TypeVar("R")
 
 # An index in square brackets: theta[1], l[2].
 _INDEX: Final = re.compile(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]")
@@ -40,9 +43,12 @@ _JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
 def pasted_grid(text: str, reader: Reader, *, of_table: bool = False) -> Grid:
     """Return the table or matrix in a pasted text. Raises GridError if there is none."""
     # Also raised if the pasted texts of a submission are too long.
-    _charge(text, reader)
-    grid = read_grid(_prepared(text, reader), of_table=of_table)
-    return with_given_letters(grid, text, reader)
+
+    def read() -> Grid:
+        grid = read_grid(_prepared(text, reader), of_table=of_table)
+        return with_given_letters(grid, text, reader)
+
+    return _cut("table" if of_table else "grid", text, reader, read)
 
 
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
@@ -51,17 +57,51 @@ def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
     Raises GridError if the script's table is ambiguous.
     """
     # Also raised if the pasted texts of a submission are too long.
-    robot = read_robot(_without_own_units(text, reader))
-    if robot is None:
-        return None
-    _charge(text, reader)
-    return replace(robot, grid=with_given_letters(robot.grid, text, reader))
+
+    def read() -> RobotTable | None:
+        robot = read_robot(_without_own_units(text, reader))
+        if robot is None:
+            return None
+        return replace(robot, grid=with_given_letters(robot.grid, text, reader))
+
+    return _cut("robot", text, reader, read)
 
 
 def pasted_grids(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
     """Return the matrices in a pasted text, with their names. May raise GridError."""
+    return _cut("grids", text, reader, lambda: read_grids(_prepared(text, reader)))
+
+
+def grids_as_written(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
+    """Return the matrices in a pasted text with its indices, of which none is ambiguous here.
+
+    May raise GridError.
+    """
+    return _cut("grids as written", text, reader, lambda: read_grids(text))
+
+
+def _cut(way: str, text: str, reader: Reader, read: Callable[[], R]) -> R:
+    # Raises GridError if the text may not be cut.
     _charge(text, reader)
-    return read_grids(_prepared(text, reader))
+    return once(way, text, reader, read)
+
+
+def once(way: str, text: str, reader: Reader, read: Callable[[], R]) -> R:
+    """Read a text in one way, and remember what is found; raise its GridError again and again."""
+    # A text may stand in several places of a submission, and several parts of the grader read it.
+    checkpoint()
+    found = reader.budget.found
+    key = way, text, reader.angle_unit, reader.length_unit
+    if key not in found:
+        try:
+            found[key] = read()
+        except GridError as error:
+            found[key] = error
+    result = found[key]
+    if isinstance(result, GridError):
+        raise GridError(result.code, result.message, result.span)
+    again: R = result
+    return again
 
 
 def _prepared(text: str, reader: Reader) -> str:
@@ -114,13 +154,19 @@ def _with_indices_from_one(text: str, reader: Reader) -> str:
 
 
 def _charge(text: str, reader: Reader) -> None:
-    if len(text) <= GRID_LIMITS.characters:
-        reader.budget.pasted -= len(text)
-    if reader.budget.pasted < 0:
+    """Charge the cutting of a text. Raises GridError if it may not be cut."""
+    if len(text) > GRID_LIMITS.characters or reader.budget.charge_pasted(text):
+        # A text that is too long is not cut.
+        return
+    message = say(
+        "The pasted texts have more than {most:,} characters together.", most=MAX_PASTED
+    )
+    if reader.budget.pasted >= 0:
         message = say(
-            "The pasted texts have more than {most:,} characters together.", most=MAX_PASTED
+            "The pasted texts have more than {most:,} brackets and quotation marks together.",
+            most=MAX_PASTED_SIGNS,
         )
-        raise GridError("too_long", message, (0, len(text)))
+    raise GridError("too_long", message, (0, len(text)))
 
 
 def from_grid_error(error: GridError) -> Finding:

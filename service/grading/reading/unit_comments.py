@@ -7,6 +7,7 @@ from typing import Final
 
 from service.expressions import AngleUnit, Kind
 from service.grading.reading.entry import Reader
+from service.grading.reading.pasted import once
 from service.grading.reading.tables.words import ANGLE_UNITS, METRES, in_plain_words
 from service.grids import GridError
 from service.translations import say
@@ -29,7 +30,12 @@ def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> No
     """Raise GridError if a comment or a caption gives lengths a unit that is not the exercise's."""
     # ``kinds`` are the quantities of the entries.
     # Without lengths, all comments are accepted.
-    if "length" not in kinds or CONVERTS_LENGTHS.search(text):
+    if "length" in kinds:
+        once("lengths", text, reader, lambda: _refuse_other_lengths(text, reader))
+
+
+def _refuse_other_lengths(text: str, reader: Reader) -> None:
+    if CONVERTS_LENGTHS.search(text):
         return
     for comment in comments_and_captions(text):
         _, lengths = units_in(comment[comment.lastindex or 0])

@@ -5,13 +5,14 @@ A sign with a blank before it but not after it begins a new element: ``[c1 -s1]`
 """
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Final
 
 from service.expressions.vocabulary.functions import SPELLINGS
 from service.grids.cutting.limits import GRID_LIMITS
-from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.pairs import outside
 from service.grids.cutting.source_text import SourceText
 
 _SIGNS: Final = "+-−–"
@@ -39,14 +40,17 @@ class BlankSeparated:
 def split_blanks(row: SourceText) -> BlankSeparated:
     """Split a row into elements by MATLAB's rule for blanks; brackets stay in one piece."""
     words = _words(row.text)
+    start, end = next(words, (0, 0))
+    if not end:
+        return BlankSeparated((), ())
     elements: list[SourceText] = []
     signs: list[SourceText] = []
-    if not words:
-        return BlankSeparated((), ())
-    start, end = words[0]
-    for next_start, next_end in words[1:]:
+    for next_start, next_end in words:
+        if len(elements) == _MAX_ELEMENTS:
+            end = len(row.text.rstrip())
+            break
         left, right = row.text[max(start, end - _END) : end], row.text[next_start:next_end]
-        if len(elements) < _MAX_ELEMENTS and not continues(left, right):
+        if not continues(left, right):
             elements.append(row.cut(start, end))
             if right[0] in _SIGNS:
                 signs.append(row.cut(next_start, next_end))
@@ -70,6 +74,7 @@ def continues(left: str, right: str) -> bool:
     return _FUNCTION.search(left) is not None
 
 
-def _words(text: str) -> list[tuple[int, int]]:
-    blanks = [i for i in outside(text, pairs(text)) if text[i].isspace()]
-    return [(a + 1, b) for a, b in pairwise([-1, *blanks, len(text)]) if a + 1 < b]
+def _words(text: str) -> Iterator[tuple[int, int]]:
+    for a, b in pairwise(chain([-1], outside(text, r"\s"), [len(text)])):
+        if a + 1 < b:
+            yield a + 1, b

@@ -96,6 +96,16 @@ def too_many_rows(whole: Span, found: int | None = None) -> GridError:
     return GridError("too_many_rows", message, whole)
 
 
+def too_many_cells(whole: Span) -> GridError:
+    """Return the error for a text with too many separators."""
+    message = say(
+        "This has more than {most:,} commas, tabs, bars and line ends; "
+        "paste only the table or matrix.",
+        most=GRID_LIMITS.separators,
+    )
+    return GridError("too_many_cells", message, whole)
+
+
 def grid(name: str, rows: Rows, whole: Span, notes: Iterable[Note] = ()) -> Grid:
     """Return a grid of these rows, without empty rows and empty outer columns.
 

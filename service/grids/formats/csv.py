@@ -4,7 +4,7 @@ import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridFormat, grid
-from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.pairs import outside
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.delimited import split_cells
 
@@ -16,7 +16,7 @@ _LABEL: Final = re.compile(
 
 
 def _matches(text: str) -> bool:
-    return any(text[i] == "," for i in outside(text, pairs(text)))
+    return any(True for _ in outside(text, ","))
 
 
 def _parse(source: SourceText) -> Grid:

@@ -9,6 +9,7 @@ from typing import Final, NamedTuple
 
 from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.once import once
 from service.grids.cutting.pairs import outside, pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.matrices.lists import unquoted
@@ -17,7 +18,8 @@ from service.grids.scripts.titles import UNIT
 _COLUMNS: Final = ("a", "alpha", "d", "theta")
 _LETTERS: Final = {"α": "alpha", "alfa": "alpha", "θ": "theta", "ϑ": "theta", "th": "theta"}
 _NAME: Final = re.compile(
-    r"(?<![\w\\^\"'.])(?<![\w^]\{)(?P<quote>['\"]?)\\?(?:var)?(?P<name>alpha|alfa|α|theta|th|θ|ϑ|a|d)"
+    # What the name begins with comes first, because most characters of a text begin none.
+    r"(?=['\"\\vaαtθϑd])(?<![\w\\^\"'.])(?<![\w^]\{)(?P<quote>['\"]?)\\?(?:var)?(?P<name>alpha|alfa|α|theta|th|θ|ϑ|a|d)"
     r"_?\{?(?P<number>[\d₀-₉]{0,2}|[ijᵢ])\}?(?P=quote)[ \t]{0,20}(?P<sign>[=:,])(?!=)"
 )
 # Marks that only style a text.
@@ -76,7 +78,7 @@ def _spread(source: SourceText) -> SourceText:
     for group in _GROUP.finditer(text):
         opened, end = group.end(), ends.get(group.end(), 0)
         inside = source.cut(opened + 1, end - 1)
-        commas = [i for i in outside(inside.text, pairs(inside.text)) if inside.text[i] == ","]
+        commas = [*outside(inside.text, ",")]
         names = source.cut(*group.span("names")).split(_COMMA)
         values = [inside.cut(a + 1, b) for a, b in pairwise([-1, *commas, len(inside.text)])]
         is_whole = start <= opened < end and _AFTER.match(text, end)
@@ -150,4 +152,9 @@ def _parse(source: SourceText) -> Grid:
     return grid("names", _rows(source), source.whole)
 
 
-FORMAT: Final = GridFormat(lambda text: bool(_rows(SourceText.of(text))), _parse)
+@once
+def _matches(text: str) -> bool:
+    return bool(_rows(SourceText.of(text)))
+
+
+FORMAT: Final = GridFormat(_matches, _parse)

@@ -3,7 +3,7 @@
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
-from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.pairs import outside
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.delimited import split_cells
 from service.translations import say
@@ -29,7 +29,7 @@ def _parse(source: SourceText) -> Grid:
 
 
 def _holds_several(cell: str) -> bool:
-    return any(cell[i] == "," or cell[i].isspace() for i in outside(cell, pairs(cell)))
+    return any(True for _ in outside(cell, r",\s"))
 
 
 FORMAT: Final = GridFormat(_matches, _parse)

@@ -21,7 +21,7 @@ def _lines(source: SourceText) -> list[SourceText]:
     for line, row in zip(lines, inner, strict=True):
         if line.text[0] != "(" or pairs(line.text).get(0) != len(line.text):
             return []
-        if all(row.text[i] != "," for i in outside(row.text, pairs(row.text))):
+        if not any(True for _ in outside(row.text, ",")):
             return []
     return inner if len(inner) > 1 else []
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
-from service.grids.cutting.pairs import outside, pairs
+from service.grids.cutting.pairs import outside
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import TAIL, after_names
 from service.translations import say
@@ -51,7 +51,7 @@ def _parse(source: SourceText) -> Grid:
 
 def _cells(row: SourceText) -> list[SourceText]:
     """Split a row at commas, or at two or more blanks if it has no comma."""
-    commas = [i for i in outside(row.text, pairs(row.text)) if row.text[i] == ","]
+    commas = [*outside(row.text, ",")]
     if not commas:
         return row.split(_GAP)
     return [row.cut(a + 1, b) for a, b in pairwise([-1, *commas, len(row.text)])]

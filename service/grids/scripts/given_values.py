@@ -45,7 +45,7 @@ _DEFINITIONS: Final = re.compile(
     re.IGNORECASE,
 )
 _DEFINED: Final = re.compile(r"[^\W\d]\w*(?=\s{0,4}[=:])")
-_READ: Final = re.compile(r"[A-Za-z]\w*(?!\w|[ \t]*=(?!=))")
+_READ: Final = re.compile(r"(?<!\w)[^\WA-Za-z]*([A-Za-z]\w*)(?!\w|[ \t]*=(?!=))")
 # A last statement that shows a matrix or counts its rows: disp(T), print(T), T, n = size(T, 1).
 _SHOWS: Final = re.compile(
     r"(?:[;,\n][ \t]*(?:(?:\w{1,12}\.)?(?:disp|display|pretty|print|pprint)"

@@ -40,6 +40,8 @@ _IN_ORDER: Final = re.compile(
     )
 )
 _ROW: Final = "ROW"
+# The length of a statement, as it is written and without the elements of its rows.
+_LONGEST_WRITTEN: Final = 2_000
 _LONGEST: Final = 400
 # The number of rows.
 _COUNTED: Final = (
@@ -86,7 +88,7 @@ _PRINTED: Final = re.compile(
     r"\s{0,40}(?:(?:import|from)\s[^\n]{0,80}\n){0,4}(?:\w{1,12}\.)?(?:print|disp|display)\("
     r"(?:[\w.]{1,20}\()?\w{1,40}(?:=\w{1,12}|\.to_\w{1,12}\()?(?:,[^()\n]{0,200})?\){1,2}[ \t;]*\n"
 )
-_SET: Final = re.compile(r"([^\W\d]\w*)\s?=(?!=)")
+_SET: Final = re.compile(r"(?<!\w)\d*([^\W\d]\w*)\s?=(?!=)")
 _WORD: Final = re.compile(r"[^\W\d]\w*")
 
 
@@ -166,6 +168,8 @@ def _is_equal(written: str, shown: str) -> bool:
 def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool:
     """True if a statement cannot change the table; ``rows`` gets the names of its rows."""
     # ``taken`` are the words in the table and before it.
+    if len(statement) > _LONGEST_WRITTEN:
+        return False
     text = _IN_ORDER.sub(_ROW, re.sub(_COUNTED.format(table=table), "1", statement))
     if not text:
         return True

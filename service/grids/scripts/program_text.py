@@ -1,11 +1,13 @@
 """Remove the program text around a matrix: comments, line continuations, assignments, calls."""
 
 import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
 from service.grids.cutting.grid import GridError, too_many_rows
 from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.once import once
 from service.grids.cutting.pairs import BRACKET, CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.translations import say
@@ -59,8 +61,16 @@ _REMARK: Final = re.compile(
 )
 _COMMENTS: Final = {"(*": "*)", "/*": "*/"}
 _REMARK_SIGNS: Final = ("...", "%", "#", "//", *_COMMENTS)
-# A character that begins a remark, or begins or ends a string.
-_SIGN: Final = re.compile(r"""['"\\\n%#]|\.\.\.|//|[(/]\*""")
+# What begins a remark or a string. In Scilab, // begins a comment after a statement or on a line of
+# its own; elsewhere it is a division.
+_SIGN: Final = re.compile(
+    r"""(?:['"%#]|\.\.\.|(?:\A[ \t]{0,40}|(?<=[;\n])[ \t]{0,39})(?P<slashes>//)|[(/]\*)"""
+)
+# A string, which ends with its line if its quotation mark is missing.
+_STRINGS: Final = {
+    quote: re.compile(rf"{quote}(?:[^\\{quote}\n]|\\.)*(?:{quote}|\n|\\?\Z)", re.DOTALL)
+    for quote in ("'", '"')
+}
 # Mathematica's functions that leave a matrix equal, written before it or after it.
 _FORM: Final = re.compile(
     r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
@@ -68,7 +78,6 @@ _FORM: Final = re.compile(
 _FORM_AFTER: Final = re.compile(
     r"//\s{0,3}(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\Z"
 )
-_MOST_BLANKS: Final = 40
 TAIL: Final = " \t\r\n;,.$"
 
 
@@ -86,6 +95,7 @@ class WrittenMatrix:
     shape: tuple[int, int] | None = None
 
 
+@once
 def begins_as_matrix(text: str) -> bool:
     """True if a matrix in brackets begins the text, possibly after imports and a name."""
     plain = without_remarks(SourceText.of(text)).text
@@ -143,44 +153,47 @@ def _without_forms(source: SourceText) -> SourceText:
 
 def without_remarks(source: SourceText) -> SourceText:
     """Return the text without comments and line continuations; strings stay as they are."""
-    text = source.text
-    if not any(map(text.__contains__, _REMARK_SIGNS)):
-        return source
     pieces: list[SourceText] = []
-    start = i = 0
-    quote = ""
-    last = max(map(text.rfind, _COMMENTS.values()))
-    while len(pieces) < 2 * GRID_LIMITS.separators and (sign := _SIGN.search(text, i)):
-        i, letter = sign.start(), sign[0][0]
-        if quote:
-            if letter == "\\":
-                i += 1
-            elif letter in {quote, "\n"}:
-                quote = ""
-        elif letter in "'\"":
-            if i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'"):
-                quote = letter
-        elif letter not in "\\\n" and (end := _remark_end(text, i, last)):
-            blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
-            pieces += [source.cut(start, i), blank]
-            start = i = end
-            continue
-        i += 1
-    return joined([*pieces, source.cut(start, len(text))], source.whole[0])
+    start = 0
+    for i, end in _remarks(source.text):
+        blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
+        pieces += [source.cut(start, i), blank]
+        start = end
+    if not pieces:
+        return source
+    return joined([*pieces, source.cut(start, len(source.text))], source.whole[0])
 
 
-def _remark_end(text: str, start: int, last: int) -> int:
+@once
+def _remarks(text: str) -> list[tuple[int, int]]:
+    # Return where each comment and each continuation of a line begins and ends.
+    if not any(map(text.__contains__, _REMARK_SIGNS)):
+        return []
+    found: list[tuple[int, int]] = []
+    i = 0
+    last = {opener: text.rfind(closer) for opener, closer in _COMMENTS.items()}
+    while len(found) < GRID_LIMITS.separators and (sign := _SIGN.search(text, i)):
+        i = sign.start("slashes") if sign["slashes"] else sign.start()
+        letter = text[i]
+        if letter in "'\"":
+            is_string = i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'")
+            string = _STRINGS[letter].match(text, i) if is_string else None
+            i = string.end() if string else i + 1
+        elif end := _remark_end(text, i, last):
+            found.append((i, end))
+            i = end
+        else:
+            i += 1
+    return found
+
+
+def _remark_end(text: str, start: int, last: Mapping[str, int]) -> int:
     # Return the place after the remark that begins at ``start``, or 0 if none begins there.
-    # ``last`` is the last place at which a block comment ends.
-    closer = _COMMENTS.get(text[start : start + 2]) if start < last else None
-    end = text.find(closer, start + 2) if closer else -1
-    if end >= 0:
-        return end + 2
-    # In Scilab, // begins a comment after a statement or on a line of its own.
-    before = text[max(0, start - _MOST_BLANKS) : start].rstrip(" \t")
-    is_within = before[-1:] not in {";", "\n"} and (before or start > _MOST_BLANKS)
-    if is_within and text.startswith("//", start):
-        return 0
+    # ``last`` is the last place at which a block comment of each kind ends.
+    opener = text[start : start + 2]
+    if opener in _COMMENTS:
+        closer = _COMMENTS[opener]
+        return text.index(closer, start + 2) + 2 if start + 2 <= last[opener] else 0
     remark = _REMARK.match(text, start)
     return remark.end() if remark else 0
 

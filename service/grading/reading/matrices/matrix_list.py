@@ -20,9 +20,14 @@ from service.grading.reading.matrices.matrix_names import (
     is_product,
     places_of,
 )
-from service.grading.reading.pasted import from_grid_error, pasted_grids, quoted
+from service.grading.reading.pasted import (
+    from_grid_error,
+    grids_as_written,
+    pasted_grids,
+    quoted,
+)
 from service.grading.reading.unit_comments import refuse_other_lengths
-from service.grids import Grid, GridError, NamedGrid, SourceText, read_grids
+from service.grids import Grid, GridError, NamedGrid, SourceText
 from service.translations import listed, say
 
 
@@ -66,14 +71,14 @@ def grids_in_order(
 
 
 def places_in_list(
-    answer: Sequence[object], labels: Sequence[str]
+    answer: Sequence[object], labels: Sequence[str], reader: Reader
 ) -> tuple[list[int], list[Finding]]:
     """Return the place of each matrix in a list, by the matrix's name, and notes on the places.
 
     Raises UnreadableAnswerError if the names contradict each other.
     """
     places = [*range(len(answer))]
-    named = [_named(each) for each in answer]
+    named = [_named(each, reader) for each in answer]
     written = [i for i, each in enumerate(named) if each is not None]
     if not any(each.name.text for each in named if each is not None):
         return places, []
@@ -87,12 +92,12 @@ def places_in_list(
     return places, [replace(note, span=None) for note in notes]
 
 
-def _named(answer: object) -> NamedGrid | None:
+def _named(answer: object, reader: Reader) -> NamedGrid | None:
     nameless = NamedGrid(SourceText.of(""), GridError("no_grid", "", (0, 0)))
     if not isinstance(answer, str):
         return None if answer is None else nameless
     try:
-        grids = read_grids(answer)
+        grids = grids_as_written(answer, reader)
     except GridError:
         return nameless if answer.strip() else None
     matrices = [each for each in grids if isinstance(each.grid, Grid)]

@@ -1,0 +1,54 @@
+"""Search a pasted text for the same thing only once, though several formats ask for it."""
+
+from collections.abc import Callable
+from contextvars import ContextVar
+from functools import wraps
+from typing import Any, Final, ParamSpec, TypeVar
+
+from service.time_slices import checkpoint
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+# To search a shorter text again costs no more than to remember what was found.
+_WORTH_IT: Final = 200
+
+# What was found in each text, while a pasted text is read.
+_found: ContextVar[dict[tuple[object, str], Any] | None] = ContextVar("found", default=None)
+
+
+def remembering(read: Callable[P, R]) -> Callable[P, R]:
+    """Let a function that reads a pasted text make each search ``once``."""
+
+    @wraps(read)
+    def reads(*args: P.args, **named: P.kwargs) -> R:
+        if _found.get() is not None:
+            return read(*args, **named)
+        token = _found.set({})
+        try:
+            return read(*args, **named)
+        finally:
+            _found.reset(token)
+
+    return reads
+
+
+def once(search: Callable[[str], R]) -> Callable[[str], R]:
+    """Let a search remember what it finds in each text, until the pasted text is read.
+
+    The search takes linear time and gives way before it begins. Nobody may change its result.
+    """
+
+    @wraps(search)
+    def searches(text: str) -> R:
+        checkpoint()
+        found = _found.get()
+        if found is None or len(text) < _WORTH_IT:
+            return search(text)
+        key = search, text
+        if key not in found:
+            found[key] = search(text)
+        result: R = found[key]
+        return result
+
+    return searches
