@@ -73,6 +73,7 @@ def test_a_hint_may_be_asked_for_each_code_of_a_mistake() -> None:
         for each in made
         # The engine adds the code of a record to a finding without a code.
         if isinstance(each.args[0], ast.Constant)
+        and isinstance(each.args[0].value, str)
         and each.args[0].value
         and not {"severity", "reading"} & {keyword.arg for keyword in each.keywords}
     }

@@ -94,9 +94,10 @@ def routes(
             raise _refused("no-hints", say("Recorded attempts at this exercise have no hints."))
         wanted = HintStepOf(body.part, body.code, body.row or "", body.cell or "", body.step)
         refused = await read(store, lambda it: hint_refusal(it, row, wanted))
-        if refused is None:
-            hint = await run_in_turns(request, partial(_hint, exercise, row, body, feedback))
-            refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))
+        if refused is not None:
+            raise _refused(refused.name, message_of(refused))
+        hint = await run_in_turns(request, partial(_hint, exercise, row, body, feedback))
+        refused = await write(store, lambda it: take(it, attempt_id, wanted, prices, now))
         if refused is not None:
             raise _refused(refused.name, message_of(refused))
         language = language_of(request)

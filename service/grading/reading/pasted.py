@@ -158,9 +158,7 @@ def _charge(text: str, reader: Reader) -> None:
     if len(text) > GRID_LIMITS.characters or reader.budget.charge_pasted(text):
         # A text that is too long is not cut.
         return
-    message = say(
-        "The pasted texts have more than {most:,} characters together.", most=MAX_PASTED
-    )
+    message = say("The pasted texts have more than {most:,} characters together.", most=MAX_PASTED)
     if reader.budget.pasted >= 0:
         message = say(
             "The pasted texts have more than {most:,} brackets and quotation marks together.",
