@@ -9,6 +9,7 @@ from typer.testing import CliRunner
 
 from service.cli.program import program
 from tests.docs.walkthrough import blocks
+from tests.shipped import shipped_exercises
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -23,6 +24,10 @@ COMMANDS = [
 def test_the_readme_is_one_page() -> None:
     assert len(PAGE.splitlines()) <= 100
     assert len(PAGE.split()) <= 650
+
+
+def test_the_readme_has_the_number_of_exercises() -> None:
+    assert f" {len(shipped_exercises())} exercises" in " ".join(PAGE.split())
 
 
 def test_the_commands_of_the_installation_are_first() -> None:
