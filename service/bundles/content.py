@@ -52,7 +52,9 @@ def content_of(
     exercises = []
     for each in assignment.exercises:
         source = each.path or catalogue[each.exercise.id]
-        name = _below(each.path, file) if each.path else f"exercises/{source.name}"
+        name = f"exercises/{source.name}"
+        if each.path is not None and file is not None:
+            name = _below(each.path, file)
         files.append(BundledFile(name, source.read_bytes()))
         whole = load_exercise(source)
         exercises.append(with_parts(whole, each.left_out))
@@ -85,8 +87,8 @@ def _assignment_text(assignment: Assignment, file: Path | None) -> bytes:
     return f'title = "{name}"\n\n[[exercises]]\nid = "{name}"\n'.encode()
 
 
-def _below(path: Path, file: Path | None) -> str:
-    folder = (file.parent if file else Path()).resolve()
+def _below(path: Path, file: Path) -> str:
+    folder = file.parent.resolve()
     try:
         name = path.resolve().relative_to(folder).as_posix()
     except ValueError:

@@ -96,7 +96,13 @@ def named_exercise(name: str) -> Exercise:
 
     Raises SettingsError, CatalogueError or UnknownExerciseError.
     """
-    return load_exercise(Path(name)) if name.endswith(".toml") else installed_exercise(name)
+    own = own_file(name)
+    return installed_exercise(name) if own is None else load_exercise(own)
+
+
+def own_file(name: str) -> Path | None:
+    """Return the path of an exercise file if ``name`` is ``….toml``; None for an id."""
+    return Path(name) if name.endswith(".toml") else None
 
 
 def installed_file(exercise_id: str) -> Path:

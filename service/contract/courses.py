@@ -1,13 +1,23 @@
 """The bodies of courses: learners, assignments, links and the gradebook."""
 
-from datetime import datetime
+import re
+from datetime import date, datetime, time
+from functools import partial
 from typing import Annotated, Final, Literal
 
-from pydantic import BaseModel, ConfigDict, Field, StrictBool, StringConstraints
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    StrictBool,
+    StringConstraints,
+)
 
 from service.catalogue import FeedbackLevel
 from service.catalogue.attempts import HintPrices
 from service.contract.attempts import Learner
+from service.translations import say
 
 MOST_LEARNERS: Final = 5000
 MOST_EXERCISES: Final = 100
@@ -30,12 +40,43 @@ _Zone = Annotated[
     StringConstraints(min_length=1, max_length=64),
     Field(description="The IANA name of the time zone, such as `Europe/Berlin`."),
 ]
-CourseMoment = Annotated[
+_DAY: Final = re.compile(r"\d{4}-\d\d-\d\d")
+_MOMENT: Final = re.compile(
+    rf"{_DAY.pattern}[T ]\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:\d\d)?", re.IGNORECASE
+)
+
+
+def _moment(written: object, of_day: time) -> object:
+    # ``of_day`` is the time of a date without a time. Other forms are refused: Python reads
+    # 20261201, and pydantic reads a number as seconds since 1970.
+    if written is None or isinstance(written, datetime):
+        return written
+    if isinstance(written, date):
+        return datetime.combine(written, of_day)
+    try:
+        if isinstance(written, str):
+            text = written.strip()
+            if _DAY.fullmatch(text):
+                return datetime.combine(date.fromisoformat(text), of_day)
+            if _MOMENT.fullmatch(text):
+                return datetime.fromisoformat(text.upper())
+    except ValueError:
+        pass  # Such as February 30.
+    raise ValueError(
+        say("This must be a date, such as 2026-12-01, or a date with a time: 2026-12-01 23:59.")
+    )
+
+
+_IN_ZONE: Final = "With its time zone, or, without one, in the time zone of the course."
+CourseStart = Annotated[
     datetime,
-    Field(
-        description="With its time zone, or, without one, in the time zone of the course.",
-        strict=False,
-    ),
+    BeforeValidator(partial(_moment, of_day=time.min)),
+    Field(description=f"{_IN_ZONE} A date without a time is the start of the day.", strict=False),
+]
+CourseEnd = Annotated[
+    datetime,
+    BeforeValidator(partial(_moment, of_day=time(23, 59, 59))),
+    Field(description=f"{_IN_ZONE} A date without a time is 23:59:59.", strict=False),
 ]
 
 
@@ -188,11 +229,9 @@ class AssignmentChange(_Request):
 
     title: _Line | None = Field(None, description="The title.")
     exercises: _Exercises | None = Field(None, description="The exercises and their points.")
-    opens: CourseMoment | None = Field(None, description="From when on attempts are accepted.")
-    due: CourseMoment | None = Field(
-        None, description="Until when an attempt earns all its points."
-    )
-    closes: CourseMoment | None = Field(
+    opens: CourseStart | None = Field(None, description="From when on attempts are accepted.")
+    due: CourseEnd | None = Field(None, description="Until when an attempt earns all its points.")
+    closes: CourseEnd | None = Field(
         None, description="Until when late attempts are accepted. Default: none after `due`."
     )
     limit: _Limit | None = Field(
@@ -246,8 +285,8 @@ class Extension(_Request):
     """Other dates or another limit for one learner; without any of them, the usual ones again."""
 
     learner: Learner
-    due: CourseMoment | None = Field(None, description="The learner's due date.")
-    closes: CourseMoment | None = Field(None, description="Until when late attempts are accepted.")
+    due: CourseEnd | None = Field(None, description="The learner's due date.")
+    closes: CourseEnd | None = Field(None, description="Until when late attempts are accepted.")
     limit: _Limit | None = Field(None, description="The most attempts at each exercise.")
 
 

@@ -13,7 +13,13 @@ from sqlalchemy import Connection, Row, and_, bindparam, select
 from service.attempts.storage.tables import assignments, course_learners, courses, extensions
 from service.catalogue import Exercise, FeedbackLevel, least
 from service.catalogue.attempts import AttemptsSpec
-from service.contract.courses import AssignmentState, Practice, ShowSolution
+from service.contract.courses import (
+    AssignmentState,
+    CourseAssignment,
+    Extension,
+    Practice,
+    ShowSolution,
+)
 from service.courses.errors import unknown_assignment, unknown_course, unknown_learner
 from service.courses.times import local
 
@@ -196,3 +202,9 @@ def own_dates(
     if new_due is None or not (assignment.closes or closes):
         return new_due, None
     return new_due, max(ends)
+
+
+def with_own_dates(assignment: CourseAssignment, extension: Extension) -> Extension:
+    """Return the extension with the dates that hold for its learner, also those not extended."""
+    due, closes = own_dates(assignment, extension.due, extension.closes)
+    return extension.model_copy(update={"due": due, "closes": closes})

@@ -1,6 +1,6 @@
 """Dates in the time zone of a course."""
 
-from datetime import UTC, datetime
+from datetime import UTC, datetime, time
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
 from service.courses.errors import CourseError
@@ -19,12 +19,14 @@ def zone_named(name: str) -> ZoneInfo:
 def moment(written: datetime, zone: ZoneInfo) -> datetime:
     """Return a date in UTC; a date without a zone is in ``zone``. Raises CourseError."""
     # If the clocks show a time twice, the second moment is meant. A time that the clocks never
-    # show, because they are put forward, is an error.
+    # show, because they are put forward, is an error. Without midnight, the day starts later.
     try:
         if written.tzinfo is not None:
             return written.astimezone(UTC)
         first, second = (written.replace(tzinfo=zone, fold=fold) for fold in (0, 1))
         if first.astimezone(UTC).astimezone(zone).replace(tzinfo=None) != written:
+            if written.time() == time.min:
+                return first.astimezone(UTC)
             raise CourseError(
                 "unusable",
                 say(

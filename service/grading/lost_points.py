@@ -9,6 +9,7 @@ from service.translations import Sentence, listed, say, say_count, template
 CELLS: Final = "cells"
 WHOLE: Final = "whole"
 OUTSIDE: Final = "outside_cells"
+SHARED: Final = "shared_by_rows"
 NO_JOINT_MOVES: Final = "no_motion"
 ALL_OR_NOTHING: Final = "all_or_nothing"
 NOT_READ: Final = "not_read"
@@ -22,6 +23,9 @@ _SENTENCES: Final = {
         "the loss)"
     ),
     OUTSIDE: template("an extra row, or rows that do not lead to the end effector"),
+    SHARED: template(
+        "mistakes that cost more than their own rows are worth (the other rows share this loss)"
+    ),
     NO_JOINT_MOVES: template("no joint moves this answer"),
     ALL_OR_NOTHING: template("only a right answer earns points here"),
     NOT_READ: template("the answer cannot be read"),

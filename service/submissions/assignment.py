@@ -141,9 +141,13 @@ class UnknownPartNameError(LookupError):
     """An exercise has no part of this name; the message suggests the nearest name."""
 
 
-def of_one(exercise: SetExercise, part: str | None = None) -> Assignment:
-    """Return an assignment of one exercise, or of one of its parts. Raises UnknownPartNameError."""
-    return Assignment((assigned(exercise, None if part is None else [part]),), exercise.title)
+def of_one(exercise: SetExercise, part: str | None = None, path: Path | None = None) -> Assignment:
+    """Return an assignment of one exercise, or of one of its parts. Raises UnknownPartNameError.
+
+    ``path`` is the exercise file, if the exercise is not in the catalogue.
+    """
+    chosen = replace(assigned(exercise, None if part is None else [part]), path=path)
+    return Assignment((chosen,), exercise.title)
 
 
 def assigned(

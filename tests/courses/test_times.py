@@ -1,12 +1,16 @@
 """Compare dates in a course's time zone with dates written by hand."""
 
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from zoneinfo import ZoneInfo
 
 import pytest
+from pydantic import ValidationError
 
+from service.contract.courses import AssignmentChange, Extension
 from service.courses.errors import CourseError
 from service.courses.times import moment, zone_named
+from service.submissions.field_errors import field_error
+from tests.together import together
 
 
 @pytest.mark.parametrize(
@@ -28,6 +32,8 @@ from service.courses.times import moment, zone_named
         ("Australia/Lord_Howe", "2026-04-05T01:45", "2026-04-04T15:15"),
         ("Asia/Kolkata", "2026-06-01T12:00", "2026-06-01T06:30"),
         ("Pacific/Auckland", "2026-01-01T00:00", "2025-12-31T11:00"),
+        # In Cairo, no clock showed midnight: the day began at 01:00, which was 22:00 in UTC.
+        ("Africa/Cairo", "2026-04-24T00:00", "2026-04-23T22:00"),
         # With a zone of its own, the zone of the course does not matter.
         ("Asia/Kolkata", "2026-06-01T12:00+02:00", "2026-06-01T10:00"),
         ("Asia/Kolkata", "2026-06-01T12:00Z", "2026-06-01T12:00"),
@@ -47,3 +53,38 @@ def test_a_time_that_the_clocks_never_show_is_refused() -> None:
 def test_an_unknown_zone_is_refused(name: str) -> None:
     with pytest.raises(CourseError):
         zone_named(name)
+
+
+@together(
+    ("written", "opens", "due"),
+    [
+        ("2026-12-01", "2026-12-01T00:00:00", "2026-12-01T23:59:59"),
+        ("2028-02-29", "2028-02-29T00:00:00", "2028-02-29T23:59:59"),
+        (date(2026, 12, 1), "2026-12-01T00:00:00", "2026-12-01T23:59:59"),
+        *((written, written, written) for written in ("2026-12-01 08:00", "2026-12-01T08:00:30")),
+        ("2026-12-01t08:00z", "2026-12-01T08:00+00:00", "2026-12-01T08:00+00:00"),
+    ],
+)
+def test_a_date_without_a_time_is_a_whole_day(written: object, opens: str, due: str) -> None:
+    given = {"opens": written, "due": written, "closes": written}
+    change = AssignmentChange.model_validate(given)
+    assert change.opens == datetime.fromisoformat(opens)
+    assert change.due == change.closes == datetime.fromisoformat(due)
+    extension = Extension.model_validate({"learner": "ada", "due": written, "closes": written})
+    assert extension.due == extension.closes == datetime.fromisoformat(due)
+
+
+@together(
+    "written",
+    [
+        "2026-02-30", "20261201", "2026-12", "2026-W49-2", "01.12.2026", "12/01/2026", "1.12.",
+        "2026-12-1", "2026-12-01 8:00", "2026-12-01 08", "20261201T0800",
+        "tomorrow", "none", "", "1796083200", 1796083200, 1.5, True, [2026, 12, 1],
+    ],
+)  # fmt: skip
+def test_any_other_date_is_refused_with_the_right_forms(written: object) -> None:
+    for field in ("opens", "due", "closes"):
+        with pytest.raises(ValidationError) as refused:
+            AssignmentChange.model_validate({field: written})
+        [error] = refused.value.errors()
+        assert "2026-12-01, or a date with a time: 2026-12-01 23:59" in field_error(error)

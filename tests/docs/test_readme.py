@@ -2,6 +2,8 @@
 
 import html
 import re
+from contextlib import suppress
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,7 @@ from typer.testing import CliRunner
 
 from service.cli.program import program
 from tests.docs.walkthrough import blocks
+from tests.shipped import shipped_exercises
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -23,6 +26,30 @@ COMMANDS = [
 def test_the_readme_is_one_page() -> None:
     assert len(PAGE.splitlines()) <= 100
     assert len(PAGE.split()) <= 650
+
+
+def test_the_readme_has_the_number_of_exercises() -> None:
+    assert f" {len(shipped_exercises())} exercises" in " ".join(PAGE.split())
+
+
+@pytest.mark.long
+def test_the_size_of_the_packages_is_true() -> None:
+    lock = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+    size = 0
+    for name in set(re.findall(r"^([\w.-]+)==", lock, re.MULTILINE)):
+        # Some packages are only for other platforms.
+        with suppress(PackageNotFoundError):
+            files = [Path(str(each.locate())) for each in distribution(name).files or ()]
+            size += sum(each.stat().st_size for each in files if each.is_file())
+    # Compiled packages and byte code differ between platforms and versions of Python.
+    megabytes = pytest.approx(size / 1e6, rel=0.2)
+    for page in ("deployment", "performance"):
+        text = (ROOT / f"docs/{page}.md").read_text(encoding="utf-8")
+        told, *_ = re.findall(r"about (\d+) MB[ ,]", text)
+        assert int(told) == megabytes
+    # The program, pip and the blocks of the disk add 15 % to the packages.
+    [told] = re.findall(r"about (\d+) MB", PAGE)
+    assert int(told) / 1.15 == megabytes
 
 
 def test_the_commands_of_the_installation_are_first() -> None:

@@ -27,7 +27,11 @@ commands = typer.Typer(
 
 _Exercise = Annotated[
     str | None,
-    typer.Option(metavar="ID", help="The exercise to grade.", show_default=False),
+    typer.Option(
+        metavar="ID|FILE",
+        help="The exercise to grade: its id, or an exercise file (….toml).",
+        show_default=False,
+    ),
 ]
 _Assignment = Annotated[
     Path | None, typer.Option(metavar="F", help="An assignment file with several exercises.")

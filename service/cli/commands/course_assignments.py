@@ -1,7 +1,6 @@
 """`dh-grader courses assignments`: the assignments of a course, and extensions."""
 
 from collections.abc import Iterator, Mapping
-from datetime import date, datetime
 from pathlib import Path
 from typing import Annotated, Any, TypeVar
 
@@ -52,12 +51,23 @@ FileOption = Annotated[
     Path | None,
     typer.Option(help="An assignment file: its title, exercises, feedback and variants."),
 ]
-OpensOption = Annotated[str | None, typer.Option(help="From when on attempts are accepted.")]
+OpensOption = Annotated[
+    str | None,
+    typer.Option(
+        help='From when on attempts are accepted: "2026-10-01 08:00", in the time zone of the '
+        "course. A date without a time is the start of the day; none removes."
+    ),
+]
 DueOption = Annotated[
     str | None,
-    typer.Option(help='Such as "2026-10-15 23:59", in the time zone of the course; none removes.'),
+    typer.Option(
+        help='Such as "2026-10-15 23:59", in the time zone of the course. A date without a time '
+        "is 23:59:59; none removes."
+    ),
 ]
-ClosesOption = Annotated[str | None, typer.Option(help="Until when late attempts are accepted.")]
+ClosesOption = Annotated[
+    str | None, typer.Option(help="Until when late attempts are accepted, as --due.")
+]
 LimitOption = Annotated[str | None, typer.Option(help="The most attempts at each exercise.")]
 LateWorthOption = Annotated[
     float | None, typer.Option(min=0, max=1, help="The share that a late attempt earns. [0.5]")
@@ -221,7 +231,7 @@ def extend(
     limit: LimitOption = None,
 ) -> None:
     """Give a learner other dates or another limit; without options, the usual ones again."""
-    given = {"due": _date(due), "closes": _date(closes), "limit": limit}
+    given = {"due": due, "closes": closes, "limit": limit}
     body = checked(Extension, learner=learner, **given)
     _print(changed(lambda it: assignments.extend(it, course, assignment, body)))
 
@@ -278,9 +288,9 @@ def _fields(
     given = {
         "title": title,
         "exercises": [_points(each) for each in exercise or ()] or None,
-        "opens": _date(opens),
-        "due": _date(due),
-        "closes": _date(closes),
+        "opens": opens,
+        "due": due,
+        "closes": closes,
         "limit": limit,
         "late_worth": late_worth,
         "feedback": feedback and _words(feedback),
@@ -320,19 +330,6 @@ def _points(option: str) -> Mapping[str, Any]:
 
 def _words(option: str) -> str | list[str]:
     return option if option == _NONE else option.split(",")
-
-
-def _date(option: str | None) -> datetime | str | None:
-    if option in (None, _NONE):
-        return option
-    try:
-        if len(option) == len("2026-10-15"):
-            # Midnight, at which this day begins, is seldom meant.
-            date.fromisoformat(option)
-            give_up(say('{option}: write the time, too, such as "{option} 23:59".', option=option))
-        return datetime.fromisoformat(option)
-    except ValueError:
-        give_up(say('{option}: write a date such as "2026-10-15 23:59".', option=option))
 
 
 def _print(assignment: CourseAssignment) -> None:

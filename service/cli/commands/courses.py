@@ -1,6 +1,7 @@
 """`dh-grader courses`: courses with learners, links, assignments and a gradebook."""
 
 import sys
+from collections.abc import Iterable
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Annotated, Final
@@ -23,6 +24,7 @@ from service.contract.courses import (
     LONGEST_LINK_DAYS,
     Course,
     CourseChange,
+    CourseLearner,
     DeletionRequest,
     GradebookFormat,
     LinksRequest,
@@ -88,12 +90,7 @@ def show(course: CourseIdArgument) -> None:
     screen.print(f"{visible(found.title)}, {found.zone}: {_counts(found)}", soft_wrap=True)
     for assignment in found.assignments:
         screen.print(f"  {assignment}", soft_wrap=True)
-    for each in learners:
-        link = say("no link")
-        if each.link_until:
-            link = say("link until {day}", day=f"{each.link_until:%Y-%m-%d}")
-        told = (each.learner, each.name, each.email or "", spoken(link))
-        screen.print("  ".join(visible(text) for text in told if text), soft_wrap=True)
+    _print_learners(learners)
 
 
 def _counts(course: Course) -> str:
@@ -127,6 +124,22 @@ def delete(
         DeletionRequest(with_attempts=with_attempts),
         yes=yes,
     )
+
+
+@_learners.command("list")
+def list_learners(course: CourseIdArgument) -> None:
+    """List the learners of a course, by name: id, name, e-mail address, and link."""
+    _print_learners(changed(lambda it: roll.learners(it, course, datetime.now(UTC))))
+
+
+def _print_learners(found: Iterable[CourseLearner]) -> None:
+    for each in found:
+        link = say("no link")
+        if each.link_until:
+            link = say("link until {day}", day=f"{each.link_until:%Y-%m-%d}")
+        told = (each.learner, each.name, each.email or "", spoken(link))
+        line = "  ".join(visible(text) for text in told if text)
+        stdout().print(line, soft_wrap=True)
 
 
 @_learners.command("remove")

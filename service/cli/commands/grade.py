@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
+from service.catalogue import load_exercise
 from service.cli.choices import choice, listed, one_of, report_language
 from service.cli.files.output import console_of, write
 from service.cli.files.output_folder import UnusableFolderError, is_for_folder, write_folder
@@ -26,7 +27,7 @@ from service.cli.running.interrupts import interruptible
 from service.cli.running.processes import WorkerLostError, jobs_for, mapped
 from service.cli.running.progress import Progress, progress
 from service.cli.running.shards import Shard, shard_of, with_header
-from service.cli.terminal import BELOW_PASS_MARK, UNUSABLE, complain, give_up
+from service.cli.terminal import BELOW_PASS_MARK, UNUSABLE, complain, give_up, own_file
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
@@ -70,7 +71,11 @@ def command(
     ],
     exercise: Annotated[
         str | None,
-        typer.Option(metavar="ID", help="The exercise to grade.", show_default=False),
+        typer.Option(
+            metavar="ID|FILE",
+            help="The exercise to grade: its id, or an exercise file (….toml).",
+            show_default=False,
+        ),
     ] = None,
     assignment: Annotated[
         Path | None,
@@ -276,15 +281,17 @@ def chosen_assignment(
 ) -> Assignment:
     """Return the assignment that the options name; exit if the options contradict each other."""
     if (exercise is None) == (file is None):
-        give_up(say("Name what is answered: --exercise ID, or --assignment F instead."))
+        give_up(say("Name what is answered: --exercise ID or FILE, or --assignment F instead."))
     if file is not None:
         if part is not None:
             give_up(
                 say("--part goes with --exercise; an assignment says itself which parts are set.")
             )
         return load_assignment(file, find)
+    name = exercise or ""
+    own = own_file(name)
     try:
-        return of_one(find(exercise or ""), part)
+        return of_one(find(name) if own is None else load_exercise(own), part, own)
     except UnknownPartNameError as error:
         give_up(error)
 

@@ -5,6 +5,7 @@ from datetime import datetime
 
 from service.catalogue import Exercise, FeedbackLevel
 from service.contract.courses import CourseAssignment, Extension, MissingLearner
+from service.courses.terms import with_own_dates
 from service.formats.shared.plain_text import number, visible
 from service.translations import Sentence, joined, say
 
@@ -53,7 +54,7 @@ def assignment_lines(
         if same:
             yield say("but not in {exercises}: no variants there", exercises=", ".join(same))
     for extension in assignment.extensions:
-        told = [*ends(extension)]
+        told = [*ends(with_own_dates(assignment, extension))]
         if extension.limit:
             told.append(say("at most {limit} attempts", limit=extension.limit))
         yield joined(": ", [visible(extension.learner), joined("; ", told)])

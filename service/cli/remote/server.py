@@ -73,7 +73,7 @@ def require_no_own_files(assignment: Assignment) -> None:
             give_up(
                 say(
                     "{file} is a file of yours, and a server grades by its own exercises: name "
-                    'one of them in the assignment, by id = "…".',
+                    "one of them by its id.",
                     file=str(assigned.path),
                 )
             )

@@ -19,6 +19,7 @@ from service.contract.courses import (
 from service.contract.own_courses import OwnCourse
 from service.contract.scores import PlatformScore
 from service.courses.names import told_apart
+from service.courses.terms import with_own_dates
 from service.translations import Language
 from service.web.assets import Assets
 from service.web.pages import page
@@ -116,7 +117,9 @@ def assignment_page(
         course=state.course,
         learners=state.learners,
         names=names,
-        assignment=chosen.model_copy(update={"extensions": given}),
+        assignment=chosen,
+        extension_of={each.learner: each for each in given},
+        extensions=[with_own_dates(chosen, each) for each in given],
         missing=missing,
         groups=distribution(book),
         columns=_columns(book),

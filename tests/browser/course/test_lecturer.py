@@ -125,7 +125,21 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
         page.get_by_label("Due").nth(0).fill("2030-10-20T12:00")
         check()
         page.get_by_role("button", name="Save extension").click()
-        expect(page.get_by_text(f"{PICTURE}: due 2030-10-20 12:00")).to_be_visible()
+        expect(page.get_by_text(f"{PICTURE}: due 2030-10-20 12:00, closes –")).to_be_visible()
+        # A later change keeps the values that the learner has already.
+        chosen.select_option("u2")
+        expect(page.get_by_label("Due").nth(0)).to_have_value("2030-10-20T12:00")
+        page.get_by_label("Closes").nth(0).fill("2030-10-19T12:00")
+        page.get_by_label("Attempts", exact=True).fill("7")
+        page.get_by_role("button", name="Save extension").click()
+        # Late attempts are accepted at least until the due date.
+        told = f"{PICTURE}: due 2030-10-20 12:00, closes 2030-10-20 12:00, at most 7 attempts"
+        expect(page.get_by_text(told)).to_be_visible()
+        chosen.select_option("u2")
+        expect(page.get_by_label("Closes").nth(0)).to_have_value("2030-10-19T12:00")
+        chosen.select_option("u1")
+        expect(page.get_by_label("Due").nth(0)).to_have_value("")
+        expect(page.get_by_label("Attempts", exact=True)).to_have_value("")
         page.get_by_role("link", name="Gradebook").click()
         # The table is worth 8 of 24 points, here of 20.
         row = page.locator("#book tbody tr").filter(has_text="Ada Lovelace")

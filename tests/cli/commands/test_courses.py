@@ -107,3 +107,38 @@ def test_an_assignment_is_shown_in_the_language(
     ]
     wrong = run("assignments", "add", course, "hw-2", "--exercise", "scara=-1").stderr
     assert wrong == "exercises.0.points: Der Wert muss größer als 0 sein.\n"
+
+
+def test_dates_without_a_time_are_whole_days(course: str) -> None:
+    dates = ("--opens", "2026-12-01", "--due", "2026-12-08", "--closes", "2026-12-09")
+    added = run("assignments", "add", course, "hw", "--exercise", "scara=20", *dates)
+    assert "opens 2026-12-01 00:00 UTC" in added.stdout, added.stderr
+    assert "due 2026-12-08 23:59 UTC" in added.stdout
+    assert "closes 2026-12-09 23:59 UTC" in added.stdout
+    for option in ("--opens", "--due", "--closes"):
+        wrong = run("assignments", "change", course, "hw", option, "20261201")
+        assert wrong.exit_code == 2
+        assert wrong.stderr.startswith(f"{option[2:]}: This must be a date, such as 2026-12-01")
+
+
+def test_an_extension_is_told_with_the_dates_that_hold(course: str, tmp_path: Path) -> None:
+    (tmp_path / "c.csv").write_text("id,name\nu1,Ada\nu2,Bo\n", "utf-8")
+    assert run("learners", "import", course, str(tmp_path / "c.csv")).exit_code == 0
+    dates = ("--due", "2026-12-08", "--closes", "2026-12-09")
+    run("assignments", "add", course, "hw", "--exercise", "scara=20", *dates)
+    # The due date moves the closing date, too.
+    later = run("assignments", "extend", course, "hw", "u1", "--due", "2026-12-20")
+    assert "u1: due 2026-12-20 23:59 UTC; closes 2026-12-20 23:59 UTC" in later.stdout
+    more = run("assignments", "extend", course, "hw", "u2", "--limit", "3")
+    assert "u2: due 2026-12-08 23:59 UTC; closes 2026-12-09 23:59 UTC; at most 3" in more.stdout
+
+
+def test_the_learners_of_a_course_are_listed(course: str, tmp_path: Path) -> None:
+    (tmp_path / "c.csv").write_text("id,name,email\nu1,Ada,a@x.org\nu2,Bo,\n", "utf-8")
+    assert run("learners", "list", course).stdout == ""
+    assert run("learners", "import", course, str(tmp_path / "c.csv")).exit_code == 0
+    lines = ["u1  Ada  a@x.org  no link", "u2  Bo  no link"]
+    assert run("learners", "list", course).stdout.splitlines() == lines
+    unknown = run("learners", "list", "robotic")
+    assert unknown.exit_code == 2
+    assert "robotic" in unknown.stderr

@@ -1,5 +1,6 @@
 import json
 import os
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -7,6 +8,7 @@ from typing import Any
 import pytest
 from typer.testing import Result
 
+from service.catalogue import shipped_folder
 from service.formats.documents.json import rendered
 from service.grading import Report, Submission, grade
 from tests.shipped import shipped_exercises
@@ -417,6 +419,45 @@ def test_an_unknown_exercise_gets_a_suggestion(run: Run, save: Save) -> None:
     result = run("grade", save(RIGHT), "--exercise", "planar_rrr")
     assert result.exit_code == 2
     assert "Did you mean 'planar-rrr'?" in result.stderr
+
+
+def test_an_exercise_file_is_graded(run: Run, save: Save, tmp_path: Path) -> None:
+    arm = tmp_path / "my-arm.toml"
+    # The lengths of this arm are in another order.
+    text = (shipped_folder() / "planar-rrr.toml").read_text("utf-8")
+    arm.write_text(text.replace("l1", "lx").replace("l2", "l1").replace("lx", "l2"), "utf-8")
+    answer = save({"answers": {"table": RIGHT}})
+    assert "Total for planar-rrr: 8 / 8" in table_only(run, answer).stdout
+    own = run("grade", answer, "--exercise", arm, "--part", "table", "--format", "json")
+    [graded] = json.loads(own.stdout)
+    assert graded["report"]["exercise"] == "my-arm"
+    assert graded["report"]["score"] < 1
+    missing = run("grade", answer, "--exercise", tmp_path / "none.toml")
+    assert missing.exit_code == 2
+    assert "none.toml: cannot be read: No such file" in missing.stderr
+    nothing = run("grade", answer)
+    assert nothing.exit_code == 2
+    assert "--exercise ID or FILE, or --assignment F" in nothing.stderr
+
+
+def test_a_server_does_not_grade_by_an_exercise_file(run: Run, save: Save, tmp_path: Path) -> None:
+    arm = tmp_path / "my-arm.toml"
+    arm.write_bytes((shipped_folder() / "planar-rrr.toml").read_bytes())
+    given = ("--exercise", arm, "--server", "http://127.0.0.1:9")
+    refused = run("grade", save({"answers": {"table": RIGHT}}), *given)
+    assert refused.exit_code == 2
+    assert "my-arm.toml is a file of yours" in refused.stderr
+
+
+def test_a_bundle_has_the_exercise_file(run: Run, tmp_path: Path) -> None:
+    arm, bundle = tmp_path / "my-arm.toml", tmp_path / "bundle.zip"
+    arm.write_bytes((shipped_folder() / "planar-rrr.toml").read_bytes())
+    assert run("bundle", "ci", "--exercise", arm, "--output", bundle).exit_code == 0
+    with zipfile.ZipFile(bundle) as files:
+        [inside] = [name for name in files.namelist() if name.endswith("exercises/my-arm.toml")]
+        assert files.read(inside) == arm.read_bytes()
+        [assignment] = [name for name in files.namelist() if name.endswith("assignment.toml")]
+        assert b'id = "my-arm"' in files.read(assignment)
 
 
 def test_an_unknown_part_gets_a_suggestion(run: Run, save: Save) -> None:

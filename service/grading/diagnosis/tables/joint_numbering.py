@@ -21,7 +21,7 @@ _NUMBERED = register(
     code="joint_numbering",
     rule="joint_variable",
     means=template("the joint numbers start at another number: θ0, θ1, θ2 for θ1, θ2, θ3"),
-    example=("planar-rr", "table", {"1/theta": "theta0"}),
+    example=("planar-rr", "table", {"1/theta": "theta0", "2/theta": "theta1"}),
     unlike={"1/a": "0", "1/d": "a1"},
 )
 _NUMBERED_BY_KIND = register(
@@ -53,8 +53,15 @@ def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable |
     if all(not names - {joint.variable} for names, joint in zip(used, joints, strict=False)):
         return None
     spelling = grading.spelling(entry for row in table.rows for entry in row.entries)
+    written = set[str]().union(*used)
+    if written <= {joint.variable for joint in joints}:
+        # Another numbering has a name that this robot does not have. Rows that are missing or in
+        # other places have only the robot's own names.
+        return None
     for finding, every_name in _numberings(joints, spelling):
-        meanings = {name: every_name[name] for name in set().union(*used) & every_name.keys()}
+        if not written <= every_name.keys():
+            continue
+        meanings = {name: every_name[name] for name in written}
         if not _explains(used, meanings, joints):
             continue
         values = table_values(table.rows, grading.samples.renamed(meanings))
@@ -83,11 +90,10 @@ def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joi
         return False
     own = [joint.variable for joint in joints]
     of_rows = [*own, *[""] * (len(used) - len(own))]
-    meant = [{meanings.get(name, name) for name in names} for names in used]
-    if any(not names <= {name} for names, name in zip(meant, of_rows, strict=True)):
-        return False
-    renamed = [names for names, name in zip(used, of_rows, strict=True) if names - {name}]
-    return len(renamed) > 1 or any(names - set(own) for names in renamed)
+    return all(
+        {meanings[name] for name in names} <= {variable}
+        for names, variable in zip(used, of_rows, strict=True)
+    )
 
 
 def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[Finding, Meanings]]:
@@ -108,8 +114,9 @@ def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[F
         count = {True: 0, False: 0}
         for joint in joints:
             count[joint.prismatic] += 1
-            if slides_too or not joint.prismatic:
-                meanings[_name(count[joint.prismatic], by_index, joint.prismatic)] = joint.variable
+            is_counted = slides_too or not joint.prismatic
+            name = _name(count[joint.prismatic], by_index, joint.prismatic)
+            meanings[name if is_counted else joint.variable] = joint.variable
         renamed = {variable for name, variable in meanings.items() if name != variable}
         moved = [joint for joint in joints if joint.variable in renamed]
         if moved:

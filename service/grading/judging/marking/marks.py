@@ -18,6 +18,7 @@ from service.grading.lost_points import (
     NO_JOINT_MOVES,
     NOT_READ,
     OUTSIDE,
+    SHARED,
     WHOLE,
     little_worth,
     lost_in_row,
@@ -80,7 +81,7 @@ def part_report(part: PartSpec, judged: Judged) -> PartReport:
         follow_through=False,
         rows=rows,
         feedback=judged.feedback,
-        lost=tuple(_told(loss, marks, rows) for loss in marks.losses),
+        lost=tuple(_told(loss, marks, rows) for loss in _as_lost_by_rows(marks)),
         little_worth=_little_worth(judged.content, part, rows) if marks.lost else None,
     )
 
@@ -253,6 +254,25 @@ def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
         more = apportioned(min(rest, sum(room)), room)
         rows = [steps + each for steps, each in zip(rows, more, strict=True)]
     return rows
+
+
+def _as_lost_by_rows(marks: _Marks) -> list[_Loss]:
+    # No row is told to lose more than it really lost. The rest, which other rows lose, is told once
+    # for the whole answer.
+    whole = [loss for loss in marks.losses if loss.row is None]
+    rows, rest = [], 0
+    for loss in marks.losses:
+        if loss.row is not None:
+            steps = min(loss.steps, marks.rows[loss.row])
+            rest += loss.steps - steps
+            if steps:
+                rows.append(replace(loss, steps=steps))
+    if rest and whole and whole[0].code == WHOLE:
+        whole[0] = replace(whole[0], steps=whole[0].steps + rest)
+    elif rest:
+        rows.append(_Loss(SHARED, rest))
+    # A slip of the whole answer comes first, an extra row last.
+    return [*whole, *rows] if whole and whole[0].code == WHOLE else [*rows, *whole]
 
 
 def _told(loss: _Loss, marks: _Marks, rows: Sequence[RowReport]) -> LostPoints:

@@ -1,13 +1,24 @@
 """Recognise joint numbers that differ from the expected ones."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 import pytest
 
 from service.catalogue import Exercise
+from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading import PartReport, Verdict
+from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
+from service.grading.kinds.dh_table import read
+from service.grading.numerics.samples import draw
+from service.grading.part import Grading
+from service.grading.reading.entry import Reader
 from service.grading.report import messages_of
-from tests.grading.support.submitting import graded_table, not_correct
+from service.learning.slips import changes_of
+from service.learning.table_texts import ModelTable, model_table
+from tests.grading.support.submitting import graded_table, handed_in, not_correct, table
+from tests.grading.support.submitting import part as report_part
+from tests.shipped import shipped_exercises
+from tests.together import together
 
 STANFORD = [
     ("0", "-90deg", "0"), ("0", "90deg", "d2"), ("0", "0", "d3"),
@@ -144,3 +155,92 @@ def test_a_lazy_table_gains_nothing_by_another_numbering(catalogue: Mapping[str,
     usual = [("0", "0", "0", f"theta{i + 1}") for i in range(3)]
     exercise = catalogue["spatial-rrr"]
     assert graded_table(exercise, lazy).points <= graded_table(exercise, usual).points
+
+
+Rows = Sequence[Sequence[str]]
+TABLES = [
+    (exercise, part)
+    for exercise in shipped_exercises().values()
+    for part in exercise.parts
+    if isinstance(part, DhTableSpec)
+]
+
+
+def right_table(exercise: Exercise, part: DhTableSpec) -> ModelTable:
+    robot = exercise.robot
+    convention = robot.convention if part.convention == "either" else part.convention
+    return model_table(robot, convention, exercise.symbols)
+
+
+def shifted(rows: Rows) -> Iterator[Rows]:
+    """Yield the table with its rows moved, in all ways that students move them."""
+    rows = list(rows)
+    for blank in (["0"] * 4, [""] * 4):
+        for count in range(1, len(rows)):
+            yield [*[blank] * count, *rows[:-count]]
+            yield [*rows[count:], *[blank] * count]
+        for i in range(len(rows)):
+            yield [*rows[:i], blank, *rows[i:]][: len(rows)]
+            yield [*rows[:i], blank, *rows[i:]]
+            yield [*rows[:i], *rows[i + 1 :], blank]
+    for i in range(len(rows)):
+        yield [*rows[:i], *rows[i + 1 :]]
+
+
+def is_renumbered(exercise: Exercise, part: DhTableSpec, rows: Rows) -> bool:
+    samples = draw(exercise, "")
+    grading = Grading(exercise, samples, Reader.of(exercise, samples, "radians"))
+    answer = read(part, table(rows), grading)
+    assert answer is not None
+    return by_other_numbering(answer, grading) is not None
+
+
+@together(("exercise", "part"), TABLES)
+def test_rows_that_begin_one_row_too_late_are_no_numbering(
+    exercise: Exercise, part: DhTableSpec
+) -> None:
+    rows = right_table(exercise, part).texts
+    assert not is_renumbered(exercise, part, [["0"] * 4, *rows[:-1]])
+
+
+@pytest.mark.long
+@together(("exercise", "part"), TABLES)
+def test_rows_shifted_in_any_way_are_no_numbering(exercise: Exercise, part: DhTableSpec) -> None:
+    for rows in shifted(right_table(exercise, part).texts):
+        assert not is_renumbered(exercise, part, rows), rows
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("exercise", "part"), TABLES[::4], ids=[each.id for each, _ in TABLES[::4]]
+)
+def test_a_report_on_shifted_rows_does_not_tell_a_numbering(
+    exercise: Exercise, part: DhTableSpec
+) -> None:
+    rows = right_table(exercise, part).texts
+    for blank in (["0"] * 4, [""] * 4):
+        for answer in ([blank, *rows[:-1]], [*rows[1:], blank]):
+            report = report_part(handed_in(exercise, {part.id: table(answer)}), part.id)
+            codes = {message.code for message, _, _ in messages_of(report)}
+            assert not codes & {"joint_numbering", "joint_numbering_by_kind"}
+
+
+@together(("exercise", "part"), [each for each in TABLES if not each[1].given])
+def test_joints_that_are_numbered_from_0_are_a_numbering(
+    exercise: Exercise, part: DhTableSpec
+) -> None:
+    right = right_table(exercise, part)
+    from_0, _ = changes_of("joint_numbering", right)
+    rows = [list(each) for each in right.texts]
+    for (i, j), text in from_0.items():
+        rows[i][j] = text
+    assert is_renumbered(exercise, part, rows)
+    # A row that the student left empty does not hide the numbering.
+    rows[1] = [""] * 4
+    assert is_renumbered(exercise, part, rows)
+
+
+def test_one_wrong_index_is_no_numbering(catalogue: Mapping[str, Exercise]) -> None:
+    rows = [("a1", "0", "0", "theta0"), ("a2", "0", "0", "theta2")]
+    report = graded_table(catalogue["planar-rr"], rows)
+    assert error_codes(report) == ["joint_variable_absent"]

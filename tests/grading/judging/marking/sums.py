@@ -9,6 +9,7 @@ import argparse
 import json
 import os
 import sys
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
@@ -101,6 +102,22 @@ def faults(part: PartReport) -> Iterator[str]:
         yield "points were lost in other cells than those that are not right"
     if (part.points == part.max_points) is not (part.verdict is Verdict.CORRECT):
         yield "full points for a wrong answer, or less for a right one"
+    yield from rows_with_other_losses(part)
+
+
+def rows_with_other_losses(part: PartReport) -> Iterator[str]:
+    """Yield a description of each row that is told to lose more than it lost."""
+    # The rows of two links may have the same label.
+    lost = Counter[str]()
+    for each_row in part.rows:
+        lost[each_row.label] += each_row.max_points - each_row.points
+    told = Counter[str]()
+    for each in part.lost:
+        if each.row is not None:
+            told[each.row] += each.points
+    for row, points in told.items():
+        if points > lost[row] + 1e-6:
+            yield f"row {row} is told to lose {points}, but lost {lost[row]}"
 
 
 def in_steps(start: float, end: float, *between: float) -> bool:

@@ -8,7 +8,7 @@ from service.catalogue import Exercise
 from service.grading import CellReport, PartReport, RowReport, Verdict
 from service.grading.lost_points import lost_in_row
 from tests.grading.support.robots import COLUMNS, EXACT, SCARA, STANFORD, Row
-from tests.grading.support.submitting import graded_table, not_correct
+from tests.grading.support.submitting import graded_table, handed_in, not_correct, part
 from tests.grading.support.worth import worth_of_rows
 
 # Content cells of the SCARA, by hand: a1; a2 and the half turn; none; d4. Each row has a fifth
@@ -122,6 +122,18 @@ def test_lost_points_have_places(catalogue: Mapping[str, Exercise]) -> None:
     assert lost.message == "a and α in row 2"
     assert report.little_worth is not None
     assert (report.little_worth.rows, report.little_worth.points) == (("3",), 0.25)
+
+
+def test_a_row_loses_no_more_than_it_is_worth(catalogue: Mapping[str, Exercise]) -> None:
+    # A rotation about x is worth 2 points for four cells in rows 2 and 3. A wrong cell in row 1,
+    # which is worth nothing, costs as much as one of them; rows 2 and 3 share the loss.
+    matrix = [[1, 0, 1], [0, "cos(phi)", "-sin(phi)"], [0, "sin(phi)", "cos(phi)"]]
+    report = handed_in(catalogue["fundamental-rotations"], {"about-x": matrix})
+    about_x = part(report, "about-x")
+    points = [(row.points, row.max_points) for row in about_x.rows]
+    assert points == [(0, 0), (0.75, 1), (0.75, 1)]
+    [lost] = about_x.lost
+    assert (lost.code, lost.row, lost.points) == ("shared_by_rows", None, 0.5)
 
 
 def test_a_slip_of_the_whole_table_is_lost_at_one_place(catalogue: Mapping[str, Exercise]) -> None:

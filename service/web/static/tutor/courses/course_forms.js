@@ -154,6 +154,22 @@ function proposePoints({ target }) {
   points.value = target.selectedOptions[0]?.dataset.points ?? "";
 }
 
+/**
+ * Fill the other fields of the form with the values of the chosen option, which are in its data attributes. A request
+ * replaces all of them, so a tutor must see the values that stay.
+ *
+ * @param {HTMLSelectElement} select
+ */
+function fillingFields(select) {
+  const fill = () => {
+    for (const field of select.form?.elements ?? []) {
+      if (field instanceof HTMLInputElement) field.value = select.selectedOptions[0]?.dataset[field.name] ?? "";
+    }
+  };
+  select.addEventListener("change", fill);
+  fill();
+}
+
 /** @param {Element} list */
 function growing(list) {
   list.addEventListener("change", proposePoints);
@@ -201,6 +217,9 @@ if (typeof document !== "undefined") {
     });
   }
   document.querySelectorAll("fieldset[data-list]").forEach(growing);
+  /** @type {NodeListOf<HTMLSelectElement>} */
+  const filled = document.querySelectorAll("select[data-fills-fields]");
+  filled.forEach(fillingFields);
   /** @type {NodeListOf<HTMLInputElement>} */
   const files = document.querySelectorAll("input[data-fills]");
   files.forEach(filling);
