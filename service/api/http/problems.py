@@ -9,6 +9,7 @@ from typing import Any, Final
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
+from fastapi.routing import iter_route_contexts
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
@@ -202,7 +203,7 @@ def _problem(request: Request, error: Exception) -> ProblemError:
             detail = "The request ended before its body was complete."
             return ProblemError(HTTPStatus.BAD_REQUEST, detail)
         case HTTPException(status_code=HTTPStatus.METHOD_NOT_ALLOWED):
-            return _other_method(request, error)
+            return _other_method(request)
         case HTTPException(status_code=HTTPStatus.REQUEST_ENTITY_TOO_LARGE):
             return too_large()
         case HTTPException(status_code=HTTPStatus.NOT_FOUND, detail=HTTPStatus.NOT_FOUND.phrase):
@@ -215,8 +216,15 @@ def _problem(request: Request, error: Exception) -> ProblemError:
             return failed()
 
 
-def _other_method(request: Request, error: HTTPException) -> ProblemError:
-    methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
+def _other_method(request: Request) -> ProblemError:
+    # The framework names only the methods of one route, and a path may have several.
+    path = request.scope["path"].removeprefix(request.scope.get("root_path", ""))
+    methods = {
+        method
+        for route in iter_route_contexts(request.app.router.routes)
+        if route.methods and route.path_regex.fullmatch(path)
+        for method in route.methods
+    }
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
     allow = ", ".join(sorted(methods))
     detail = say(
