@@ -5,6 +5,7 @@ import json
 import re
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any
+from urllib.parse import quote
 
 import httpx
 import pytest
@@ -302,3 +303,70 @@ def test_reports_of_older_versions_have_no_lost_points(document: Schema) -> None
     part = document["components"]["schemas"]["PartReport"]
     assert part["properties"].keys() - set(part["required"]) == {"lost", "little_worth"}
     assert part["properties"]["lost"].keys() == {"type", "items"}
+
+
+def parameters(document: Schema) -> Iterator[tuple[str, str, Schema, Schema]]:
+    """Yield the method and path of each operation with each of its parameters and its form."""
+    for path, operations_there in document["paths"].items():
+        for method, operation in operations_there.items():
+            for each in operation.get("parameters", ()):
+                schema = each["schema"]
+                forms = schema.get("anyOf", [schema])
+                [form] = [one for one in forms if one != {"type": "null"}]
+                if "$ref" in form:
+                    form = document["components"]["schemas"][form["$ref"].rpartition("/")[2]]
+                yield method, path, each, form
+
+
+def test_every_parameter_has_a_bound(document: Schema) -> None:
+    kinds = set()
+    for method, path, parameter, form in parameters(document):
+        place = f"{method} {path} {parameter['name']}"
+        kinds.add(form["type"])
+        match form["type"]:
+            case "string":
+                bounds = form.keys() & {"maxLength", "enum"}
+                assert bounds or form.get("format") == "date-time", place
+            case "integer":
+                assert form.keys() >= {"minimum", "maximum"}, place
+            case other:
+                assert other == "boolean", place
+    assert kinds == {"string", "integer", "boolean"}
+
+
+@pytest.mark.long
+def test_every_parameter_outside_of_its_bounds_is_refused(
+    document: Schema,
+    client_of: Callable[[FastAPI], httpx.Client],
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    access = Access()
+    app = application(catalogue, access=access)
+    # Everybody may do everything.
+    app.dependency_overrides[access.permit] = lambda: None
+    client, checked = client_of(app), 0
+    for method, path, parameter, form in parameters(document):
+        name = parameter["name"]
+        wrong = ["x" * (form["maxLength"] + 1)] if "maxLength" in form else []
+        if form["type"] == "integer":
+            wrong += [str(form["minimum"] - 1), str(form["maximum"] + 1), "1.5", "1e0", "one"]
+        if form["type"] == "boolean":
+            wrong += ["2", "maybe"]
+        if "enum" in form or form.get("format") == "date-time":
+            wrong += ["0.5", "x" * 5000]
+        if form.get("pattern", "").startswith("^[a-z0-9]"):
+            wrong += ["0.5", "a b", "-", "A", ""]
+        in_path = parameter["in"] == "path"
+        for value in filter(None, wrong) if in_path else wrong:
+            url = path.replace(f"{{{name}}}", quote(value)) if in_path else path
+            url = re.sub(r"\{\w+\}", "theta", url.replace("{exercise_id}", "planar-rr"))
+            query = {name: value} if parameter["in"] == "query" else {}
+            headers = {name: value} if parameter["in"] == "header" else {}
+            body: Schema = {"json": {}} if method == "post" else {}
+            answer = client.request(method, url, params=query, headers=headers, **body)
+            place = f"{method} {url[:80]} {name}={value[:40]}"
+            assert answer.status_code == 422, (place, answer.text)
+            pointers = [each["pointer"] for each in answer.json()["errors"]]
+            assert f"#/{name}".lower() in map(str.lower, pointers), (place, answer.text)
+            checked += 1
+    assert checked > 150
