@@ -24,8 +24,11 @@ def test_a_hand_in_an_override_and_a_forgotten_learner_arrive(journey: Journey) 
     assert message["scoreGiven"] == journey.total() > 0
     assert message["scoreMaximum"] == 10
     assert message["submission"]["submittedAt"][:19] == attempt["at"][:19]
+    assert message["timestamp"] >= message["submission"]["submittedAt"]
     # Nothing waits, and nothing is sent twice.
     assert journey.send() == 0
+    # A score with a later timestamp would be from the future now.
+    journey.clock.go_on(seconds=3)
     override = {"reason": "copied", "author": "t"}
     journey.post(f"attempts/{attempt['id']}/override", points=0, **override)
     assert journey.send() == 1
@@ -78,6 +81,7 @@ def test_more_time_gives_a_late_score_its_points_back(journey: Journey) -> None:
     half = journey.gradebook.received[-1]["scoreGiven"]
     due = (datetime.now(UTC) + timedelta(days=1)).isoformat()
     journey.post(f"{path}/extensions", learner=journey.learner(), due=due)
+    journey.clock.go_on(seconds=3)
     assert journey.send() == 1
     assert journey.gradebook.received[-1]["scoreGiven"] == pytest.approx(2 * half)
     assert journey.total() == pytest.approx(2 * half)
