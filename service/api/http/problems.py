@@ -16,7 +16,7 @@ from starlette.requests import ClientDisconnect
 from service.api.http.language import language_of
 from service.api.http.request_context import current_request
 from service.api.http.told_answer import language_headers
-from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX
+from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX, general_name
 from service.submissions.field_errors import field_error
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.translations import ENGLISH, Language, Sentence, paragraph, say, told
@@ -33,7 +33,8 @@ Detail = Mapping[str, str | int]
 class ProblemError(Exception):
     """An error that is sent as the response; its attributes are the fields of the response.
 
-    ``name`` is the last part of the problem type (RFC 9457). ``challenges`` are the headers
+    ``name`` is the last part of the problem type (RFC 9457), one of ``PROBLEM_TYPES``; without a
+    name, the problem has the general type of its status. ``challenges`` are the headers
     ``WWW-Authenticate``.
     """
 
@@ -67,7 +68,7 @@ class ProblemError(Exception):
         """Return the error as JSON; ``instance`` is the path that was requested."""
         translation = language.translation
         document: dict[str, Any] = {
-            "type": f"{TYPE_PREFIX}{self.name}" if self.name else "about:blank",
+            "type": TYPE_PREFIX + (self.name or general_name(self.status)),
             "title": told(self.title or self.status.phrase, translation),
             "status": int(self.status),
             "detail": told(self.detail, translation),

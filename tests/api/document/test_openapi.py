@@ -4,7 +4,8 @@ import copy
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any
+from pathlib import Path
+from typing import Annotated, Any
 from urllib.parse import quote
 
 import httpx
@@ -12,11 +13,13 @@ import pytest
 from fastapi import FastAPI
 from jsonschema import Draft202012Validator
 from openapi_spec_validator import validate
+from pydantic import StringConstraints, TypeAdapter
 
 from service.api.application import application
 from service.api.document.openapi import EXAMPLES
 from service.api.permissions.access import Access
 from service.catalogue import Exercise
+from tests.front.deno import deno
 
 Schema = dict[str, Any]
 
@@ -370,3 +373,38 @@ def test_every_parameter_outside_of_its_bounds_is_refused(
             assert f"#/{name}".lower() in map(str.lower, pointers), (place, answer.text)
             checked += 1
     assert checked > 150
+
+
+# Texts that some of the patterns accept.
+TEXTS = (
+    "", "a", "A", "robotics-2026", "-a", "a-", "a--b", "Ada Lovelace", "Ada  Lovelace", " a", "a ",
+    "ada@example.edu", "a@b@c", "a,b@c", "RPR", "RRRRRRRRRRRR", "rpr", "1", "\u03b81", "a\u200bb",
+    "a\u00a0b", "a\nb", "a\n", "\x00", "a\x00", "\U0001f600", "\ufeff", "0.5",
+)  # fmt: skip
+SCRIPT = """
+const [patterns, texts] = JSON.parse(new TextDecoder().decode(await new Response(
+  Deno.stdin.readable).arrayBuffer()));
+const told = patterns.map((pattern) => ["", "u", "v"].map((flag) => {
+  const compiled = new RegExp(pattern, flag);
+  return texts.map((text) => compiled.test(text));
+}));
+console.log(JSON.stringify(told));
+"""
+
+
+@pytest.mark.long
+def test_javascript_reads_every_pattern_as_the_service_does(
+    document: Schema, tmp_path: Path
+) -> None:
+    patterns = sorted({each["pattern"] for each in schemas_in(document) if "pattern" in each})
+    assert len(patterns) >= 7
+    (script := tmp_path / "patterns.js").write_text(SCRIPT, encoding="utf-8")
+    given = json.dumps([patterns, TEXTS])
+    found = deno("run", "--quiet", "--no-check", "--no-lock", str(script), written=given)
+    assert found.returncode == 0, found.stdout
+    for pattern, by_flag in zip(patterns, json.loads(found.stdout), strict=True):
+        checked = TypeAdapter(Annotated[str, StringConstraints(pattern=pattern)]).validator
+        expected = [checked.isinstance_python(text) for text in TEXTS]
+        assert by_flag == [expected] * 3, pattern
+        assert True in expected
+        assert False in expected
