@@ -1,9 +1,11 @@
 """The settings of an installation, from environment variables DH_GRADER_…."""
 
 import os
-from collections.abc import Iterator
+import re
+from collections.abc import Callable, Iterator
+from ipaddress import ip_address
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Final, Literal
 from urllib.parse import urlsplit
 
 from pydantic import Field, SecretStr, ValidationError, field_validator
@@ -14,13 +16,19 @@ from service.access.open_access import OpenAccess, open_access
 from service.catalogue import FeedbackLevel, shipped_folder
 from service.submissions.field_errors import field_error
 from service.submissions.lookup import nearest
-from service.translations import Sentence, joined, say
+from service.translations import LANGUAGES, Sentence, joined, language_named, say
 
 PREFIX = "DH_GRADER_"
 # The word in DH_GRADER_EXERCISES_DIR for the folder of the shipped exercises.
 SHIPPED = "shipped"
 
 
+# A scheme, a host with an optional port, and an optional path whose parts are not empty.
+_PUBLIC_URL: Final = re.compile(
+    r"https?://(?:[a-z0-9._-]+|\[[0-9a-f:.]+\])(?::[0-9]+)?(?:/[a-z0-9._~%-]+)*/?",
+    re.ASCII | re.IGNORECASE,
+)
+_SERVER: Final = re.compile(r"https?://[^\s/?#@]+(?:/[^\s?#]*)?", re.IGNORECASE)
 _SHORT_SECRET = say(
     "the secret is short; it needs {count} characters, such as openssl rand -hex 32",
     count=SHORTEST_SECRET,
@@ -46,6 +54,14 @@ class Settings(BaseSettings):
     )
     workers: int = Field(
         1, ge=1, le=64, description="The number of processes that `serve` starts, up to 64."
+    )
+    public_url: str | None = Field(
+        None,
+        description="The address under which students reach the service, such as "
+        "`https://grader.example.edu`, with the path if a proxy serves it under one. Personal "
+        "links begin with it, and the commands that need the address of the service use it. By "
+        "default, personal links begin with the address in the tutor's browser (the header "
+        "`Host`).",
     )
     exercises_dir: Annotated[tuple[Path, ...], NoDecode] = Field(
         default_factory=lambda: (shipped_folder(),),
@@ -170,7 +186,38 @@ class Settings(BaseSettings):
             )
         return host
 
-    @field_validator("database", mode="before")
+    @field_validator("public_url")
+    @classmethod
+    def _is_public(cls, address: str | None) -> str | None:
+        return None if address is None else _checked_public_url(address)
+
+    @field_validator("server")
+    @classmethod
+    def _is_server(cls, server: str | None) -> str | None:
+        # The client checks the address more closely; it is not imported here, because it is large.
+        if server is not None and not _SERVER.fullmatch(server):
+            raise ValueError(
+                say(
+                    "{server!r} is not the address of a server; write https://grader.example.edu",
+                    server=server,
+                )
+            )
+        return server
+
+    @field_validator("language")
+    @classmethod
+    def _is_language(cls, tag: str) -> str:
+        if language_named(tag) is None:
+            raise ValueError(
+                say(
+                    "{tag!r} is no language of the reports: write one of {known}.",
+                    tag=tag,
+                    known=", ".join(LANGUAGES),
+                )
+            )
+        return tag
+
+    @field_validator("database", "public_url", mode="before")
     @classmethod
     def _is_set(cls, value: object) -> object:
         # In a file of settings, such as that of Docker Compose, an unset variable is empty.
@@ -232,12 +279,13 @@ class Settings(BaseSettings):
 
     def known_secret(self) -> Secret | None:
         """Return the secret of the installation, or None. Raises SettingsError."""
-        if self.secret is not None:
-            return Secret(self.secret.get_secret_value())
-        if self.secret_file is None:
-            return None
+        # The file is checked even if the other variable overrides it.
+        in_file = None if self.secret_file is None else self._secret_in(self.secret_file)
+        return in_file if self.secret is None else Secret(self.secret.get_secret_value())
+
+    def _secret_in(self, file: Path) -> Secret:
         try:
-            text = self.secret_file.read_text(encoding="utf-8").strip()
+            text = file.read_text(encoding="utf-8").strip()
         except (OSError, UnicodeDecodeError) as error:
             unreadable = say("cannot be read: {reason}", reason=str(error))
             raise SettingsError(_of("secret_file", unreadable)) from error
@@ -247,21 +295,40 @@ class Settings(BaseSettings):
 
 
 def load_settings(**options: Any) -> Settings:
-    """Load the settings; ``options`` override environment variables. Raises SettingsError."""
+    """Load the settings; ``options`` of the command line override environment variables.
+
+    Raises SettingsError for an invalid option, and for an invalid variable, even if an option
+    overrides the variable.
+    """
     if unknown := list(_unknown()):
         raise SettingsError(joined("\n", unknown))
+    settings = _validated(_variable)
+    given = {name: value for name, value in options.items() if value is not None}
+    # Fields with errors can only be those of options now.
+    return _validated(_option, **given) if given else settings
+
+
+def _validated(named: Callable[[str], str], **given: Any) -> Settings:
     try:
-        return Settings(**{name: value for name, value in options.items() if value is not None})
+        return Settings(**given)
     except ValidationError as error:
         lines = [
-            _of(str(detail["loc"][0]), field_error(detail))
+            joined(": ", [named(str(detail["loc"][0])), field_error(detail)])
             for detail in error.errors(include_url=False)
         ]
         raise SettingsError(joined("\n", lines)) from error
 
 
+def _variable(name: str) -> str:
+    return f"{PREFIX}{name.upper()}"
+
+
+def _option(name: str) -> str:
+    return f"--{name}"
+
+
 def _of(name: str, fault: str) -> Sentence:
-    return joined(": ", [f"{PREFIX}{name.upper()}", fault])
+    return joined(": ", [_variable(name), fault])
 
 
 def _unknown() -> Iterator[str]:
@@ -277,6 +344,35 @@ def _unknown() -> Iterator[str]:
                     variable=variable,
                     meant=f"{PREFIX}{meant.upper()}",
                 )
+
+
+def _checked_public_url(address: str) -> str:
+    # Return the address without a trailing slash. Raises ValueError.
+    try:
+        parts = urlsplit(address)
+        host, _ = parts.hostname, parts.port
+    except ValueError:
+        host = None
+    if not host or not _PUBLIC_URL.fullmatch(address) or {".", ".."} & {*parts.path.split("/")}:
+        raise ValueError(
+            say(
+                "{address!r} is not the address of this service; write "
+                "https://grader.example.edu, without a question mark or a name of a user",
+                address=address,
+            )
+        )
+    if parts.scheme != "https" and not _is_here(host):
+        raise ValueError(
+            say("must begin with https://, because the links contain keys of learners")
+        )
+    return address.rstrip("/")
+
+
+def _is_here(host: str) -> bool:
+    try:
+        return host == "localhost" or ip_address(host).is_loopback
+    except ValueError:
+        return False
 
 
 def _origin_in(text: str) -> str:

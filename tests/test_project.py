@@ -172,7 +172,13 @@ def test_every_external_image_is_named_by_its_digest(file: str) -> None:
 
 
 @pytest.mark.parametrize(
-    "file", ["docs/ci/github.yml", "action.yml", ".github/workflows/release.yml"]
+    "file",
+    [
+        "docs/ci/github.yml",
+        "action.yml",
+        ".github/workflows/release.yml",
+        ".github/workflows/test.yml",
+    ],
 )
 def test_every_action_is_named_by_its_commit(file: str) -> None:
     actions = re.findall(r"uses: (.+)", read(file))

@@ -99,7 +99,7 @@ def test_an_option_overrides_its_variable(monkeypatch: pytest.MonkeyPatch) -> No
     monkeypatch.setenv("DH_GRADER_HOST", "0.0.0.0")
     settings = load_settings(port=9001, host=None)
     assert (settings.port, settings.host) == (9001, "0.0.0.0")
-    with pytest.raises(SettingsError, match="DH_GRADER_HOST"):
+    with pytest.raises(SettingsError, match=r"^--host: "):
         load_settings(host="")
 
 
@@ -124,3 +124,76 @@ def test_solutions_and_reloading_are_off_by_default(
     monkeypatch.setenv("DH_GRADER_SOLUTIONS", "true")
     monkeypatch.setenv("DH_GRADER_RELOAD_EXERCISES", "1")
     assert (load_settings().solutions, load_settings().reload_exercises) == (True, True)
+
+
+@pytest.mark.parametrize(
+    ("given", "known"),
+    [
+        ("https://grader.example.edu", "https://grader.example.edu"),
+        ("https://grader.example.edu/", "https://grader.example.edu"),
+        ("https://uni.example.edu:8443/robotics/grader/", "https://uni.example.edu:8443/robotics/grader"),
+        ("http://localhost:8000", "http://localhost:8000"),
+        ("http://127.0.0.1:8000/", "http://127.0.0.1:8000"),
+        ("http://[::1]:8000", "http://[::1]:8000"),
+        ("https://xn--krs-hoa.example", "https://xn--krs-hoa.example"),
+        ("", None),
+        ("  ", None),
+    ],
+)  # fmt: skip
+def test_a_public_address_has_no_slash_at_the_end(
+    monkeypatch: pytest.MonkeyPatch, given: str, known: str | None
+) -> None:
+    monkeypatch.setenv("DH_GRADER_PUBLIC_URL", given)
+    assert load_settings().public_url == known
+
+
+@pytest.mark.parametrize(
+    "address",
+    [
+        "grader.example.edu", "http://grader.example.edu", "http://10.0.0.1:8000", "ftp://a.example/",
+        "https://", "https:///path", "https://a.example?x=1", "https://a.example/#top",
+        "https://a.example/a//b", "https://a.example//", "https://a.example/a/../b",
+        "https://a.example/./b", "https://user@a.example", "https://user:pw@a.example",
+        "https://a.example:port", "https://a.example:70000", "https://a.example/a b",
+        "https://a.example\\b", "https://k\u00fcrs.example", "https://a.example\nX: 1",
+        "https://a.example/\"", "javascript:alert(1)", "//a.example", "http://127.0.0.1.example/",
+    ],
+)  # fmt: skip
+def test_an_address_that_links_cannot_begin_with_is_refused(
+    monkeypatch: pytest.MonkeyPatch, address: str
+) -> None:
+    monkeypatch.setenv("DH_GRADER_PUBLIC_URL", address)
+    with pytest.raises(SettingsError, match=r"^DH_GRADER_PUBLIC_URL: "):
+        load_settings()
+
+
+# For each setting that an option of the command line overrides: a value that cannot be used.
+OVERRIDDEN = {
+    "host": ("a b", "127.0.0.1"),
+    "port": ("http", 9000),
+    "workers": ("0", 2),
+    "server": ("ftp://a.example", "https://a.example"),
+    "language": ("xx", "de"),
+}
+
+
+@pytest.mark.parametrize("name", OVERRIDDEN)
+def test_an_option_does_not_hide_an_unusable_variable(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    invalid, option = OVERRIDDEN[name]
+    assert getattr(load_settings(**{name: option}), name) == option
+    with pytest.raises(SettingsError, match=rf"^--{name}: "):
+        load_settings(**{name: invalid})
+    monkeypatch.setenv(f"DH_GRADER_{name.upper()}", invalid)
+    with pytest.raises(SettingsError, match=rf"^DH_GRADER_{name.upper()}: "):
+        load_settings(**{name: option})
+
+
+def test_a_secret_does_not_hide_an_unreadable_file(
+    monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("DH_GRADER_SECRET", "s" * 40)
+    monkeypatch.setenv("DH_GRADER_SECRET_FILE", str(tmp_path / "secret"))
+    with pytest.raises(SettingsError, match=r"^DH_GRADER_SECRET_FILE: "):
+        load_settings().known_secret()

@@ -190,15 +190,18 @@ def application(
     store: "AttemptStore | None" = None,
     pages: WebPages | None = None,
     monitor: Monitor | None = None,
+    public_url: str | None = None,
 ) -> FastAPI:
     """Return the HTTP service for the exercises of ``catalogue``.
 
     ``access`` authenticates callers. Without ``access``, everybody may grade and record, and nobody
     sees the data for tutors. ``feedback`` is the highest feedback level of reports. Attempts are
-    recorded in ``store``.
+    recorded in ``store``. Personal links begin with ``public_url``, or else with the address of the
+    request.
     """
     access = access or Access()
     app = _Api(catalogue, cors_origins, turns, store, access, rates, monitor, pages)
+    app.state.public_url = public_url
     permitted = [Depends(access.permit)]
     problems.install(app, None if pages is None else pages.of_problem)
     # What is recorded, and every other list, has no drafts and no generated robots.

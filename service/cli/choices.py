@@ -7,10 +7,9 @@ from typing import TypeVar
 import typer
 
 from service.cli.language import spoken, user_language
-from service.cli.terminal import give_up
 from service.settings import Settings
 from service.submissions.lookup import nearest
-from service.translations import LANGUAGES, Language, language_named, paragraph, say
+from service.translations import Language, language_named, paragraph, say
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
 
@@ -37,18 +36,10 @@ def listed(of: type[StrEnum]) -> str:
 
 
 def report_language(settings: Settings, output_format: str) -> Language:
-    """Return the language of reports; exit if the chosen language is unknown."""
+    """Return the language of reports."""
     # Without a setting, reports in the format ``text`` are in the language of the user.
     if output_format == "text" and "language" not in settings.model_fields_set:
         return user_language()
     found = language_named(settings.language)
-    if found is None:
-        known = ", ".join(LANGUAGES)
-        give_up(
-            say(
-                "{tag!r} is no language of the reports: write one of {known}.",
-                tag=settings.language,
-                known=known,
-            )
-        )
+    assert found is not None, "the settings have only known languages"
     return found

@@ -14,18 +14,27 @@ _INVISIBLE: Final = (
     r"\u0000-\u001f\u007f-\u00a0\u00ad\u034f\u0600-\u0605\u061c\u06dd\u070f\u0890-\u0891\u08e2"
     r"\u115f-\u1160\u1680\u17b4-\u17b5\u180b-\u180f\u2000-\u200f\u2028-\u202f\u205f-\u206f\u2800"
     r"\u3000\u3164\ue000-\uf8ff\ufe00-\ufe0f\ufeff\uffa0\ufff0-\uffff"
-    # Regular expressions have no common escape for these.
+)
+# Programs may compile the documented pattern without the flag "u" of JavaScript, which then does
+# not understand characters above U+FFFF. So the document has the pattern without them.
+_ABOVE: Final = (
     "\U000110bd\U000110cd\U00013430-\U0001343f\U0001bca0-\U0001bca3\U0001d173-\U0001d17a"
     "\U000e0000-\U0010ffff"
 )
-_WORD: Final = f"[^ {_INVISIBLE}]+"
+
+
+def _words(but: str) -> str:
+    return f"^[^ {but}]+( [^ {but}]+)*$"
+
+
 # Words separated by single spaces, so that two different learners never look alike.
 Learner = Annotated[
     str,
-    StringConstraints(min_length=1, max_length=200, pattern=f"^{_WORD}( {_WORD})*$"),
+    StringConstraints(min_length=1, max_length=200, pattern=_words(_INVISIBLE + _ABOVE)),
     Field(
         description="The learner, as the course identifies them; preferably an opaque id instead "
-        "of a name. The service only tests it for equality."
+        "of a name. The service only tests it for equality.",
+        json_schema_extra={"pattern": _words(_INVISIBLE)},
     ),
 ]
 

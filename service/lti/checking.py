@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from datetime import UTC, datetime
 from email.utils import parsedate_to_datetime
 from http import HTTPStatus
-from time import monotonic
 from typing import Final, NamedTuple
 
-from service.lti.fetching import TIMEOUT, FetchError, answer, content
+from service.lti.fetching import FetchError, answer, content
 from service.lti.own_keys import SigningKey
 from service.lti.platform_keys import usable_keys
 from service.lti.problems import cause_without_values
@@ -31,13 +30,12 @@ class CheckLine(NamedTuple):
 
 def check_registration(registration: Registration, key: SigningKey) -> Iterator[CheckLine]:
     """Yield the lines of the self-test, which asks the platform for keys and an access token."""
-    until = monotonic() + TIMEOUT
     try:
         with answer(registration.jwks_url, local=registration.is_development) as response:
             if response.status_code != HTTPStatus.OK:
                 raise FetchError(say("the status is {status}", status=response.status_code))
             try:
-                keys = usable_keys(json.loads(content(response, until)))
+                keys = usable_keys(json.loads(content(response)))
             except (ValueError, RecursionError) as error:
                 raise FetchError(say("the answer is not JSON")) from error
             date = response.headers.get("date")

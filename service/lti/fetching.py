@@ -1,22 +1,26 @@
-"""Fetch JSON from a platform safely, because the address comes from outside.
+"""Fetch data from a platform safely, because the address comes from outside.
 
-Only HTTPS and public addresses are allowed, and no redirect to another host.
+Only HTTPS and public addresses are allowed, and no redirect to another host. Every exchange ends
+after five seconds in all, however slowly the platform sends.
 """
 
-# The name of the host is resolved once: the connection goes to the checked address.
+# The name of the host is resolved once: the connection goes to the checked addresses.
 
 import json
 import socket
 import ssl
-from collections.abc import Iterator
+import threading
+from collections.abc import Iterable, Iterator, Sequence
+from concurrent.futures import Future
 from contextlib import contextmanager
 from functools import cache
 from http import HTTPStatus
-from ipaddress import IPv4Address, IPv6Address, IPv6Network, ip_address
+from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network, ip_address
 from time import monotonic
 from typing import Any, Final
 from urllib.parse import urljoin
 
+import httpcore
 import httpx
 
 from service.lti.registrations import LOCAL_HOSTS, origin_of, unusable
@@ -26,10 +30,37 @@ from service.version import VERSION
 # Moodle refuses requests without one.
 USER_AGENT: Final = f"dh-grader/{VERSION}"
 LARGEST: Final = 64 * 1024
+# How long one exchange may take, from the name of the host to the last byte (seconds).
 TIMEOUT: Final = 5.0
 _MOST_REDIRECTS: Final = 3
-# Addresses that contain one of IPv4, which may be private (RFC 6052, 3056, 4380).
-_TRANSLATED: Final = tuple(map(IPv6Network, ("64:ff9b::/96", "2002::/16", "2001::/32")))
+# The most bytes before the content, with those of interim responses (1xx).
+_LARGEST_HEAD: Final = 128 * 1024
+# The most addresses of a host that are tried, and the most names that are looked up at once.
+_MOST_ADDRESSES: Final = 4
+_MOST_LOOKUPS: Final = 32
+
+# The blocks that are not globally reachable by the registries of special-purpose addresses of IANA
+# (as of 2025), those that it has taken back, and multicast. Python's own list differs between its
+# versions.
+_SPECIAL: Final = tuple(
+    map(
+        IPv4Network,
+        (
+            "0.0.0.0/8", "10.0.0.0/8", "100.64.0.0/10", "127.0.0.0/8", "169.254.0.0/16",
+            "172.16.0.0/12", "192.0.0.0/24", "192.0.2.0/24", "192.88.99.0/24", "192.168.0.0/16",
+            "198.18.0.0/15", "198.51.100.0/24", "203.0.113.0/24", "224.0.0.0/4", "240.0.0.0/4",
+        ),
+    )
+)  # fmt: skip
+# IANA has allocated addresses of hosts from this block only. Within it: protocol assignments with
+# Teredo, documentation (two), and 6to4. Teredo and 6to4 contain an IPv4 address, which may be
+# private (RFC 4380, RFC 3056).
+_ALLOCATED: Final = IPv6Network("2000::/3")
+_SPECIAL_6: Final = tuple(
+    map(IPv6Network, ("2001::/23", "2001:db8::/32", "2002::/16", "3fff::/20"))
+)
+# In networks without IPv4, every host of IPv4 has an address of this block (NAT64, RFC 6052).
+_TRANSLATED: Final = IPv6Network("64:ff9b::/96")
 
 
 class FetchError(Exception):
@@ -48,12 +79,12 @@ def fetch_json(url: str, *, local: bool = False) -> Any:
     until = monotonic() + TIMEOUT
     first = url
     for _ in range(_MOST_REDIRECTS + 1):
-        with answer(url, local=local) as response:
+        with answer(url, local=local, until=until) as response:
             if not response.is_redirect:
                 if response.status_code != HTTPStatus.OK:
                     raise FetchError(say("the status is {status}", status=response.status_code))
                 try:
-                    return json.loads(content(response, until))
+                    return json.loads(content(response))
                 except (ValueError, RecursionError) as error:
                     raise FetchError(say("the answer is not JSON")) from error
             url = urljoin(url, response.headers.get("location", ""))
@@ -64,49 +95,68 @@ def fetch_json(url: str, *, local: bool = False) -> Any:
 
 @contextmanager
 def answer(
-    url: str, method: str = "GET", *, local: bool = False, **more: Any
+    url: str,
+    method: str = "GET",
+    *,
+    local: bool = False,
+    until: float | None = None,
+    **more: Any,
 ) -> Iterator[httpx.Response]:
     """Send a request, and yield the response. Raises FetchError.
 
-    ``more`` are further arguments of ``httpx.Client.stream``.
+    The exchange ends ``TIMEOUT`` seconds from now, or at ``until`` (a time of ``monotonic``) if
+    that is earlier. ``more`` are further arguments of ``httpx.Client.stream``.
     """
     # Read the response's body with ``content``, which limits its size.
     if reason := unusable(url, local=local):
         raise FetchError(say("the address {reason}", reason=reason))
-    parts = httpx.URL(url)
-    # Connect to the checked address: another resolution could give another one.
-    pinned = parts.copy_with(host=str(_address(parts.host, local=local)))
+    latest = monotonic() + TIMEOUT
+    until = latest if until is None else min(until, latest)
+    addresses = _addresses(httpx.URL(url).host, until, local=local)
     headers = {
         **more.pop("headers", {}),
-        "Host": parts.netloc.decode("ascii"),
         "User-Agent": USER_AGENT,
         "Accept-Encoding": "identity",
     }
-    named = {"sni_hostname": parts.host}
     try:
         with (
-            httpx.Client(verify=_tls(), trust_env=False, timeout=TIMEOUT) as client,
-            client.stream(method, pinned, headers=headers, extensions=named, **more) as response,
+            httpx.Client(transport=_Transport(addresses, until), trust_env=False) as client,
+            client.stream(method, url, headers=headers, **more) as response,
         ):
             yield response
-    except httpx.HTTPError as error:
+    except (httpx.HTTPError, httpcore.NetworkError, httpcore.ProtocolError) as error:
         raise FetchError(
             say("the platform does not answer ({error})", error=type(error).__name__)
         ) from error
 
 
-def content(response: httpx.Response, until: float, largest: int = LARGEST) -> bytes:
-    """Read and return the body of a response, up to a size and a time. Raises FetchError."""
+def content(response: httpx.Response, largest: int = LARGEST) -> bytes:
+    """Read and return the body of a response, up to a size. Raises FetchError."""
     if response.headers.get("content-encoding", "identity") != "identity":
         raise FetchError(say("the answer is compressed"))
     found = bytearray()
     for piece in response.iter_raw():
         found += piece
         if len(found) > largest:
-            raise TooLargeError(say("the answer is larger than {most} KiB", most=largest // 1024))
-        if monotonic() > until:
-            raise FetchError(say("the answer takes too long"))
+            raise _too_large(largest)
     return bytes(found)
+
+
+def is_public(address: IPv4Address | IPv6Address) -> bool:
+    """True if an address belongs to the public internet."""
+    if isinstance(address, IPv4Address):
+        return not any(address in each for each in _SPECIAL)
+    if address in _TRANSLATED:
+        return is_public(IPv4Address(int(address) & 0xFFFFFFFF))
+    return address in _ALLOCATED and not any(address in each for each in _SPECIAL_6)
+
+
+def _late() -> FetchError:
+    return FetchError(say("the answer takes too long"))
+
+
+def _too_large(largest: int) -> TooLargeError:
+    return TooLargeError(say("the answer is larger than {most} KiB", most=largest // 1024))
 
 
 @cache
@@ -115,25 +165,199 @@ def _tls() -> ssl.SSLContext:
     return httpx.create_ssl_context(trust_env=False)
 
 
-def _address(host: str, *, local: bool) -> IPv4Address | IPv6Address:
+class _Transport(httpx.BaseTransport):
+    """Sends one request to the first of several addresses that answers, and ends in time."""
+
+    # The timeouts of httpx count for each piece of an answer: a platform that sends a byte a second
+    # would never end.
+
+    def __init__(self, addresses: Sequence[IPv4Address | IPv6Address], until: float) -> None:
+        self._network = _Network(addresses, until)
+        self._pool = httpcore.ConnectionPool(_tls(), network_backend=self._network)
+
+    def handle_request(self, request: httpx.Request) -> httpx.Response:
+        """Send a request, and return the response with a body that is still to be read."""
+        url = request.url
+        asked = httpcore.Request(
+            request.method,
+            httpcore.URL(
+                scheme=url.raw_scheme, host=url.raw_host, port=url.port, target=url.raw_path
+            ),
+            headers=request.headers.raw,
+            content=request.stream,
+        )
+        found = self._pool.handle_request(asked)
+        self._network.begin_content()
+        return httpx.Response(found.status, headers=found.headers, stream=_Body(found))
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._pool.close()
+
+
+class _Body(httpx.SyncByteStream):
+    def __init__(self, response: httpcore.Response) -> None:
+        self._response = response
+
+    def __iter__(self) -> Iterator[bytes]:
+        return self._response.iter_stream()
+
+    def close(self) -> None:
+        self._response.close()
+
+
+class _Network(httpcore.NetworkBackend):
+    """Connects to checked addresses, whatever the name of the host."""
+
+    def __init__(self, addresses: Sequence[IPv4Address | IPv6Address], until: float) -> None:
+        self._addresses, self._until = addresses, until
+        self._connected: _Connection | None = None
+
+    def connect_tcp(
+        self,
+        host: str,  # noqa: ARG002 - it was resolved and checked before
+        port: int,
+        timeout: float | None = None,  # noqa: ARG002 - the end is the same for all steps
+        local_address: str | None = None,  # noqa: ARG002
+        socket_options: Iterable[Any] | None = None,  # noqa: ARG002
+    ) -> httpcore.NetworkStream:
+        """Return a connection to the first address that accepts one. Raises FetchError."""
+        failure: OSError = TimeoutError()
+        for tried, address in enumerate(self._addresses):
+            # An address that does not answer leaves time for the others.
+            share = (self._until - monotonic()) / (len(self._addresses) - tried)
+            if share <= 0:
+                break
+            try:
+                connected = socket.create_connection((str(address), port), share)
+            except OSError as error:
+                failure = error
+                continue
+            connected.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
+            self._connected = _Connection(connected, self._until, _LARGEST_HEAD)
+            return self._connected
+        if isinstance(failure, TimeoutError):
+            raise _late() from failure
+        raise httpcore.ConnectError(str(failure)) from failure
+
+    def begin_content(self) -> None:
+        """End the limit of the response's head."""
+        if self._connected is not None:
+            self._connected.end_limit()
+
+
+class _Connection(httpcore.NetworkStream):
+    """A connection whose steps, together, end in time."""
+
+    # TLS, which is begun on it, is a connection of its own with the same limits.
+
+    def __init__(self, connected: socket.socket, until: float, most: float) -> None:
+        self._socket, self._until, self._most = connected, until, most
+        self._secure: _Connection | None = None
+
+    def end_limit(self) -> None:
+        """End the limit of the bytes that are read."""
+        self._most = float("inf")
+        if self._secure is not None:
+            self._secure.end_limit()
+
+    def read(self, max_bytes: int, timeout: float | None = None) -> bytes:  # noqa: ARG002
+        """Return the next bytes, or b"" at the end. Raises FetchError."""
+        with self._step(httpcore.ReadError):
+            data = self._socket.recv(max_bytes)
+        self._most -= len(data)
+        if self._most < 0:
+            raise _too_large(_LARGEST_HEAD)
+        return data
+
+    def write(self, buffer: bytes, timeout: float | None = None) -> None:  # noqa: ARG002
+        """Send all bytes. Raises FetchError."""
+        while buffer:
+            with self._step(httpcore.WriteError):
+                sent = self._socket.send(buffer)
+            buffer = buffer[sent:]
+
+    def start_tls(
+        self,
+        ssl_context: ssl.SSLContext,
+        server_hostname: str | None = None,
+        timeout: float | None = None,  # noqa: ARG002
+    ) -> httpcore.NetworkStream:
+        """Return the same connection, encrypted. Raises FetchError."""
+        try:
+            with self._step(httpcore.ConnectError):
+                wrapped = ssl_context.wrap_socket(self._socket, server_hostname=server_hostname)
+        except BaseException:
+            self.close()
+            raise
+        self._secure = _Connection(wrapped, self._until, self._most)
+        return self._secure
+
+    def close(self) -> None:
+        """Close the connection."""
+        self._socket.close()
+
+    def get_extra_info(self, info: str) -> Any:  # noqa: ARG002
+        """Return None: httpcore asks for the protocol of TLS, which is always HTTP/1.1."""
+        return None
+
+    @contextmanager
+    def _step(self, failure: type[httpcore.NetworkError]) -> Iterator[None]:
+        left = self._until - monotonic()
+        if left <= 0:
+            raise _late()
+        try:
+            self._socket.settimeout(left)
+            yield
+        except TimeoutError as error:
+            raise _late() from error
+        except OSError as error:
+            raise failure(str(error)) from error
+
+
+def _addresses(host: str, until: float, *, local: bool) -> Sequence[IPv4Address | IPv6Address]:
     try:
-        found = {each[4][0] for each in socket.getaddrinfo(host, None, type=socket.SOCK_STREAM)}
-        addresses = sorted((ip_address(each) for each in found), key=lambda it: (it.version, it))
+        found = [ip_address(each) for each in dict.fromkeys(_looked_up(host, until))]
     except (OSError, UnicodeError, ValueError) as error:
         raise FetchError(say("the name of the host is not known")) from error
     is_local = local and host in LOCAL_HOSTS
-    if not addresses or not all(
-        each.is_loopback if is_local else is_public(each) for each in addresses
-    ):
+    if not found or not all(each.is_loopback if is_local else is_public(each) for each in found):
         raise FetchError(say("the host has a private address"))
-    return addresses[0]
+    return found[:_MOST_ADDRESSES]
 
 
-def is_public(address: IPv4Address | IPv6Address) -> bool:
-    """True if an address belongs to the public internet."""
-    if isinstance(address, IPv6Address):
-        if address.ipv4_mapped is not None:
-            return is_public(address.ipv4_mapped)
-        if any(address in network for network in _TRANSLATED):
-            return False
-    return address.is_global and not (address.is_multicast or address.is_reserved)
+# The names that are looked up now. Requests for the same name share its result.
+_lookups: Final[dict[str, Future[list[str]]]] = {}
+_lookups_lock: Final = threading.Lock()
+
+
+def _looked_up(host: str, until: float) -> list[str]:
+    # Nothing ends the system's resolver, which may take a minute. So it runs in a thread of its
+    # own, which may outlive the exchange.
+    with _lookups_lock:
+        found = _lookups.get(host)
+        if found is None:
+            if len(_lookups) >= _MOST_LOOKUPS:
+                raise _late()
+            found = _lookups[host] = Future()
+            threading.Thread(
+                target=_look_up, args=(host, found), name="lti-name", daemon=True
+            ).start()
+    try:
+        return found.result(max(0.0, until - monotonic()))
+    except TimeoutError as error:
+        raise _late() from error
+
+
+def _look_up(host: str, found: "Future[list[str]]") -> None:
+    try:
+        listed = socket.getaddrinfo(host, None, type=socket.SOCK_STREAM)
+        result, failure = [str(each[4][0]) for each in listed], None
+    except Exception as error:  # noqa: BLE001 - whoever asked gets it
+        result, failure = [], error
+    with _lookups_lock:
+        del _lookups[host]
+    if failure is None:
+        found.set_result(result)
+    else:
+        found.set_exception(failure)

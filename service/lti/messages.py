@@ -97,11 +97,7 @@ def message_in(
     _check_nonce(claims, login)
     _check_kind(claims)
     deployment = _deployment(claims, login)
-    target = claims.get(f"{LTI}target_link_uri")
-    if not isinstance(target, str) or not target:
-        raise LtiError("no-target")
-    if not same_place(target, login.target):
-        raise LtiError("other-target")
+    _check_target(claims, login)
     return _content(claims, registration, deployment)
 
 
@@ -167,6 +163,18 @@ def _check_kind(claims: Mapping[str, Any]) -> None:
     kind = claims.get(f"{LTI}message_type")
     if not isinstance(kind, str) or kind not in KINDS:
         raise LtiError("wrong-message", kind=kind)
+
+
+def _check_target(claims: Mapping[str, Any], login: Login) -> None:
+    target = claims.get(f"{LTI}target_link_uri")
+    # Deep Linking 2.0 does not ask for a target, and some platforms send none. The target of the
+    # login was checked already: it is our registered address.
+    if target is None and claims[f"{LTI}message_type"] == DEEP_LINKING:
+        return
+    if not isinstance(target, str) or not target:
+        raise LtiError("no-target")
+    if not same_place(target, login.target):
+        raise LtiError("other-target")
 
 
 def _deployment(claims: Mapping[str, Any], login: Login) -> str:

@@ -10,10 +10,10 @@ from cryptography.hazmat.primitives.asymmetric.rsa import RSAPublicKey
 from jwt import PyJWK
 from jwt.exceptions import InvalidKeyError, PyJWKError
 
-from service.lti.fetching import TIMEOUT, FetchError, fetch_json
+from service.lti.fetching import FetchError, fetch_json
+from service.lti.platform_threads import PlatformThreads
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration
-from service.translations import say
 
 # How long keys are used without a look whether they are still there (seconds), and how long at
 # most while the platform does not answer.
@@ -39,18 +39,24 @@ class _Known:
 class PlatformKeys:
     """The public keys of platforms, fetched from registered addresses only."""
 
-    def __init__(self, fetch: Fetch = fetch_json, clock: Callable[[], float] = monotonic) -> None:
-        self._fetch, self._clock = fetch, clock
+    def __init__(
+        self,
+        threads: PlatformThreads,
+        fetch: Fetch = fetch_json,
+        clock: Callable[[], float] = monotonic,
+    ) -> None:
+        self._threads, self._fetch, self._clock = threads, fetch, clock
         self._known: dict[tuple[str, str], _Known] = {}
 
     async def key(self, registration: Registration, key_id: str) -> RSAPublicKey:
         """Return the platform's key with this id. Raises LtiError."""
         known = self._known.setdefault((registration.id, registration.jwks_url), _Known())
-        async with known.lock:
-            is_fresh = self._clock() < known.fetched_at + _FRESH
-            may_fetch = self._clock() >= known.tried_at + PAUSE
-            if may_fetch and not (is_fresh and key_id in known.keys):
-                await self._update(known, registration)
+        # A launch with a known key does not wait for a slow platform.
+        if not self._has_fresh(known, key_id):
+            async with known.lock:
+                may_fetch = self._clock() >= known.tried_at + PAUSE
+                if may_fetch and not self._has_fresh(known, key_id):
+                    await self._update(known, registration)
         if self._clock() >= known.fetched_at + _LONGEST:
             raise LtiError("keys-unreachable", reason=known.reason)
         if key_id not in known.keys:
@@ -60,16 +66,19 @@ class PlatformKeys:
             raise LtiError("unusable-key")
         return found
 
+    def _has_fresh(self, known: _Known, key_id: str) -> bool:
+        return key_id in known.keys and self._clock() < known.fetched_at + _FRESH
+
     async def _update(self, known: _Known, registration: Registration) -> None:
         known.tried_at = self._clock()
         local = registration.is_development
         try:
-            # A name may take long to resolve: the thread goes on, and nobody waits for it.
-            async with asyncio.timeout(TIMEOUT + 1):
-                found = await asyncio.to_thread(self._fetch, registration.jwks_url, local=local)
+            found = await self._threads.run(
+                registration.id, lambda: self._fetch(registration.jwks_url, local=local)
+            )
             known.keys = usable_keys(found)
-        except (FetchError, TimeoutError) as error:
-            known.reason = error.args[0] if error.args else say("the platform does not answer")
+        except FetchError as error:
+            known.reason = error.args[0]
         else:
             known.fetched_at, known.reason = self._clock(), ""
 

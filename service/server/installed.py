@@ -79,6 +79,7 @@ def installed_app(
         store=store,
         pages=web_routes(catalogue, tutoring),
         monitor=metrics,
+        public_url=settings.public_url,
     )
     # It also counts the requests that are refused before they reach the application.
     app.state.monitor = metrics
@@ -137,7 +138,8 @@ def _is_here(host: str) -> bool:
 
 
 def _rates(settings: Settings) -> RequestRates | None:
-    if settings.key_rate is None and settings.address_rate is None:
+    given = (settings.key_rate, settings.address_rate, settings.rates_store)
+    if not any(each is not None for each in given):
         return None
     # Imported only here: few installations limit the rate of requests.
     from service.access.rates import Rates, UnusableRatesError, rates_in
@@ -150,6 +152,8 @@ def _rates(settings: Settings) -> RequestRates | None:
             raise SettingsError(joined(": ", [named, error.args[0]])) from error
     store = settings.rates_store.get_secret_value() if settings.rates_store else "memory://"
     try:
-        return Rates(settings.key_rate or "", settings.address_rate or "", store)
+        rates = Rates(settings.key_rate or "", settings.address_rate or "", store)
     except UnusableRatesError as error:
         raise SettingsError(joined(": ", ["DH_GRADER_RATES_STORE", error.args[0]])) from error
+    # An invalid store is refused even if nothing is counted in it.
+    return rates if settings.key_rate or settings.address_rate else None

@@ -120,7 +120,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
             raise ProblemError(HTTPStatus.NOT_FOUND, "The page has no such file.")
         return _file(files[name], files[name].content, _FOR_EVER)
 
-    return WebPages(router, problem_page(assets), tutoring.checking.close, tutoring.drafts)
+    return WebPages(router, problem_page(assets), tutoring.close, tutoring.drafts)
 
 
 def _practice_routes(assets: Assets, access: Access) -> APIRouter:

@@ -48,6 +48,7 @@ from service.attempts.store import AttemptStore
 from service.attempts.tutoring import override
 from service.catalogue import Exercise, shipped_folder
 from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from service.contract.problems import MEDIA_TYPE, PROBLEM_TYPES, TYPE_PREFIX
 from service.courses import roll
 from service.courses.assignments import add_assignment
 from service.courses.links import issue_links
@@ -134,6 +135,14 @@ BODIES: Mapping[str, Any] = {
 _number = count()
 
 
+async def _check_problem(answer: httpx.Response) -> None:
+    """Check that an error has a type that the page of problems lists for its status."""
+    if answer.headers.get("content-type") == MEDIA_TYPE:
+        await answer.aread()
+        name = answer.json()["type"].removeprefix(TYPE_PREFIX)
+        assert PROBLEM_TYPES[name].status == answer.status_code, name
+
+
 @dataclass(frozen=True)
 class Guarded:
     """A service with keys, and the same service without keys (``open_app``)."""
@@ -159,7 +168,10 @@ class Guarded:
         headers = {"authorization": f"Bearer {credential}"} if credential else {}
         transport = httpx.ASGITransport(self.app)
         async with httpx.AsyncClient(
-            transport=transport, base_url=address, headers=headers
+            transport=transport,
+            base_url=address,
+            headers=headers,
+            event_hooks={"response": [_check_problem]},
         ) as client:
             yield client
 

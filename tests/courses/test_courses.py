@@ -10,12 +10,16 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+import httpx
 import pytest
+from sqlalchemy import Connection
 
 from service.access.caller import Scope
-from service.access.key_table import add_key
+from service.access.key_table import add_key, settle
 from service.access.key_text import new_key_text
+from service.access.keys import Secret
 from service.api.turns import ARRIVED
+from service.attempts.storage.database import in_transaction, open_database
 from service.attempts.tutoring import forget
 from service.catalogue import Exercise
 from service.contract.courses import (
@@ -23,6 +27,7 @@ from service.contract.courses import (
     Extension,
     LinksRequest,
     NewAssignment,
+    NewCourse,
     NewLearner,
 )
 from service.courses import learner_view, roll
@@ -30,6 +35,8 @@ from service.courses.assignments import add_assignment, assignments_of, change_a
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links
 from service.courses.results.gradebook import gradebook, missing, written_gradebook
+from service.server.installed import installed_app
+from service.settings import Settings
 from service.translations import ENGLISH
 from service.web.assets import load_assets
 from service.web.courses.course_pages import CourseState, assignment_page
@@ -378,3 +385,48 @@ def test_attempts_outside_of_assignments_have_the_limit_of_the_exercise_file(cla
     class_.hand_in("a")
     outside = asyncio.run(class_.store.standing("scara", "ada", "", None))
     assert (outside.counted, outside.last) == (0, 1)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("public_url", "begin"),
+    [
+        ("https://grader.example.edu/robotics/", "https://grader.example.edu/robotics/learn#dhg_"),
+        (None, "http://other.example/learn#dhg_"),
+    ],
+)
+def test_links_begin_with_the_public_address(
+    tmp_path: Path, public_url: str | None, begin: str
+) -> None:
+    settings = Settings(
+        database=str(tmp_path / "a.db"), secret="s" * 40, public_url=public_url, port=0
+    )
+    engine = open_database(str(tmp_path / "a.db"))
+    text, until = new_key_text(), NOW + timedelta(days=1)
+    digest = Secret("s" * 40).key_digest(text)
+
+    def set_up(connection: Connection) -> None:
+        settle(connection, Secret("s" * 40), NOW)
+        add_key(connection, "tutor", digest, {Scope.TUTOR}, None, NOW, until)
+        roll.add_course(connection, NewCourse(id="robots", title="Robots", zone="UTC"), NOW)
+        roll.add_learners(connection, "robots", [NewLearner(learner="ada", name="Ada")])
+
+    in_transaction(engine, set_up)
+    engine.dispose()
+    app = installed_app(settings)
+
+    async def asked() -> tuple[httpx.Response, httpx.Response]:
+        headers = {"authorization": f"Bearer {text}", "host": "other.example"}
+        transport = httpx.ASGITransport(app)
+        async with (
+            app.router.lifespan_context(app),
+            httpx.AsyncClient(transport=transport, base_url=ADDRESS) as client,
+        ):
+            return (
+                await client.post("/v1/courses/robots/links", json={}, headers=headers),
+                await client.post("/tutor/courses/robots/links.csv", headers=headers),
+            )
+
+    answer, page = asyncio.run(asked())
+    assert answer.json()["links"][0]["link"].startswith(begin)
+    assert f",{begin}" in page.text

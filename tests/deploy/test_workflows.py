@@ -16,6 +16,9 @@ SPEC, COMPONENT = yaml.safe_load_all((ROOT / "templates/grade.yml").read_text(en
 RELEASE: dict[str, Any] = yaml.safe_load(
     (ROOT / ".github/workflows/release.yml").read_text(encoding="utf-8")
 )
+TEST: dict[str, Any] = yaml.safe_load(
+    (ROOT / ".github/workflows/test.yml").read_text(encoding="utf-8")
+)
 RIGHT = "a, alpha, d, theta\n0, 0, 0, q1\nl1, 0, 0, q2\nl2, 0, 0, q3\nl3, 0, 0, 0\n"
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="needs bash")
 
@@ -100,3 +103,26 @@ def test_a_release_has_the_tag_of_its_version(tag: str, code: int, tmp_path: Pat
     done = bash(script, tmp_path, TAG=tag.format(version), GITHUB_OUTPUT=str(output))
     assert done.returncode == code
     assert output.exists() is (code == 0)
+
+
+def test_a_push_runs_the_tests_with_read_only_permissions() -> None:
+    # YAML 1.1 reads the key "on" as true.
+    assert TEST[True].keys() == {"push", "pull_request"}  # type: ignore[index]
+    assert TEST["permissions"] == {"contents": "read"}
+    jobs = TEST["jobs"]
+    assert all("permissions" not in job for job in jobs.values())
+    commands = {name: [each.get("run") for each in job["steps"]] for name, job in jobs.items()}
+    assert {name: list(filter(None, found)) for name, found in commands.items()} == {
+        "quick": ["make install", "make test"],
+        "all": [".ci/run"],
+    }
+    oldest = re.search(r'requires-python = ">=([\d.]+)"', read("pyproject.toml"))
+    assert oldest is not None
+    assert jobs["quick"]["strategy"]["matrix"]["python"] == [oldest[1], "3.x"]
+    for job in jobs.values():
+        assert job["steps"][0]["with"]["persist-credentials"] is False
+        assert job["timeout-minutes"] <= 90
+
+
+def read(name: str) -> str:
+    return (ROOT / name).read_text(encoding="utf-8")

@@ -15,8 +15,9 @@ _INTRODUCTION: Final = f"""\
 # Settings
 
 Every setting is an environment variable. An option of the command line (`--port`) overrides its
-variable. An invalid value prevents startup. So does an unknown `{PREFIX}…` variable, for example a
-typo. The program then ends with exit code 2 and names the variable.
+variable. An invalid value prevents startup, even if an option overrides it. So does an unknown
+`{PREFIX}…` variable, for example a typo. The program then ends with exit code 2 and names the
+variable.
 
 Behind a proxy on another machine you may need one more variable, `FORWARDED_ALLOW_IPS`
 ([Behind nginx](deployment.md#behind-nginx)).
@@ -25,7 +26,11 @@ This page is generated: `python -m tests.docs.settings`."""
 
 # The sections: a heading, an introduction, and the settings in order.
 SECTIONS: Final = (
-    ("The service", "See [Run it for a course](deployment.md).", ("host", "port", "workers")),
+    (
+        "The service",
+        "See [Run it for a course](deployment.md).",
+        ("host", "port", "workers", "public_url"),
+    ),
     (
         "Exercises",
         "See [Write an exercise](write-an-exercise.md).",

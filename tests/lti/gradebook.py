@@ -200,6 +200,10 @@ class Gradebook:
             return Response(status_code=409)
         if stamp > self.now() or "." not in body["timestamp"]:
             return Response(status_code=400)
+        # A score is not from before what it is for.
+        handed_in = body.get("submission", {}).get("submittedAt", body["timestamp"])
+        if stamp < datetime.fromisoformat(handed_in):
+            return Response(status_code=400)
         self._note(body, item, stamp)
         return Response(status_code=200)
 

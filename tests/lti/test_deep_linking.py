@@ -197,3 +197,19 @@ def test_the_addresses_of_a_platform(platform: Platform) -> None:
         is_own = replace(known, issuer=issuer, auth_url=auth).is_own(address)
         told.append((issuer, address, is_own))
     assert told == ADDRESSES
+
+
+@pytest.mark.parametrize("target", ["absent", None])
+def test_a_platform_may_leave_out_the_target(tool: Tool, target: str | None) -> None:
+    def without_target(claims: dict[str, Any]) -> None:
+        del claims[f"{LTI}target_link_uri"]
+        if target is None:
+            claims[f"{LTI}target_link_uri"] = None
+
+    link = deep_linking(f"{tool.platform.address}/return?course=1")
+    tool.platform.habits[:] = [link, without_target]
+    page = tool.launch("turing")
+    assert page.status_code == 200
+    chosen = {"exercise": ["scara"], "points:scara": "2.5", "as": "several"}
+    [item] = answer(tool, submitted(tool, page.text, action="add", **chosen))[f"{DL}content_items"]
+    assert item["url"] == "http://127.0.0.1:8000/lti/launch"

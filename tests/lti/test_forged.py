@@ -140,6 +140,9 @@ LINKING: list[tuple[str, Callable[[Claims], None], str]] = [
     ("much data", setting("data", "x" * 16_001), "bad-claim"),
     ("another nonce", put("nonce", "x" * 43), "wrong-nonce"),
     ("another deployment", lti("deployment_id", "other"), "other-deployment"),
+    ("another target", lti("target_link_uri", "https://evil.example/lti/launch"), "other-target"),
+    ("an empty target", lti("target_link_uri", ""), "no-target"),
+    ("a number as target", lti("target_link_uri", 1), "no-target"),
 ]  # fmt: skip
 
 

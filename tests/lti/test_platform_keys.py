@@ -6,6 +6,7 @@ import pytest
 
 from service.lti.fetching import FetchError
 from service.lti.platform_keys import PlatformKeys
+from service.lti.platform_threads import PlatformThreads
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration
 from tests.lti.platform import Platform, public_jwk
@@ -21,7 +22,7 @@ class Clock:
         del values["deployments"]
         times: Any = dict.fromkeys(("launched_at", "refused_at", "refusal"))
         self.registration = Registration(**values, created_at=datetime.now(UTC), **times)
-        self.keys = PlatformKeys(self.fetch, lambda: self.now)
+        self.keys = PlatformKeys(PlatformThreads(), self.fetch, lambda: self.now)
 
     def fetch(self, *_: object, **__: object) -> Any:
         self.count += 1

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar
 
-from fastapi import Path
+from fastapi import Path, Request
 
 from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
 from service.api.http.problems import ProblemError, message_of
@@ -75,6 +75,13 @@ async def _done(
         return await ask(store, lambda it: it.write(work) if writes else it.read(work))
     except CourseError as error:
         raise course_problem(error) from error
+
+
+def service_address(request: Request) -> str:
+    """Return the address with which links to this service begin, without a trailing slash."""
+    # Without the setting, the header Host decides, which the caller's own browser sends.
+    public_url: str | None = request.app.state.public_url
+    return public_url or str(request.base_url).rstrip("/")
 
 
 def course_problem(error: CourseError) -> ProblemError:

@@ -10,7 +10,7 @@ from service.api.courses.asking import AssignmentId, CourseId, course_problem, r
 from service.api.http.lookup import Catalogue
 from service.api.recording.store import private, private_json
 from service.contract.attempts import Learner
-from service.contract.courses import Gradebook, GradebookFormat, MissingList
+from service.contract.courses import CourseName, Gradebook, GradebookFormat, MissingList
 from service.contract.own_courses import OwnCourses
 from service.courses.errors import unknown_learner
 
@@ -53,9 +53,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
     )
     async def show_gradebook(
         course_id: CourseId,
-        assignment: Annotated[
-            str | None, Query(max_length=64, description="Only this assignment.")
-        ] = None,
+        assignment: Annotated[CourseName | None, Query(description="Only this assignment.")] = None,
         form: Annotated[
             GradebookFormat,
             Query(

@@ -5,7 +5,13 @@ from typing import TYPE_CHECKING
 
 from fastapi import APIRouter, Request, Response
 
-from service.api.courses.asking import CourseId, changing, course_problem, write
+from service.api.courses.asking import (
+    CourseId,
+    changing,
+    course_problem,
+    service_address,
+    write,
+)
 from service.api.http.bodies import read_body
 from service.api.permissions.access import Access
 from service.api.recording.store import private
@@ -30,7 +36,9 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     async def create_links(request: Request, course_id: CourseId) -> Response:
         """Return the personal links of learners; for tutors of the course.
 
-        A learner without a valid link gets a new one, and so does every learner with `renew`.
+        A learner without a valid link gets a new one, and so does every learner with `renew`. The
+        links begin with the setting `DH_GRADER_PUBLIC_URL`, or else with the address of this
+        request.
         The part after `#` is a key: the learner's page sends it in the header
         `Authorization: Bearer`, and browsers never send it otherwise.
         """
@@ -40,7 +48,7 @@ def routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         secret = None if access.keys is None else access.keys.secret
         if secret is None:
             raise course_problem(links_need_a_secret())
-        known, address, now = secret, str(request.base_url), datetime.now(UTC)
+        known, address, now = secret, service_address(request), datetime.now(UTC)
         return private(
             LinkList(
                 links=await write(

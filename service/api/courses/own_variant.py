@@ -8,9 +8,10 @@ The query ``?course=…&assignment=…`` names the assignment; the token names t
 from typing import TYPE_CHECKING, Any, Final
 
 from fastapi import Request
-from pydantic import TypeAdapter, ValidationError
+from pydantic import TypeAdapter
 
 from service.api.courses.asking import read
+from service.api.http.parameters import QueryParameter, with_parameters
 from service.api.http.problems import invalid
 from service.api.permissions.access import Access
 from service.api.permissions.access_problems import access_problem
@@ -22,24 +23,19 @@ if TYPE_CHECKING:  # it loads the drivers of databases
     from service.attempts.store import AttemptStore
 
 _NAME: Final = TypeAdapter(CourseName)
-_TEXT: Final = {
-    "course": "The id of a course of the learner with this token.",
-    "assignment": "The id of an assignment: the exercise is the learner's own variant in it.",
-}
+_PARAMETERS: Final = (
+    QueryParameter("course", "The id of a course of the learner with this token.", _NAME),
+    QueryParameter(
+        "assignment",
+        "The id of an assignment: the exercise is the learner's own variant in it.",
+        _NAME,
+    ),
+)
 
 
 def of_assignment(options: dict[str, Any]) -> dict[str, Any]:
     """Return FastAPI's arguments for a route with the parameters ``course`` and ``assignment``."""
-    extra = options.get("openapi_extra", {})
-    own = [
-        {"name": name, "in": "query", "required": False, "description": text, "schema": _SCHEMA}
-        for name, text in _TEXT.items()
-    ]
-    parameters = [*extra.get("parameters", ()), *own]
-    return {**options, "openapi_extra": {**extra, "parameters": parameters}}
-
-
-_SCHEMA: Final = _NAME.json_schema()
+    return with_parameters(options, *_PARAMETERS)
 
 
 class OwnVariants:
@@ -58,7 +54,7 @@ class OwnVariants:
             return exercise
         from service.courses.dealing import assigned
 
-        course, assignment = (_named(request, name) for name in _TEXT)
+        course, assignment = (_named(request, each.name) for each in _PARAMETERS)
         caller = self._access.caller(request)
         learner = caller.learner
         if learner is None:
@@ -72,9 +68,9 @@ class OwnVariants:
 
 
 def _named(request: Request, name: str) -> str:
-    try:
-        return _NAME.validate_python(request.query_params.get(name))
-    except ValidationError as error:
+    # The route has checked the values that are there.
+    value = request.query_params.get(name)
+    if value is None:
         message = say("Name a course and an assignment.")
-        detail = {"type": "value", "loc": (name,), "msg": message}
-        raise invalid([detail]) from error
+        raise invalid([{"type": "value", "loc": (name,), "msg": message}])
+    return value

@@ -7,16 +7,16 @@ price, which reduces the points of later attempts.
 from collections.abc import Collection
 from functools import partial
 from http import HTTPStatus
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Any
 
-from fastapi import APIRouter, Path, Request, Response
+from fastapi import APIRouter, Request, Response
 
 from service.access.caller import Caller
 from service.api.courses.asking import read, write
 from service.api.document.openapi import posting
 from service.api.http.bodies import read_body
 from service.api.http.language import language_of
-from service.api.http.lookup import Catalogue, exercise_or_404
+from service.api.http.lookup import AttemptId, Catalogue, exercise_or_404
 from service.api.http.problems import ProblemError, message_of
 from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
@@ -64,9 +64,7 @@ def routes(
             )
         ),
     )
-    async def take_hint(
-        request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
-    ) -> Response:
+    async def take_hint(request: Request, attempt_id: AttemptId) -> Response:
         """Return a step of the hint for a message of this attempt, and record that it was taken.
 
         Its price reduces the points of the learner's later attempts at the exercise. The same step

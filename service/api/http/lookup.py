@@ -15,7 +15,10 @@ from service.submissions.lookup import UnknownExerciseError, find_exercise, near
 from service.translations import paragraph, say
 
 Catalogue = Mapping[str, Exercise]
-ExerciseId = Annotated[str, Path(description="The id of an exercise.", examples=["stanford-arm"])]
+ExerciseId = Annotated[
+    str, Path(max_length=200, description="The id of an exercise.", examples=["stanford-arm"])
+]
+AttemptId = Annotated[str, Path(max_length=100, description="The id of an attempt.")]
 # A place in a body: the keys and indices that lead to it.
 Location = tuple[str | int, ...]
 

@@ -9,13 +9,14 @@ from typing import Any, Final
 
 from fastapi import FastAPI, Request, Response
 from fastapi.exceptions import RequestValidationError
+from fastapi.routing import iter_route_contexts
 from starlette.exceptions import HTTPException
 from starlette.requests import ClientDisconnect
 
 from service.api.http.language import language_of
 from service.api.http.request_context import current_request
 from service.api.http.told_answer import language_headers
-from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX
+from service.contract.problems import MEDIA_TYPE, TYPE_PREFIX, general_name
 from service.submissions.field_errors import field_error
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.translations import ENGLISH, Language, Sentence, paragraph, say, told
@@ -32,7 +33,8 @@ Detail = Mapping[str, str | int]
 class ProblemError(Exception):
     """An error that is sent as the response; its attributes are the fields of the response.
 
-    ``name`` is the last part of the problem type (RFC 9457). ``challenges`` are the headers
+    ``name`` is the last part of the problem type (RFC 9457), one of ``PROBLEM_TYPES``; without a
+    name, the problem has the general type of its status. ``challenges`` are the headers
     ``WWW-Authenticate``.
     """
 
@@ -66,7 +68,7 @@ class ProblemError(Exception):
         """Return the error as JSON; ``instance`` is the path that was requested."""
         translation = language.translation
         document: dict[str, Any] = {
-            "type": f"{TYPE_PREFIX}{self.name}" if self.name else "about:blank",
+            "type": TYPE_PREFIX + (self.name or general_name(self.status)),
             "title": told(self.title or self.status.phrase, translation),
             "status": int(self.status),
             "detail": told(self.detail, translation),
@@ -202,7 +204,7 @@ def _problem(request: Request, error: Exception) -> ProblemError:
             detail = "The request ended before its body was complete."
             return ProblemError(HTTPStatus.BAD_REQUEST, detail)
         case HTTPException(status_code=HTTPStatus.METHOD_NOT_ALLOWED):
-            return _other_method(request, error)
+            return _other_method(request)
         case HTTPException(status_code=HTTPStatus.REQUEST_ENTITY_TOO_LARGE):
             return too_large()
         case HTTPException(status_code=HTTPStatus.NOT_FOUND, detail=HTTPStatus.NOT_FOUND.phrase):
@@ -215,8 +217,15 @@ def _problem(request: Request, error: Exception) -> ProblemError:
             return failed()
 
 
-def _other_method(request: Request, error: HTTPException) -> ProblemError:
-    methods = set((error.headers or {}).get("Allow", "").replace(" ", "").split(",")) - {""}
+def _other_method(request: Request) -> ProblemError:
+    # The framework names only the methods of one route, and a path may have several.
+    path = request.scope["path"].removeprefix(request.scope.get("root_path", ""))
+    methods = {
+        method
+        for route in iter_route_contexts(request.app.router.routes)
+        if route.methods and route.path_regex.fullmatch(path)
+        for method in route.methods
+    }
     methods |= {"HEAD", "OPTIONS"} if "GET" in methods else {"OPTIONS"}
     allow = ", ".join(sorted(methods))
     detail = say(

@@ -2,31 +2,29 @@
 
 from collections.abc import Mapping
 from http import HTTPStatus
-from typing import Any, Final
+from typing import Annotated, Any, Final
 
 from fastapi import Response
+from pydantic import StringConstraints, TypeAdapter
 
 from service.api.http.language import LANGUAGE_FIELD
+from service.api.http.parameters import QueryParameter, with_parameters
 from service.translations import Language
 
-_PARAMETER: Final = {
-    "name": LANGUAGE_FIELD,
-    "in": "query",
-    "required": False,
-    "description": "The language of sentences for people: `en`, `de`, `es`, `fr` or `zh`. Default: "
+_LANGUAGE: Final = QueryParameter(
+    LANGUAGE_FIELD,
+    "The language of sentences for people: `en`, `de`, `es`, `fr` or `zh`. Default: "
     "`Accept-Language`. A sentence without a translation is in English, and so is an answer in a "
     "language that the service does not have.",
-    "schema": {"type": "string", "maxLength": 35},
-}
+    TypeAdapter(Annotated[str, StringConstraints(max_length=35)]),
+)
 # Caches keep an answer for each language.
 _VARY: Final = {"Vary": "Accept-Language, Cookie"}
 
 
 def in_languages(options: dict[str, Any]) -> dict[str, Any]:
     """Return FastAPI's arguments for a route that also has the query parameter ``lang``."""
-    extra = options.get("openapi_extra", {})
-    parameters = [*extra.get("parameters", ()), _PARAMETER]
-    return {**options, "openapi_extra": {**extra, "parameters": parameters}}
+    return with_parameters(options, _LANGUAGE)
 
 
 def language_headers(language: Language) -> dict[str, str]:

@@ -7,13 +7,13 @@ from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import AfterValidator, AwareDatetime, BeforeValidator, StringConstraints
 
 from service.access.caller import Caller
 from service.api.document.openapi import MAY_NEED_KEY, refusals
 from service.api.http.language import language_of
-from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.http.lookup import AttemptId, Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import invalid
 from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
@@ -135,9 +135,7 @@ def routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -
         response_description="The attempt with its answers and reports.",
         **in_languages({"responses": _REFUSED, "openapi_extra": MAY_NEED_KEY}),
     )
-    async def show_attempt(
-        request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
-    ) -> Response:
+    async def show_attempt(request: Request, attempt_id: AttemptId) -> Response:
         """Show a recorded attempt with its answers and its report, in the reader's language.
 
         Tutors also see earlier reports and overrides.

@@ -6,7 +6,7 @@ from functools import partial
 from http import HTTPStatus
 from typing import IO, TYPE_CHECKING, Annotated, Any, Final
 
-from fastapi import APIRouter, Path, Query, Request, Response
+from fastapi import APIRouter, Query, Request, Response
 from starlette.background import BackgroundTask
 from starlette.responses import StreamingResponse
 
@@ -15,7 +15,7 @@ from service.api.document.openapi import MAY_NEED_KEY, posting, refusals
 from service.api.http.bodies import read_body
 from service.api.http.bounded_work import BoundedWork
 from service.api.http.language import language_of
-from service.api.http.lookup import Catalogue, ExerciseId, exercise_or_404
+from service.api.http.lookup import AttemptId, Catalogue, ExerciseId, exercise_or_404
 from service.api.http.problems import ProblemError, invalid, message_of
 from service.api.http.told_answer import in_languages, told_json
 from service.api.permissions.access import Access
@@ -130,9 +130,7 @@ def routes(
         response_description="The attempt with its new points.",
         **posting(OverrideRequest, AttemptSummary, "override", *_REFUSED),
     )
-    async def override_attempt(
-        request: Request, attempt_id: Annotated[str, Path(description="The id of an attempt.")]
-    ) -> Response:
+    async def override_attempt(request: Request, attempt_id: AttemptId) -> Response:
         """Give an attempt other points than its report does, with a reason; for tutors.
 
         The service keeps the author, the reason and the moment, also of points that are

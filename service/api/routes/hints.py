@@ -38,7 +38,7 @@ from service.hints.steps import STEPS, Topic, hint_step, may_have_hints
 from service.kinematics.dh import Convention
 from service.translations import say
 
-_RULE = Path(description="The name of a rule.", examples=["link_twist"])
+_RULE = Path(max_length=60, description="The name of a rule.", examples=["link_twist"])
 
 
 def routes(

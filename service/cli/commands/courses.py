@@ -195,8 +195,12 @@ def import_learners(
 def links(
     course: CourseIdArgument,
     address: Annotated[
-        str, typer.Option(help="The address of the service, such as https://grader.example.edu.")
-    ] = _LOCAL,
+        str | None,
+        typer.Option(
+            help="The address of the service, such as https://grader.example.edu. "
+            "\\[DH_GRADER_PUBLIC_URL]"
+        ),
+    ] = None,
     learner: LearnerOption = None,
     renew: Annotated[
         bool, typer.Option("--renew", help="Make new links, and end the old ones.")
@@ -218,14 +222,16 @@ def links(
         )
         tell(ended)
         return
-    secret = load_settings().known_secret()
+    settings = load_settings()
+    secret = settings.known_secret()
     if secret is None:
         give_up(say("Personal links need a secret: set DH_GRADER_SECRET or DH_GRADER_SECRET_FILE."))
+    address = address or settings.public_url or _LOCAL
     if address == _LOCAL:
         complain(
             say(
                 "The links lead to {address}, which only this machine can open. Give the "
-                "address of the service with --address https://….",
+                "address of the service by DH_GRADER_PUBLIC_URL, or with --address https://….",
                 address=_LOCAL,
             )
         )

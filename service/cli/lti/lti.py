@@ -72,7 +72,8 @@ def register(
         str | None, typer.Option(help="The audience of access tokens. \\[the token address]")
     ] = None,
     address: Annotated[
-        str | None, typer.Option(help="This service: https://grader.example.edu")
+        str | None,
+        typer.Option(help="This service: https://grader.example.edu \\[DH_GRADER_PUBLIC_URL]"),
     ] = None,
     zone: Annotated[str | None, typer.Option(help="The time zone of its courses. [UTC]")] = None,
     deployment: Annotated[
@@ -99,6 +100,8 @@ def register(
         "is_development": development or None,
     }
     given |= {key: value for key, value in options.items() if value is not None}
+    if own := load_settings().public_url:
+        given.setdefault("address", own)
     try:
         new = NewRegistration.model_validate(given)
     except ValidationError as error:

@@ -4,6 +4,7 @@ import base64
 import hashlib
 import json
 from collections.abc import Mapping
+from math import inf
 from time import monotonic
 from typing import Any, Final
 from urllib.parse import urljoin
@@ -23,6 +24,8 @@ READ: Final = f"{_SCOPE}asset.readonly"
 REPORT: Final = f"{_SCOPE}report"
 _JSON: Final = {"Content-Type": "application/json"}
 _MOST_REDIRECTS: Final = 3
+# How long all files of a submission may take (seconds).
+_FILES_TIME: Final = 20.0
 
 
 class NoFileError(Exception):
@@ -56,23 +59,28 @@ class PlatformFiles:
             if error.name != "stamp":
                 raise
 
-    def content_of(self, registration: Registration, file: FileAtPlatform) -> bytes:
-        """Return a file's content. Raises NoFileError, or ScoreError if a later try may succeed."""
+    def content_of(
+        self, registration: Registration, file: FileAtPlatform, latest: float = inf
+    ) -> bytes:
+        """Return a file's content. Raises NoFileError, or ScoreError if a later try may succeed.
+
+        ``latest`` is the time of ``monotonic`` at which the transfer ends at the latest.
+        """
         # A platform may redirect to another host. The access token is sent to the first host only.
-        local, until = registration.is_development, monotonic() + TIMEOUT
+        local, until = registration.is_development, min(latest, monotonic() + TIMEOUT)
         try:
             asked = self._services.asked(
-                registration, file.url, "GET", READ, {"headers": {}}, redirects=True
+                registration, file.url, "GET", READ, {"headers": {}, "until": until}, redirects=True
             )
             url = file.url
             with asked as response:
                 if not response.is_redirect:
-                    return _checked(content(response, until, MAX_BODY_SIZE), file)
+                    return _checked(content(response, MAX_BODY_SIZE), file)
                 url = urljoin(url, response.headers.get("location", ""))
             for _ in range(_MOST_REDIRECTS):
-                with answer(url, local=local) as response:
+                with answer(url, local=local, until=until) as response:
                     if response.is_success:
-                        return _checked(content(response, until, MAX_BODY_SIZE), file)
+                        return _checked(content(response, MAX_BODY_SIZE), file)
                     if not response.is_redirect:
                         raise FetchError(say("the status is {status}", status=response.status_code))
                     url = urljoin(url, response.headers.get("location", ""))
@@ -91,9 +99,10 @@ class PlatformFiles:
     ) -> dict[str, bytes | NoFileError]:
         """Return each file's content or error, by file id. Raises ScoreError."""
         found: dict[str, bytes | NoFileError] = {}
+        latest = monotonic() + _FILES_TIME
         for each in files.assets:
             try:
-                found[each.asset_id] = self.content_of(registration, each)
+                found[each.asset_id] = self.content_of(registration, each, latest)
             except NoFileError as error:
                 found[each.asset_id] = error
         return found

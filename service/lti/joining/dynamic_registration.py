@@ -3,11 +3,10 @@
 import json
 from collections.abc import Mapping
 from http import HTTPStatus
-from time import monotonic
 from typing import Any, Final
 
 from service.formats.shared.plain_text import visible
-from service.lti.fetching import TIMEOUT, FetchError, answer, content
+from service.lti.fetching import FetchError, answer, content
 from service.lti.joining.invitations import Invitation
 from service.lti.joining.tool_configuration import registration_request
 from service.lti.registrations import RegistrationError, origin_of, unusable
@@ -74,9 +73,8 @@ def register_at(invitation: Invitation, configuration: str, token: str) -> dict[
 
 def _asked(url: str, method: str, *, local: bool, **more: Any) -> dict[str, Any]:
     # No redirect is followed, because the request contains the registration token.
-    until = monotonic() + TIMEOUT
     with answer(url, method, local=local, **more) as response:
-        text = content(response, until)
+        text = content(response)
         if response.status_code not in (HTTPStatus.OK, HTTPStatus.CREATED):
             said = visible(" ".join(text.decode(errors="replace").split())[:_LONGEST_ANSWER])
             raise FetchError(

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from http import HTTPStatus
 from time import monotonic
 from typing import Any, Final
-from urllib.parse import urljoin
+from urllib.parse import parse_qs, urljoin, urlsplit, urlunsplit
 
 from service.contract.courses import MOST_LEARNERS
 from service.formats.shared.plain_text import visible
@@ -20,8 +20,10 @@ _MEDIA_TYPE: Final = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json"
 # Limits of what a platform may send.
 MOST_PAGES: Final = 200
 LARGEST_PAGE: Final = 4 * 1024 * 1024
-# How long a page may take (seconds): large courses take platforms a while.
-_PAGE_TIME: Final = 30.0
+# How long all pages together may take (seconds), and the learners that we ask for on one page: a
+# page of a whole course would take platforms longer than one exchange may.
+_ROSTER_TIME: Final = 60.0
+_PAGE_SIZE: Final = 200
 _LONGEST_ID: Final = 255
 _LONGEST_NAME: Final = 200
 
@@ -55,8 +57,10 @@ def read_members(registration: Registration, url: str, token: str) -> list[Membe
 def _pages(registration: Registration, url: str, token: str) -> Iterator[Mapping[str, Any]]:
     # All pages must have the same origin.
     local, first = registration.is_development, url
+    until = monotonic() + _ROSTER_TIME
+    url = _in_pages(url)
     for _ in range(MOST_PAGES):
-        page, following = _page(url, token, local=local)
+        page, following = _page(url, token, until, local=local)
         yield page
         if not following:
             return
@@ -66,23 +70,31 @@ def _pages(registration: Registration, url: str, token: str) -> Iterator[Mapping
     raise FetchError(say("the roster has more than {most} pages", most=MOST_PAGES))
 
 
-def _page(url: str, token: str, *, local: bool) -> tuple[Mapping[str, Any], str]:
+def _page(url: str, token: str, until: float, *, local: bool) -> tuple[Mapping[str, Any], str]:
     # The address of the next page may be "".
     headers = {"Authorization": f"Bearer {token}", "Accept": _MEDIA_TYPE}
-    until = monotonic() + _PAGE_TIME
-    with answer(url, local=local, headers=headers, timeout=_PAGE_TIME) as response:
+    with answer(url, local=local, headers=headers, until=until) as response:
         if response.status_code != HTTPStatus.OK:
             raise FetchError(
                 say("the platform does not give the roster ({status})", status=response.status_code)
             )
         try:
-            page = json.loads(content(response, until, LARGEST_PAGE))
+            page = json.loads(content(response, LARGEST_PAGE))
         except (ValueError, RecursionError) as error:
             raise FetchError(say("the roster is not JSON")) from error
         following = response.links.get("next", {}).get("url", "")
     if not isinstance(page, dict):
         raise FetchError(say("the answer has no list of members"))
     return page, following
+
+
+def _in_pages(url: str) -> str:
+    # The platform may choose another size. A size in its own address stays.
+    parts = urlsplit(url)
+    if "limit" in parse_qs(parts.query):
+        return url
+    query = "&".join(filter(None, (parts.query, f"limit={_PAGE_SIZE}")))
+    return urlunsplit(parts._replace(query=query))
 
 
 def _member(entry: Any) -> Member | None:

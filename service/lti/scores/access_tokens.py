@@ -6,7 +6,6 @@ import secrets
 from collections.abc import Callable, Mapping
 from datetime import datetime, timedelta
 from http import HTTPStatus
-from time import monotonic
 from typing import Final
 
 import jwt
@@ -14,7 +13,7 @@ from sqlalchemy import Engine
 
 from service.access.keys import Secret
 from service.attempts.storage.database import in_transaction
-from service.lti.fetching import TIMEOUT, FetchError, answer, content
+from service.lti.fetching import FetchError, answer, content
 from service.lti.own_keys import SigningKey, ensure_key, signing_key
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration
@@ -79,14 +78,13 @@ def fetched_token(
         "client_assertion": jwt.encode(claims, key.private_key, "RS256", {"kid": key.id}),
         "scope": scopes,
     }
-    until = monotonic() + TIMEOUT
     local = registration.is_development
     try:
         with answer(registration.token_url, "POST", local=local, data=fields) as response:
             if response.status_code != HTTPStatus.OK:
                 reason = say("the status is {status}", status=response.status_code)
                 raise LaterError("token-refused", seconds_to_wait(response.headers), reason=reason)
-            found = json.loads(content(response, until))
+            found = json.loads(content(response))
     except FetchError as error:
         raise LaterError("token-refused", reason=error) from error
     except (ValueError, RecursionError) as error:

@@ -11,7 +11,7 @@ from urllib.parse import urlencode, urljoin, urlsplit, urlunsplit
 
 import httpx
 
-from service.lti.fetching import TIMEOUT, FetchError, TooLargeError, answer, content
+from service.lti.fetching import FetchError, TooLargeError, answer, content
 from service.lti.registrations import Registration, origin_of, unusable
 from service.lti.scores.access_tokens import AccessTokens, seconds_to_wait
 from service.lti.scores.line_items import CHANGE, READ, SEND
@@ -34,6 +34,8 @@ _BUSY: Final = {
 # Another line item may take the score.
 _NOT_THERE: Final = {HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.GONE}
 _MOST_PAGES: Final = 20
+# How long the search for a line item may take, with all pages (seconds).
+_SEARCH_TIME: Final = 15.0
 
 
 class NotThereError(RefusedError):
@@ -78,9 +80,8 @@ class GradeServices:
             "tag": "dh-grader",
         }
         sent = {"content": json.dumps(item).encode(), "headers": {"Content-Type": _ITEM}}
-        until = monotonic() + TIMEOUT
         with self.asked(registration, column.lineitems_url, "POST", CHANGE, sent) as response:
-            made = _json(response, until)
+            made = _json(response)
         return _item_address(made, column.lineitems_url), True
 
     def found_line_item(self, registration: Registration, column: Column) -> str | None:
@@ -89,12 +90,12 @@ class GradeServices:
         if column.lineitems_url is None or not scopes:
             return None
         url: str | None = _with_query(column.lineitems_url, resource_link_id=column.link)
+        until = monotonic() + _SEARCH_TIME
         for _ in range(_MOST_PAGES):
             assert url is not None
-            until = monotonic() + TIMEOUT
-            asked = {"headers": {"Accept": _ITEMS}}
+            asked = {"headers": {"Accept": _ITEMS}, "until": until}
             with self.asked(registration, url, "GET", scopes, asked) as response:
-                items, following = _json(response, until), response.links.get("next", {}).get("url")
+                items, following = _json(response), response.links.get("next", {}).get("url")
             for each in items if isinstance(items, list) else ():
                 if isinstance(each, dict) and each.get("resourceLinkId") == column.link:
                     return _item_address(each, column.lineitems_url)
@@ -173,9 +174,9 @@ def _is_used_up(headers: Mapping[str, str]) -> bool:
         return False
 
 
-def _json(response: httpx.Response, until: float) -> Any:
+def _json(response: httpx.Response) -> Any:
     try:
-        return json.loads(content(response, until))
+        return json.loads(content(response))
     except (ValueError, RecursionError) as error:
         raise ThisLaterError("unusable-answer", reason=say("it is not JSON")) from error
 

@@ -128,7 +128,13 @@ def _is_replaced(connection: Connection, row: Row[Any]) -> bool:
 def _taken(
     connection: Connection, row: Row[Any], found: LearnerScore, sender: str, now: datetime
 ) -> TakenScore:
-    stamp = now - _PAST if row.stamp is None else max(now - _PAST, row.stamp + _STEP)
+    later_than = [now - _PAST]
+    if row.stamp is not None:
+        later_than.append(row.stamp + _STEP)
+    if found.submitted_at is not None:
+        # A score is not from before what it is for.
+        later_than.append(found.submitted_at)
+    stamp = max(later_than)
     stamp = stamp.replace(microsecond=stamp.microsecond // 1000 * 1000)
     values = {
         "points": found.points,

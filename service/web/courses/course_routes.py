@@ -8,7 +8,14 @@ from urllib.parse import parse_qs
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response
 
-from service.api.courses.asking import AssignmentId, CourseId, course_problem, read, write
+from service.api.courses.asking import (
+    AssignmentId,
+    CourseId,
+    course_problem,
+    read,
+    service_address,
+    write,
+)
 from service.api.http.bodies import validated
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue
@@ -158,7 +165,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
             raise course_problem(links_need_a_secret())
         wanted = validated(LinksRequest, {"learners": one, "renew": one is not None})
         known = secret
-        base, now = str(request.base_url), datetime.now(UTC)
+        base, now = service_address(request), datetime.now(UTC)
         found = await write(store, lambda it: issue_links(it, course_id, wanted, known, base, now))
         attachment = f'attachment; filename="links-{course_id}.csv"'
         headers = {**NO_STORE, "Content-Disposition": attachment}

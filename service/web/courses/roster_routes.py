@@ -1,6 +1,5 @@
 """The route that reads a course's roster, the platform's list of its members (LTI)."""
 
-import asyncio
 from datetime import UTC, datetime
 from http import HTTPStatus
 
@@ -48,7 +47,9 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
         except RosterError as error:
             raise course_problem(CourseError("unusable", message_of(error))) from error
         try:
-            members = await asyncio.to_thread(read_roster, asked)
+            members = await tutoring.platforms.run(
+                asked.registration.id, lambda: read_roster(asked)
+            )
         except RosterError as error:
             content = roster_page(
                 course, None, told(message_of(error), language.translation), assets, language

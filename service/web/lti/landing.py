@@ -16,6 +16,7 @@ from service.lti.handed_files.platform_files import PlatformFiles
 from service.lti.linking import Landing, enter, pseudonym
 from service.lti.logins import Login, use_login
 from service.lti.messages import DEEP_LINKING, REPORT, SETTINGS, LaunchMessage
+from service.lti.platform_threads import PlatformThreads
 from service.lti.roles import LtiRole
 from service.lti.scores.access_tokens import AccessTokens, available_key
 from service.lti.scores.sender import utc_now
@@ -43,15 +44,18 @@ class Landings:
         store: AttemptStore,
         keys: Keys,
         secret: Secret,
+        platforms: PlatformThreads,
         feedback: FeedbackLevel = FeedbackLevel.FULL,
     ) -> None:
         """``feedback`` is the highest feedback level for students."""
         self.catalogue, self.assets, self.store = catalogue, assets, store
-        self.keys, self.secret = keys, secret
+        self.keys, self.secret, self.platforms = keys, secret, platforms
         self.platform_files = PlatformFiles(
             AccessTokens(utc_now, lambda: available_key(store.engine, secret, utc_now()))
         )
-        self._reports = ReportPages(assets, store, secret, catalogue, feedback, self.platform_files)
+        self._reports = ReportPages(
+            assets, store, secret, catalogue, feedback, self.platform_files, platforms
+        )
 
     async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
         """Record a launch, and return the page that it opens. Raises LtiError."""

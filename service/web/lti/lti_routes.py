@@ -62,8 +62,16 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     from service.web.lti.platforms import platform_routes
     from service.web.lti.tutor_forms import tutor_forms
 
-    landings = Landings(catalogue, assets, tutoring.store, keys, keys.secret, tutoring.feedback)
-    platform_keys = PlatformKeys()
+    landings = Landings(
+        catalogue,
+        assets,
+        tutoring.store,
+        keys,
+        keys.secret,
+        tutoring.platforms,
+        tutoring.feedback,
+    )
+    platform_keys = PlatformKeys(tutoring.platforms)
     launching = _Launching(assets, tutoring, platform_keys)
 
     async def login(fields: Mapping[str, str], language: Language) -> Response:

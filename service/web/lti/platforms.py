@@ -2,7 +2,6 @@
 
 # It also shows their last launches and our keys.
 
-import asyncio
 from datetime import UTC, datetime
 from http import HTTPStatus
 from typing import TYPE_CHECKING, Annotated, NamedTuple
@@ -92,7 +91,9 @@ def platform_routes(landings: Landings) -> APIRouter:
             raise ProblemError(HTTPStatus.NOT_FOUND, message_of(error)) from error
         except LtiError as error:
             raise ProblemError(HTTPStatus.SERVICE_UNAVAILABLE, message_of(error)) from error
-        lines = await asyncio.to_thread(lambda: tuple(check_registration(found, key)))
+        lines = await landings.platforms.run(
+            found.id, lambda: tuple(check_registration(found, key))
+        )
         return await answer(request, found.id, lines)
 
     return router

@@ -20,6 +20,7 @@ from service.api.http.told_answer import language_headers
 from service.api.permissions.access import Access
 from service.catalogue import Exercise, FeedbackLevel, Robot
 from service.catalogue.drafts import Drafts
+from service.lti.platform_threads import PlatformThreads
 from service.translations import say
 from service.web.assets import Assets
 from service.web.page_answer import page_answer
@@ -43,7 +44,8 @@ class Tutoring:
     """
 
     # ``folders`` have the exercise files, and the editor saves in ``editor_dir``. ``checking``
-    # checks the text in the editor. ``drafts`` has the exercises in the preview.
+    # checks the text in the editor. ``drafts`` has the exercises in the preview. ``platforms`` are
+    # the threads that wait for learning platforms.
 
     access: Access
     folders: Sequence[Path] = field(default=())
@@ -53,6 +55,12 @@ class Tutoring:
     checking: Checking = field(default_factory=Checking)
     drafts: Drafts = field(default_factory=Drafts)
     feedback: FeedbackLevel = FeedbackLevel.FULL
+    platforms: PlatformThreads = field(default_factory=PlatformThreads)
+
+    def close(self) -> None:
+        """End the processes and threads."""
+        self.checking.close()
+        self.platforms.close()
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:

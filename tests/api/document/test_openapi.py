@@ -4,20 +4,23 @@ import copy
 import json
 import re
 from collections.abc import Callable, Iterator, Mapping
-from typing import Any, get_args
+from pathlib import Path
+from typing import Annotated, Any, get_args
+from urllib.parse import quote
 
 import httpx
 import pytest
 from fastapi import FastAPI
 from jsonschema import Draft202012Validator
 from openapi_spec_validator import validate
-from pydantic import BaseModel
+from pydantic import BaseModel, StringConstraints, TypeAdapter
 
 from service.api.application import application
 from service.api.document.openapi import _BODY_SCHEMAS, EXAMPLES
 from service.api.document.schemas import public_name
 from service.api.permissions.access import Access
 from service.catalogue import Exercise
+from tests.front.deno import deno
 
 Schema = dict[str, Any]
 
@@ -320,3 +323,105 @@ def test_reports_of_older_versions_have_no_lost_points(document: Schema) -> None
     part = document["components"]["schemas"]["PartReport"]
     assert part["properties"].keys() - set(part["required"]) == {"lost", "little_worth"}
     assert part["properties"]["lost"].keys() == {"type", "items"}
+
+
+def parameters(document: Schema) -> Iterator[tuple[str, str, Schema, Schema]]:
+    """Yield the method and path of each operation with each of its parameters and its form."""
+    for path, operations_there in document["paths"].items():
+        for method, operation in operations_there.items():
+            for each in operation.get("parameters", ()):
+                schema = each["schema"]
+                forms = schema.get("anyOf", [schema])
+                [form] = [one for one in forms if one != {"type": "null"}]
+                if "$ref" in form:
+                    form = document["components"]["schemas"][form["$ref"].rpartition("/")[2]]
+                yield method, path, each, form
+
+
+def test_every_parameter_has_a_bound(document: Schema) -> None:
+    kinds = set()
+    for method, path, parameter, form in parameters(document):
+        place = f"{method} {path} {parameter['name']}"
+        kinds.add(form["type"])
+        match form["type"]:
+            case "string":
+                bounds = form.keys() & {"maxLength", "enum"}
+                assert bounds or form.get("format") == "date-time", place
+            case "integer":
+                assert form.keys() >= {"minimum", "maximum"}, place
+            case other:
+                assert other == "boolean", place
+    assert kinds == {"string", "integer", "boolean"}
+
+
+@pytest.mark.long
+def test_every_parameter_outside_of_its_bounds_is_refused(
+    document: Schema,
+    client_of: Callable[[FastAPI], httpx.Client],
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    access = Access()
+    app = application(catalogue, access=access)
+    # Everybody may do everything.
+    app.dependency_overrides[access.permit] = lambda: None
+    client, checked = client_of(app), 0
+    for method, path, parameter, form in parameters(document):
+        name = parameter["name"]
+        wrong = ["x" * (form["maxLength"] + 1)] if "maxLength" in form else []
+        if form["type"] == "integer":
+            wrong += [str(form["minimum"] - 1), str(form["maximum"] + 1), "1.5", "1e0", "one"]
+        if form["type"] == "boolean":
+            wrong += ["2", "maybe"]
+        if "enum" in form or form.get("format") == "date-time":
+            wrong += ["0.5", "x" * 5000]
+        if form.get("pattern", "").startswith("^[a-z0-9]"):
+            wrong += ["0.5", "a b", "-", "A", ""]
+        in_path = parameter["in"] == "path"
+        for value in filter(None, wrong) if in_path else wrong:
+            url = path.replace(f"{{{name}}}", quote(value)) if in_path else path
+            url = re.sub(r"\{\w+\}", "theta", url.replace("{exercise_id}", "planar-rr"))
+            query = {name: value} if parameter["in"] == "query" else {}
+            headers = {name: value} if parameter["in"] == "header" else {}
+            body: Schema = {"json": {}} if method == "post" else {}
+            answer = client.request(method, url, params=query, headers=headers, **body)
+            place = f"{method} {url[:80]} {name}={value[:40]}"
+            assert answer.status_code == 422, (place, answer.text)
+            pointers = [each["pointer"] for each in answer.json()["errors"]]
+            assert f"#/{name}".lower() in map(str.lower, pointers), (place, answer.text)
+            checked += 1
+    assert checked > 150
+
+
+# Texts that some of the patterns accept.
+TEXTS = (
+    "", "a", "A", "robotics-2026", "-a", "a-", "a--b", "Ada Lovelace", "Ada  Lovelace", " a", "a ",
+    "ada@example.edu", "a@b@c", "a,b@c", "RPR", "RRRRRRRRRRRR", "rpr", "1", "\u03b81", "a\u200bb",
+    "a\u00a0b", "a\nb", "a\n", "\x00", "a\x00", "\U0001f600", "\ufeff", "0.5",
+)  # fmt: skip
+SCRIPT = """
+const [patterns, texts] = JSON.parse(new TextDecoder().decode(await new Response(
+  Deno.stdin.readable).arrayBuffer()));
+const told = patterns.map((pattern) => ["", "u", "v"].map((flag) => {
+  const compiled = new RegExp(pattern, flag);
+  return texts.map((text) => compiled.test(text));
+}));
+console.log(JSON.stringify(told));
+"""
+
+
+@pytest.mark.long
+def test_javascript_reads_every_pattern_as_the_service_does(
+    document: Schema, tmp_path: Path
+) -> None:
+    patterns = sorted({each["pattern"] for each in schemas_in(document) if "pattern" in each})
+    assert len(patterns) >= 7
+    (script := tmp_path / "patterns.js").write_text(SCRIPT, encoding="utf-8")
+    given = json.dumps([patterns, TEXTS])
+    found = deno("run", "--quiet", "--no-check", "--no-lock", str(script), written=given)
+    assert found.returncode == 0, found.stdout
+    for pattern, by_flag in zip(patterns, json.loads(found.stdout), strict=True):
+        checked = TypeAdapter(Annotated[str, StringConstraints(pattern=pattern)]).validator
+        expected = [checked.isinstance_python(text) for text in TEXTS]
+        assert by_flag == [expected] * 3, pattern
+        assert True in expected
+        assert False in expected

@@ -8,10 +8,13 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI
+from fastapi.routing import iter_route_contexts
 
 from service.api.application import application
+from service.api.permissions.rights import RIGHTS
 from service.catalogue import Exercise
 from service.submissions.strict_json import MAX_BODY_SIZE
+from service.web import web_routes
 
 GRADE = "/v1/exercises/planar-rrr/grade"
 ClientOf = Callable[[FastAPI], httpx.Client]
@@ -113,6 +116,33 @@ def test_options_names_the_methods(client: httpx.Client) -> None:
     assert (response.status_code, response.content) == (204, b"")
     assert response.headers["allow"] == "OPTIONS, POST"
     assert client.options("/nowhere").status_code == 404
+
+
+def test_options_and_a_wrong_method_name_all_methods_of_every_path(
+    client_of: ClientOf, catalogue: Mapping[str, Exercise]
+) -> None:
+    app = application(catalogue, pages=web_routes(catalogue))
+    client = client_of(app)
+    there = {route.path for route in iter_route_contexts(app.router.routes)}
+    # The methods of each path by the table of rights, which names every route.
+    methods: dict[str, set[str]] = {}
+    for each in RIGHTS:
+        method, path = each.split(" ")
+        if path in there:
+            methods.setdefault(path, set()).add(method)
+    assert len(methods) > 80
+    assert {"GET", "POST"} <= methods["/v1/courses"]
+    shapes = {path: re.compile(re.sub(r"\{\w+\}", "[^/]+", path)) for path in methods}
+    for path in methods:
+        url = re.sub(r"\{\w+\}", "x", path)
+        allowed = {"OPTIONS"}.union(
+            *(methods[each] for each, shape in shapes.items() if shape.fullmatch(url))
+        )
+        allowed |= {"HEAD"} if "GET" in allowed else set()
+        answer = client.options(url)
+        assert (answer.status_code, answer.headers["allow"]) == (204, ", ".join(sorted(allowed)))
+        refused = client.request("PROPFIND", url)
+        assert (refused.status_code, refused.headers["allow"]) == (405, answer.headers["allow"])
 
 
 @pytest.mark.parametrize(

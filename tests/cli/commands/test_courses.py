@@ -48,13 +48,19 @@ def test_counts_and_questions_are_in_the_language(
     assert run("list").stderr.endswith("none.db: diese Datei gibt es nicht\n")
 
 
-def test_links_without_an_address_say_that_they_are_local(course: str, tmp_path: Path) -> None:
+def test_links_without_an_address_say_that_they_are_local(
+    course: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
     learners(course, tmp_path / "c.csv", "ada")
     local = run("links", course)
     assert "127.0.0.1" in local.stdout
     assert "127.0.0.1" in local.stderr
     assert "--address" in local.stderr
     assert run("links", course, "--address", "https://grader.example.edu").stderr == ""
+    monkeypatch.setenv("DH_GRADER_PUBLIC_URL", "https://grader.example.edu/robotics/")
+    public = run("links", course)
+    assert "https://grader.example.edu/robotics/learn#dhg_" in public.stdout
+    assert public.stderr == ""
 
 
 @pytest.mark.parametrize(

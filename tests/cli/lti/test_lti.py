@@ -73,3 +73,22 @@ def test_platforms_are_invited(run: Run) -> None:
     found = json.loads(run("lti", "canvas", *address).output)
     assert found["target_link_uri"] == "https://grader.example.edu/lti/launch"
     assert run("lti", "canvas", "--address", "grader").exit_code == 2
+
+
+def test_the_address_of_the_service_is_that_of_the_setting(
+    run: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    without = run("lti", "canvas")
+    assert (without.exit_code, "DH_GRADER_PUBLIC_URL" in without.stderr) == (2, True)
+    monkeypatch.setenv("DH_GRADER_PUBLIC_URL", "https://grader.example.edu/robotics/")
+    found = json.loads(run("lti", "canvas").output)
+    assert found["oidc_initiation_url"] == "https://grader.example.edu/robotics/lti/login"
+    link = run("lti", "invite", "University X").output
+    assert link.startswith("https://grader.example.edu/robotics/lti/register")
+    given = ("--address", "https://other.example.edu")
+    assert run("lti", "invite", "Y", *given).output.startswith("https://other.example.edu/lti/")
+    values = {"name": "M", "client_id": "c", "issuer": "https://m.example.edu"}
+    values |= {"auth_url": "https://m.example.edu/a", "jwks_url": "https://m.example.edu/j"}
+    options = [each for k, v in values.items() for each in (f"--{k.replace('_', '-')}", v)]
+    shown = run("lti", "register", *options)
+    assert "https://grader.example.edu/robotics/lti/launch" in shown.output

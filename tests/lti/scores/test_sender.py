@@ -255,3 +255,17 @@ def test_no_timestamp_is_in_the_future(journey: Journey) -> None:
     assert journey.gradebook.refused == []
     assert journey.gradebook.received[-1]["scoreGiven"] == journey.total()
     assert journey.states() == {"ada": "sent"}
+
+
+def test_a_score_that_is_sent_at_once_is_not_from_before_the_attempt(journey: Journey) -> None:
+    attempt = journey.hand_in()
+    journey.clock.go_on(seconds=-3)
+    assert journey.send() == 1
+    [message] = journey.gradebook.received
+    assert message["submission"]["submittedAt"][:19] == attempt["at"][:19]
+    assert message["timestamp"] >= message["submission"]["submittedAt"]
+    # A change within a second waits, because its timestamp must be later.
+    journey.post(f"attempts/{attempt['id']}/override", points=1, reason="r", author="t")
+    journey.clock.go_on(seconds=1)
+    assert journey.send() == 1
+    assert journey.gradebook.received[-1]["timestamp"] > message["timestamp"]

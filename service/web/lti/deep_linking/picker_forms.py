@@ -1,6 +1,5 @@
 """The route of the form on which a tutor searches for exercises, and makes links to them."""
 
-import asyncio
 import logging
 from collections.abc import Sequence
 from datetime import UTC, datetime
@@ -52,7 +51,8 @@ def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
     ) -> Response:
         now, locale = datetime.now(UTC), language.tag
         if ticket.notices_url and links:
-            await asyncio.to_thread(_ask_for_notices, landings, known, ticket.notices_url)
+            url = ticket.notices_url
+            await landings.platforms.run(known.id, lambda: _ask_for_notices(landings, known, url))
         text = await write(
             store, lambda it: signed_response(it, ticket, known, links, secret, now, locale)
         )

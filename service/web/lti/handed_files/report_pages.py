@@ -17,14 +17,16 @@ from service.api.http.lookup import Catalogue
 from service.attempts.store import AttemptStore
 from service.catalogue import FeedbackLevel
 from service.formats.documents.html import page_of
-from service.lti.handed_files.grading import GradedFiles, graded_files
+from service.lti.handed_files.grading import graded_files
 from service.lti.handed_files.notices import HandedFiles
-from service.lti.handed_files.platform_files import PlatformFiles
+from service.lti.handed_files.platform_files import NoFileError, PlatformFiles
 from service.lti.handed_files.queue import files_of
 from service.lti.linking import check_deployment, pseudonym
 from service.lti.logins import Login, use_login
 from service.lti.messages import LTI, SETTINGS, LaunchMessage
+from service.lti.platform_threads import PlatformThreads
 from service.lti.problems import LtiError
+from service.lti.registrations import Registration
 from service.lti.roles import LtiRole
 from service.lti.scores.score_problems import ScoreError
 from service.translations import Language, joined
@@ -43,10 +45,12 @@ class ReportPages:
         catalogue: Catalogue,
         feedback: FeedbackLevel,
         platform: PlatformFiles,
+        threads: PlatformThreads,
     ) -> None:
         """``feedback`` is the highest feedback level for students."""
         self._assets, self._store, self._secret = assets, store, secret
-        self._catalogue, self._feedback, self._platform = catalogue, feedback, platform
+        self._catalogue, self._feedback = catalogue, feedback
+        self._platform, self._threads = platform, threads
 
     async def page(self, message: LaunchMessage, login: Login, language: Language) -> bytes:
         """Return the page that the platform's message asks for. Raises LtiError."""
@@ -60,7 +64,16 @@ class ReportPages:
         files = await write(self._store, found)
         if files is None:
             return lti_page("file_settings.html", self._assets, [], language=language)
-        graded = await asyncio.to_thread(self._graded, message, files, language)
+        contents = await self._contents(message.registration, files)
+        graded = await asyncio.to_thread(
+            graded_files,
+            files,
+            contents,
+            self._catalogue,
+            ceiling=self._feedback,
+            for_students=message.role is not LtiRole.TUTOR,
+            language=language,
+        )
         if graded.submission is None:
             reasons = [each.reason for each in graded.failures.values()]
             raise LtiError("file-unreadable", reason=joined("; ", reasons))
@@ -81,22 +94,15 @@ class ReportPages:
             raise LtiError("foreign-report")
         return files
 
-    def _graded(
-        self, message: LaunchMessage, files: HandedFiles, language: Language
-    ) -> GradedFiles:
-        known = message.registration
+    async def _contents(
+        self, known: Registration, files: HandedFiles
+    ) -> dict[str, bytes | NoFileError]:
         try:
-            contents = self._platform.contents_of(known, files)
+            return await self._threads.run(
+                known.id, lambda: self._platform.contents_of(known, files)
+            )
         except ScoreError as error:
             raise LtiError("file-unreadable", reason=error) from error
-        return graded_files(
-            files,
-            contents,
-            self._catalogue,
-            ceiling=self._feedback,
-            for_students=message.role is not LtiRole.TUTOR,
-            language=language,
-        )
 
 
 def _id_in(claims: Mapping[str, Any], name: str) -> str:

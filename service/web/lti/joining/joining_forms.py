@@ -2,7 +2,6 @@
 
 # The platform opens the link that an admin has pasted.
 
-import asyncio
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -26,6 +25,8 @@ from service.web.lti.lti_pages import frame_headers, lti_page
 from service.web.page_answer import page_answer
 from service.web.sign_in import form_fields
 
+# Stands for platforms that are not registered yet, in no registration's id.
+_JOINING: Final = ""
 _FIELDS: Final = ("invitation", "openid_configuration", "registration_token")
 
 
@@ -99,8 +100,11 @@ async def _registered(
         return accept(connection, invitation, values, now)
 
     try:
-        values = await asyncio.to_thread(
-            register_at, invitation, fields["openid_configuration"], fields["registration_token"]
+        values = await landings.platforms.run(
+            _JOINING,
+            lambda: register_at(
+                invitation, fields["openid_configuration"], fields["registration_token"]
+            ),
         )
         return await write(landings.store, joined)
     except BaseException:
