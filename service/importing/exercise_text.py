@@ -151,6 +151,9 @@ def rows_in(robot: HomeRobot, convention: Convention) -> list[Row[str]]:
     rows = _rows(robot)
     if convention is Convention.MODIFIED:
         rows = modified_rows(rows, "0")
+        a, alpha = robot.start
+        first = sum_text(robot.letters.get((-1, A), {}), exact_text(a)), angle_text(alpha)
+        rows[0] = (*first, *rows[0][2:])
         if set(rows[-1]) == {"0"}:
             rows.pop()
     return rows

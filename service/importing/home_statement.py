@@ -7,6 +7,8 @@ import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 
+import numpy as np
+
 from service.importing.numbers import exact_text, number_text
 from service.kinematics.chain import ALPHA, A, D, Table, frames
 from service.kinematics.dh import Convention
@@ -60,6 +62,8 @@ class HomeRobot:
 
     ``letters`` has the sum of letters that is added to a length of the table, by row and column;
     ``lengths`` has a typical length for each letter. An additional last row is a fixed tool frame.
+    ``start`` are a and α from the base frame to the axis of joint 1, which are not 0 only in the
+    modified convention; the letters of this a are in row -1.
     """
 
     # A number as text may take the place of a letter: the statement then has sums such as
@@ -69,6 +73,7 @@ class HomeRobot:
     structure: str
     letters: Letters = field(default_factory=dict)
     lengths: Mapping[str, float] = field(default_factory=dict)
+    start: tuple[float, float] = (0.0, 0.0)
     real: bool = False
     """True if the lengths are those of a real robot."""
 
@@ -78,8 +83,9 @@ class HomeRobot:
 
         A sliding joint has the variable q2 if d2 is the letter of a length.
         """
+        letters = {name.replace("_", "") for name in self.lengths}
         return [
-            f"theta{i}" if kind == "R" else f"q{i}" if f"d{i}" in self.lengths else f"d{i}"
+            f"theta{i}" if kind == "R" else f"q{i}" if f"d{i}" in letters else f"d{i}"
             for i, kind in enumerate(self.structure, 1)
         ]
 
@@ -87,18 +93,21 @@ class HomeRobot:
     def has_numbers(self) -> bool:
         """True if a length is written as a number."""
         of_letters = any(name[0].isalpha() for name in self.lengths)
-        return bool(self.table[:, [A, D]].any()) or not of_letters
+        return bool(self.table[:, [A, D]].any() or self.start[0]) or not of_letters
 
     def frames(self, lengths: Mapping[str, float]) -> Matrices:
-        """Return the poses of the frames {0} to {n} at home. Letters not in ``lengths`` are 0."""
-        table = self.table.copy()
-        for cell, letters in self.letters.items():
-            table[cell] += sum(factor * lengths.get(name, 0) for name, factor in letters.items())
-        return frames(table, Convention.STANDARD)
+        """Return the frames on the joint axes and the tool frame at home, in the base frame.
+
+        Letters not in ``lengths`` are 0.
+        """
+        rows = np.vstack([[*self.start, 0, 0], self.table])
+        for (i, j), letters in self.letters.items():
+            rows[i + 1, j] += sum(factor * lengths.get(name, 0) for name, factor in letters.items())
+        return frames(rows, Convention.STANDARD)[1:]
 
 
 class UnevenLettersError(ValueError):
-    """A coordinate contains a letter with a factor of many decimals, such as 0.707107."""
+    """A coordinate of a real robot contains a letter with a factor such as 0.707107."""
 
     # The text would be unreadable.
 
@@ -106,7 +115,7 @@ class UnevenLettersError(ValueError):
 def home_statement(robot: HomeRobot, convention: Convention) -> Sentence:
     """Return the statement of an exercise about the robot.
 
-    Raises UnevenLettersError if a coordinate is not a sum of letters.
+    Raises UnevenLettersError if a coordinate of a real robot is not a sum of letters.
     """
     at_home = paragraph(
         _structure_in_words(robot.structure),
@@ -242,7 +251,7 @@ def _origins(robot: HomeRobot) -> list[str]:
     return [
         "("
         + ", ".join(
-            _sum_text(constant[i, k], {name: share[i, k] for name, share in shares.items()})
+            _coordinate(robot, constant[i, k], {name: each[i, k] for name, each in shares.items()})
             for k in range(3)
         )
         + ")"
@@ -250,11 +259,13 @@ def _origins(robot: HomeRobot) -> list[str]:
     ]
 
 
-def _sum_text(constant: float, shares: Mapping[str, float]) -> str:
+def _coordinate(robot: HomeRobot, constant: float, shares: Mapping[str, float]) -> str:
     factors = {name: share for name, share in shares.items() if abs(share) > _SAME}
-    if any(abs(4 * factor - round(4 * factor)) > _SAME for factor in factors.values()):
+    uneven = any(abs(4 * factor - round(4 * factor)) > _SAME for factor in factors.values())
+    if uneven and robot.real:
+        # A real robot has numbers, which are easier to read.
         raise UnevenLettersError
-    rounded = {name: round(4 * factor) / 4 for name, factor in factors.items()}
+    rounded = {name: round(factor, 6) for name, factor in factors.items()}
     return sum_text(rounded, number_text(constant))
 
 

@@ -61,13 +61,16 @@ _VARIABLES: Final = (
 # The index of a variable of a sliding joint with a star, beside that of a turning joint.
 _STARRED: Final = 100
 _STAR: Final = re.compile(r"[\s})]*(?:\^\s*\{?\s*)?(?:\*|\\ast|\\star)")
-_LITERAL: Final = re.compile(r"(?<![\w.}])(\d+\.?\d*|\.\d+)(?![\w.°])")
+_LITERAL: Final = re.compile(r"(?<![\w.}])(\d+\.?\d*|\.\d+)(?=\s*rad|(?![\w.°]))")
 _PI: Final = re.compile(r"π|(?<![a-z])pi(?![a-z])", re.IGNORECASE)
 _ANGLE: Final = re.compile(r"°|π|circ|(?<![a-z_])(?:pi|deg|degrees|rad)(?![a-z])", re.IGNORECASE)
 _JOINT_TYPES: Final = {
     "R": re.compile(r"r|rev\w*|rot\w*|dreh\w*|gir\w*|.*转动.*|.*旋转.*", re.IGNORECASE),
     "P": re.compile(r"p|pris\w*|trans\w*|lin\w*|slid\w*|schub\w*|.*移动.*", re.IGNORECASE),
 }
+_MODIFIED: Final = re.compile(r"modifi|proximal|craig|khalil|改进", re.IGNORECASE)
+# A larger angle is in degrees, whatever the text says.
+_LARGEST_ANGLE: Final = 2 * math.tau
 # A number of degrees is rarely less than 1, and a number of radians is rarely whole.
 _LEAST_DEGREE: Final = 1.0
 _UNITS: Final = ("m", "cm", "mm", "in", "ft")
@@ -117,14 +120,14 @@ class OpenQuestionsError(Exception):
 class TextTable:
     """A table as read: its formulas, and the numbers in which its robot differs from them.
 
-    ``own`` has the names of the joint variable in each row, ``metres`` the unit of its numbers, and
-    ``snaps`` what was added to each cell.
+    ``own`` has the names of the joint variable in each row, ``metres`` the unit of lengths in each
+    column, and ``snaps`` what was added to each cell.
     """
 
     convention: Convention
     formulas: Sequence[Sequence[Expression]]
     own: Sequence[frozenset[str]]
-    metres: float
+    metres: Sequence[float]
     snaps: Table
 
     def values(self, lengths: Mapping[str, Numbers], motions: Sequence[Numbers]) -> Table:
@@ -137,7 +140,7 @@ class TextTable:
             values = {**lengths, **dict.fromkeys(self.own[i], motions[i])}
             for j, formula in enumerate(row):
                 # The letters mean metres, the numbers the unit of the text.
-                unit = self.metres if j in (A, D) else 1.0
+                unit = self.metres[j]
                 known = {name: values[name] / unit for name in formula.symbols}
                 table[i, j] = unit * np.asarray(formula.evaluate(known)) + self.snaps[i, j]
         return table
@@ -170,7 +173,7 @@ def pasted_robot(text: str, choices: TableChoices) -> PastedRobot:
             )
         )
     reading = _Reading.of(text, choices)
-    convention = _convention(reading.table, choices)
+    convention = _convention(reading, choices)
     angles = _angle_unit(reading, choices)
     asked = (convention, _unit(reading), angles)
     questions = [each for each in asked if isinstance(each, Question)]
@@ -227,9 +230,18 @@ class _Reading:
         reader = Reader(vocabulary, samples, self.angle_unit, self.length_unit or "m", WorkBudget())
         try:
             table = read_pasted_table(self.text, reader, self.order)
-            return replace(self, table=table, entries=entries_of(table, reader))
         except GridError as error:
             raise UnusableTableError(error.message) from None
+        # Numbers stay in the unit of their header: only the letters of an exercise have another.
+        bare = tuple(
+            header if header.angle_unit else replace(header, unit="") for header in table.headers
+        )
+        entries = entries_of(replace(table, headers=bare), reader)
+        return replace(self, table=table, entries=entries)
+
+    def metres(self, j: int) -> float:
+        """The unit of the lengths in column ``j``, in metres."""
+        return self.table.headers[j].metres or METRES[self.length_unit or "m"]
 
     def _new_lengths(self) -> Iterator[tuple[str, Symbol]]:
         # A name that the reader does not know, in a column of lengths, is the name of a length. A
@@ -256,7 +268,8 @@ class _Reading:
             # The reader knows the names of sliding joints that a robot does not have.
             for name in entry.expression.symbols - self.lengths.keys():
                 if _SLIDE_NAME.fullmatch(name):
-                    yield name, False
+                    starred = rf"d\W*_?\W*{name[1:]}{_STAR.pattern}"
+                    yield name, re.search(starred, entry.expression.source) is not None
 
 
 def _ascii(name: str) -> str | None:
@@ -297,7 +310,8 @@ _ORDER: Final = Question(
 )
 
 
-def _convention(table: PastedTable, choices: TableChoices) -> Convention | Question:
+def _convention(reading: _Reading, choices: TableChoices) -> Convention | Question:
+    table = reading.table
     named = Convention(table.convention) if table.convention else None
     if named and choices.convention not in (None, named):
         raise UnusableTableError(
@@ -305,34 +319,41 @@ def _convention(table: PastedTable, choices: TableChoices) -> Convention | Quest
         )
     if choices.convention or named:
         return Convention(choices.convention or named or "")
-    if any(header.shifted for header in table.headers):
+    if any(header.shifted for header in table.headers) or _MODIFIED.search(reading.text):
         text = say(
-            "Headers such as a_(i-1) belong to the modified convention. Which convention does the "
-            "table have?"
+            "A header such as a_(i-1), or a word of the text, belongs to the modified convention. "
+            "Which convention does the table have?"
         )
         return Question("convention", text, tuple(each.value for each in Convention))
     return Convention.STANDARD
 
 
 def _unit(reading: _Reading) -> Question | None:
-    if reading.length_unit:
-        return None
+    """Return the question for the unit of the numbers, if the text has none.
+
+    Raises UnusableTableError if an angle is in the place of a length.
+    """
+    question = None
     for i, row in enumerate(reading.entries):
         for j in (A, D):
             expression = row[j].expression
-            if expression is None or reading.table.headers[j].metres:
+            if expression is None:
                 continue
+            if _ANGLE.search(expression.source):
+                raise _unusable(i, j, say("an angle is here, in place of a length"))
             number = _value(expression, {})
-            if number:
-                text = say(
-                    "The table has no unit of length. In which unit is the number {number} in "
-                    "row {row}, column {column}?",
-                    number=f"{number:g}",
-                    row=i + 1,
-                    column=COLUMNS[j],
-                )
-                return Question("unit", text, _UNITS)
-    return None
+            is_said = reading.length_unit or reading.table.headers[j].metres
+            if not number or is_said or question:
+                continue
+            text = say(
+                "The table has no unit of length. In which unit is the number {number} in row "
+                "{row}, column {column}?",
+                number=f"{number:g}",
+                row=i + 1,
+                column=COLUMNS[j],
+            )
+            question = Question("unit", text, _UNITS)
+    return question
 
 
 def _angle_unit(reading: _Reading, choices: TableChoices) -> AngleUnit | Question:
@@ -384,38 +405,41 @@ def _literal(formula: Expression, number: float) -> str:
 
 
 def _robot(reading: _Reading, convention: Convention) -> PastedRobot:
-    formulas = []
-    for i, row in enumerate(reading.entries):
-        for j, entry in enumerate(row):
-            if entry.expression is None:
-                reason = say("nothing is written here")
-                if entry.findings:
-                    reason = entry.findings[0].hint
-                raise _unusable(i, j, reason)
-            if j in (A, D) and _ANGLE.search(entry.expression.source):
-                raise _unusable(i, j, say("an angle is here, in place of a length"))
-        formulas.append([entry.expression for entry in row if entry.expression])
+    formulas = _formulas(reading)
     own = _own_variables(reading)
-    metres = METRES[reading.length_unit or "m"]
+    metres = [reading.metres(j) if j in (A, D) else 1.0 for j in range(len(COLUMNS))]
     snaps = Snaps()
     rows, changes = [], np.zeros((len(formulas), len(COLUMNS)))
     for i, row_formulas in enumerate(formulas):
         cells = []
         for j, formula in enumerate(row_formulas):
-            cell = _cell(i, j, formula, own[i])
-            if j in (A, D):
-                cell = replace(cell, number=cell.number * metres)
-            else:
+            cell = _cell(i, j, formula, own[i], frozenset().union(*own))
+            number = cell.number * metres[j]
+            if j in (ALPHA, THETA):
                 place = say("row {row}, {column}", row=i + 1, column=COLUMNS[j])
-                snapped = snaps.angle(place, cell.number, _literal(formula, cell.number))
-                changes[i, j] = snapped - cell.number
-                cell = replace(cell, number=snapped)
-            cells.append(cell)
+                number = snaps.angle(place, cell.number, _literal(formula, cell.number))
+                changes[i, j] = number - cell.number
+            cells.append(replace(cell, number=number))
         rows.append((cells[A], cells[ALPHA], cells[D], cells[THETA]))
-    table = TextTable(convention, formulas, own, metres, changes)
     made = _made(rows, convention)
     typed = typed_rows(rows, made.robot.variables) if made.turned and not made.joined else ()
-    return PastedRobot(made, table, typed, [*_notes(reading), *snaps.remarks, *_changes(made)])
+    remarks = [*_notes(reading), *snaps.remarks, *_changes(made, own)]
+    return PastedRobot(made, TextTable(convention, formulas, own, metres, changes), typed, remarks)
+
+
+def _formulas(reading: _Reading) -> list[list[Expression]]:
+    """Return the formulas of all cells. Raises UnusableTableError if one cannot be read."""
+    formulas: list[list[Expression]] = []
+    for i, row in enumerate(reading.entries):
+        formulas.append([])
+        for j, entry in enumerate(row):
+            if entry.expression is None:
+                reason = say("nothing is written here")
+                raise _unusable(i, j, entry.findings[0].hint if entry.findings else reason)
+            if j in (ALPHA, THETA) and abs(_value(entry.expression, {})) > _LARGEST_ANGLE:
+                raise _unusable(i, j, say("the angle is more than two turns; is it in degrees?"))
+            formulas[i].append(entry.expression)
+    return formulas
 
 
 def _unusable(i: int, j: int, reason: str) -> UnusableTableError:
@@ -436,7 +460,10 @@ def _own_variables(reading: _Reading) -> list[frozenset[str]]:
             f"d{i + 1}" in symbols and joint <= i
         )
         turns = row[THETA].expression is not None and names & row[THETA].expression.symbols
-        if (skipped or types) if not names else types - {"R" if turns else "P"}:
+        fixed = [k for k, each in enumerate(found) if not each]
+        if skipped and not names:
+            raise _without_variable(fixed[-1], joint) if fixed else _misnumbered(i, joint)
+        if types - ({"R" if turns else "P"} if names else set()):
             raise _without_variable(i, joint)
         found.append(names)
         joint += bool(names)
@@ -450,6 +477,17 @@ def _own_variables(reading: _Reading) -> list[frozenset[str]]:
 def _joint_type(text: str) -> str:
     """Return R or P for the name of a joint type, "" for any other text."""
     return next((kind for kind, names in _JOINT_TYPES.items() if names.fullmatch(text)), "")
+
+
+def _misnumbered(i: int, joint: int) -> UnusableTableError:
+    return UnusableTableError(
+        say(
+            "row {row} has the variable of another joint; its own is q{joint}: number the joints "
+            "from 1, in the order of the rows",
+            row=i + 1,
+            joint=joint,
+        )
+    )
 
 
 def _without_variable(i: int, joint: int) -> UnusableTableError:
@@ -481,8 +519,10 @@ def _variable(
     return frozenset(turning or sliding or slides & in_d)
 
 
-def _cell(i: int, j: int, formula: Expression, own: frozenset[str]) -> Cell:
-    """Return the sum of a number, letters and the joint variable that the formula is."""
+def _cell(
+    i: int, j: int, formula: Expression, own: frozenset[str], variables: frozenset[str]
+) -> Cell:
+    """Return the sum of a number, letters and the joint variable ``own`` that the formula is."""
     number = _value(formula, {})
     factors = {name: _value(formula, {name: 1.0}) - number for name in sorted(formula.symbols)}
     at = {name: 0.3 + 0.17 * k for k, name in enumerate(factors)}
@@ -491,7 +531,7 @@ def _cell(i: int, j: int, formula: Expression, own: frozenset[str]) -> Cell:
         raise _unusable(i, j, say("write a sum of numbers, letters and the joint variable"))
     motion = sum(factors.pop(name) for name in own & factors.keys())
     for name in factors:
-        if name.startswith("theta") or name in _OWN:
+        if name in variables or name.startswith("theta") or name in _OWN:
             raise _unusable(i, j, say("the joint variable of another row is here"))
         if j in (ALPHA, THETA):
             raise _unusable(i, j, say("the letter of a length is here; write an angle"))
@@ -519,13 +559,22 @@ def _made(rows: Sequence[Row[Cell]], convention: Convention) -> TableRobot:
             row=error.row + 1,
         )
     except FirstAxisError:
-        reason = say("a and alpha of row 1 must be 0: frame {{0}} lies on joint 1")
+        reason = say("a and alpha before joint 1 must be 0: frame {{0}} lies on its axis")
     raise UnusableTableError(reason)
 
 
 def _notes(reading: _Reading) -> Iterator[Sentence]:
     """Yield the notes of the reader, as in grading."""
     notes = [finding.hint for finding in reading.table.findings]
+    for j in (A, D):
+        numbers = [row[j].expression for row in reading.entries]
+        if any(formula and _value(formula, {}) for formula in numbers):
+            unit = reading.table.headers[j].unit or reading.length_unit
+            notes.append(
+                say("The numbers of column {column} are in {unit}.", column=COLUMNS[j], unit=unit)
+            )
+    if any(_is_bare(reading, row[j], j) for row in reading.entries for j in (ALPHA, THETA)):
+        notes.append(say("Angles without a unit are in {unit}.", unit=reading.angle_unit))
     for i, row in enumerate(reading.entries):
         for column, entry in zip(COLUMNS, row, strict=True):
             place = say("row {row}, {column}", row=i + 1, column=column)
@@ -533,7 +582,14 @@ def _notes(reading: _Reading) -> Iterator[Sentence]:
     yield from dict.fromkeys(notes)
 
 
-def _changes(made: TableRobot) -> Iterator[Sentence]:
+def _is_bare(reading: _Reading, entry: Entry, j: int) -> bool:
+    formula, unit = entry.expression, reading.table.headers[j].angle_unit
+    if formula is None or unit or _ANGLE.search(formula.source):
+        return False
+    return _value(formula, {}) != 0
+
+
+def _changes(made: TableRobot, own: Sequence[frozenset[str]]) -> Iterator[Sentence]:
     for joint in made.turned:
         yield say(
             "Joint {joint} counts -q{joint} in the text. Its axis is turned over here, so that it "
@@ -547,3 +603,5 @@ def _changes(made: TableRobot) -> Iterator[Sentence]:
             "the same.",
             row=row,
         )
+    if not own[-1]:
+        yield say("Row {row} has no joint variable: it is the row of the tool.", row=len(own))

@@ -35,9 +35,6 @@ _SAME: Final = 1e-6
 _MOST_LINKS: Final = 20
 _LONGEST_LINK: Final = 60
 _UNEVEN: Final = say("with these angles, letters give no readable statement; do without letters")
-_UNEVEN_TABLE: Final = say(
-    "with these angles, letters give no readable statement; write numbers for the letters"
-)
 _POSES: Final = 100
 _SAME_TABLE: Final = 1e-9
 
@@ -206,7 +203,7 @@ def _written(
     try:
         return exercise_text(robot, draft)
     except UnevenLettersError as error:
-        raise RefusedRobotError(_UNEVEN if robot.real else _UNEVEN_TABLE) from error
+        raise RefusedRobotError(_UNEVEN) from error
 
 
 def _ends(frames: Placed, base: str, tip: str, last: int) -> list[str]:

@@ -76,11 +76,11 @@ class FixedRowError(UnusableRowError):
 
 
 class FirstAxisError(UnusableRowError):
-    """Frame 0 is not on the axis of joint 1."""
+    """Frame 0 of a standard table is not on the axis of joint 1."""
 
 
 class FirstDirectionError(UnusableRowError):
-    """Joint 1 turns or slides opposite to z0."""
+    """Joint 1 of a standard table turns or slides opposite to z0."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,10 +115,10 @@ def robot_of_rows(rows: Sequence[Row[Cell]], convention: Convention) -> TableRob
         zs[i] = replace(zs[i], length=-zs[i].length, angle=-zs[i].angle)
         for j in (i, i + 1):
             xs[j] = replace(xs[j], angle=xs[j].angle.turned())
-    if xs[0].length or xs[0].angle:
+    if convention is Convention.STANDARD and (xs[0].length or xs[0].angle):
         raise FirstDirectionError(zs[0].row) if 0 in turned else FirstAxisError(zs[0].row)
     table = [(x.length, x.angle, z.length, z.angle) for x, z in zip(xs[1:], zs, strict=True)]
-    return TableRobot(_home_robot(table), tuple(i + 1 for i in turned), joined)
+    return TableRobot(_home_robot(table, xs[0]), tuple(i + 1 for i in turned), joined)
 
 
 def typed_rows(rows: Sequence[Row[Cell]], variables: Sequence[str]) -> list[Row[str]]:
@@ -177,7 +177,7 @@ def _alternating(factors: Sequence[_Factor], end: int) -> tuple[list[_Factor], l
     return xs, zs
 
 
-def _home_robot(rows: Sequence[Row[Cell]]) -> HomeRobot:
+def _home_robot(rows: Sequence[Row[Cell]], start: _Factor) -> HomeRobot:
     table = np.array([[cell.number for cell in row] for row in rows])
     letters = {
         (i, j): cell.letters
@@ -185,10 +185,13 @@ def _home_robot(rows: Sequence[Row[Cell]]) -> HomeRobot:
         for j, cell in enumerate(row)
         if cell.letters
     }
+    if start.length.letters:
+        letters[-1, A] = start.length.letters
     lengths: dict[str, float] = {}
     for (_, j), names in letters.items():
         for name in names:
             lengths.setdefault(name, _MEAN_LENGTHS[j])
     joints = [row for row in rows if any(cell.motion for cell in row)]
     structure = "".join("P" if row[D].motion else "R" for row in joints)
-    return HomeRobot(table, structure, letters, lengths)
+    begins = start.length.number, start.angle.number
+    return HomeRobot(table, structure, letters, lengths, begins)

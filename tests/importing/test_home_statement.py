@@ -52,4 +52,4 @@ def test_the_robot_can_be_built_again_from_its_statement(seed: int, has_letters:
 def test_a_crooked_angle_gives_no_letters() -> None:
     table = np.array([[0.5, 0, 0, 0.4], [0.3, 0, 0, 0]])
     with pytest.raises(UnevenLettersError):
-        home_statement(lettered(HomeRobot(table, "RR")), Convention.STANDARD)
+        home_statement(lettered(HomeRobot(table, "RR", real=True)), Convention.STANDARD)
