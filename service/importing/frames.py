@@ -52,7 +52,7 @@ def placed(axes: list[HomeAxis], tip: Matrices, snaps: Snaps | None = None) -> P
     table, snaps = np.array(rows), snaps or Snaps()
     for i, row in enumerate(table):
         for j in (ALPHA, THETA):
-            place = say("row {row}, {column}", row=i + 1, column=COLUMNS[j])
+            place = say("row {row}, column {column}", row=i + 1, column=COLUMNS[j])
             row[j] = snaps.angle(place, float(row[j]))
     return Placed(table, base, inverse(frame) @ tip)
 

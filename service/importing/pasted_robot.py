@@ -305,7 +305,7 @@ _ORDERS: Final = (
 )
 _ORDER: Final = Question(
     "order",
-    say("The columns have no headers. In which order do they stand?"),
+    say("The columns have no headers. What is their order?"),
     _ORDERS,
 )
 
@@ -321,7 +321,7 @@ def _convention(reading: _Reading, choices: TableChoices) -> Convention | Questi
         return Convention(choices.convention or named or "")
     if any(header.shifted for header in table.headers) or _MODIFIED.search(reading.text):
         text = say(
-            "A header such as a_(i-1), or a word of the text, belongs to the modified convention. "
+            "A header such as a_(i-1) or a word in the text suggests the modified convention. "
             "Which convention does the table have?"
         )
         return Question("convention", text, tuple(each.value for each in Convention))
@@ -340,7 +340,8 @@ def _unit(reading: _Reading) -> Question | None:
             if expression is None:
                 continue
             if _ANGLE.search(expression.source):
-                raise _unusable(i, j, say("an angle is here, in place of a length"))
+                reason = say("this is an angle, but the column has lengths")
+                raise _unusable(i, j, reason)
             number = _value(expression, {})
             is_said = reading.length_unit or reading.table.headers[j].metres
             if not number or is_said or question:
@@ -416,7 +417,7 @@ def _robot(reading: _Reading, convention: Convention) -> PastedRobot:
             cell = _cell(i, j, formula, own[i], frozenset().union(*own))
             number = cell.number * metres[j]
             if j in (ALPHA, THETA):
-                place = say("row {row}, {column}", row=i + 1, column=COLUMNS[j])
+                place = say("row {row}, column {column}", row=i + 1, column=COLUMNS[j])
                 number = snaps.angle(place, cell.number, _literal(formula, cell.number))
                 changes[i, j] = number - cell.number
             cells.append(replace(cell, number=number))
@@ -437,7 +438,8 @@ def _formulas(reading: _Reading) -> list[list[Expression]]:
                 reason = say("nothing is written here")
                 raise _unusable(i, j, entry.findings[0].hint if entry.findings else reason)
             if j in (ALPHA, THETA) and abs(_value(entry.expression, {})) > _LARGEST_ANGLE:
-                raise _unusable(i, j, say("the angle is more than two turns; is it in degrees?"))
+                reason = say("the angle is more than two turns; is it in degrees?")
+                raise _unusable(i, j, reason)
             formulas[i].append(entry.expression)
     return formulas
 
@@ -515,7 +517,7 @@ def _variable(
         name for name in slides & in_d if name in lengths and lengths[name].joint is not None
     }
     if turning and sliding:
-        raise _unusable(i, D, say("the row has a joint variable in theta, too"))
+        raise _unusable(i, D, say("this row also has a joint variable in theta"))
     return frozenset(turning or sliding or slides & in_d)
 
 
@@ -532,9 +534,9 @@ def _cell(
     motion = sum(factors.pop(name) for name in own & factors.keys())
     for name in factors:
         if name in variables or name.startswith("theta") or name in _OWN:
-            raise _unusable(i, j, say("the joint variable of another row is here"))
+            raise _unusable(i, j, say("this is the joint variable of another row"))
         if j in (ALPHA, THETA):
-            raise _unusable(i, j, say("the letter of a length is here; write an angle"))
+            raise _unusable(i, j, say("this is the letter of a length; write an angle"))
     is_place = j in (D, THETA) or not motion
     if not is_place or abs(abs(motion) - round(abs(motion))) > 1e-9 or abs(motion) > 1.5:
         raise _unusable(i, j, say("write the joint variable once, in theta or d"))
@@ -574,10 +576,12 @@ def _notes(reading: _Reading) -> Iterator[Sentence]:
                 say("The numbers of column {column} are in {unit}.", column=COLUMNS[j], unit=unit)
             )
     if any(_is_bare(reading, row[j], j) for row in reading.entries for j in (ALPHA, THETA)):
-        notes.append(say("Angles without a unit are in {unit}.", unit=reading.angle_unit))
+        degrees = say("Angles without a unit are in degrees.")
+        radians = say("Angles without a unit are in radians.")
+        notes.append(degrees if reading.angle_unit == "degrees" else radians)
     for i, row in enumerate(reading.entries):
         for column, entry in zip(COLUMNS, row, strict=True):
-            place = say("row {row}, {column}", row=i + 1, column=column)
+            place = say("row {row}, column {column}", row=i + 1, column=column)
             notes += [joined(": ", [place, finding.hint]) for finding in entry.findings]
     yield from dict.fromkeys(notes)
 
@@ -592,15 +596,15 @@ def _is_bare(reading: _Reading, entry: Entry, j: int) -> bool:
 def _changes(made: TableRobot, own: Sequence[frozenset[str]]) -> Iterator[Sentence]:
     for joint in made.turned:
         yield say(
-            "Joint {joint} counts -q{joint} in the text. Its axis is turned over here, so that it "
-            "counts +q{joint}: the alpha of two rows, and d and theta of one row are different, "
-            "the robot is the same.",
+            "The text has -q{joint} for joint {joint}. The file turns the axis of the joint over, "
+            "so that it counts +q{joint}. Two values of alpha and signs of d and theta change, but "
+            "the robot does not.",
             joint=joint,
         )
     for row in made.joined:
         yield say(
-            "Row {row} has no joint variable. It is joined with the rows beside it; the robot is "
-            "the same.",
+            "Row {row} has no joint variable. The file joins it with the rows beside it; the robot "
+            "does not change.",
             row=row,
         )
     if not own[-1]:

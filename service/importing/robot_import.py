@@ -153,8 +153,8 @@ def imported_table(text: str, options: ImportOptions) -> ImportedRobot:
     if not difference <= _SAME_TABLE:
         raise RefusedRobotError(
             say(
-                "the robot of the file would differ by {difference:.1e} from the table",
-                difference=difference,
+                "the robot of the file would differ by {difference} from the table",
+                difference=f"{difference:.1e}",
             )
         )
     accuracy = say(
@@ -173,7 +173,7 @@ def _difference(file: str, found: PastedRobot) -> float:
     try:
         exercise = read_exercise(Path("imported.toml"), file)
     except CatalogueError as error:
-        raise RefusedRobotError(say("{reason}", reason=error.faults[0].reason)) from error
+        raise RefusedRobotError(error.faults[0].reason) from error
     robot = exercise.reference
     assert isinstance(robot, Robot)
     rng = np.random.default_rng(1)

@@ -162,7 +162,7 @@ def test_a_rounded_multiple_becomes_exact_and_is_listed(written: str) -> None:
         return
     assert first[1] == SNAPS[written]
     assert second[3].replace(" ", "") == f"theta2+{SNAPS[written]}".replace("+-", "-")
-    assert [each.split(":")[0] for each in snaps] == ["row 1, alpha", "row 2, theta"]
+    assert [each.split(":")[0] for each in snaps] == ["row 1, column alpha", "row 2, column theta"]
     assert [f"# {each}" for each in snaps] == file
 
 
@@ -212,7 +212,7 @@ def test_an_answer_is_used() -> None:
     text = HEAD + "0 | 90 | 131.2 | q1\n"
     assert rows(text, unit="mm", angles="degrees") == [["0", "90deg", "0.1312", "theta1"]]
     swapped = "0 90° h q1\nr 0 0 q2\n"
-    with pytest.raises(RefusedRobotError, match="row 1, column a: an angle is here"):
+    with pytest.raises(RefusedRobotError, match="row 1, column a: this is an angle"):
         rows(swapped, order="alpha a d theta")
     assert rows("0 0.2 h q1\n90° 0 0 q2\n", order="α a d θ", unit="cm")[0][0] == "0.002"
 
@@ -233,21 +233,24 @@ REFUSED = {
     "0 | 0 | l1*l2 | q1": "row 1, column d: write a sum of numbers, letters",
     "0 | 0 | d1+ | q1": "row 1, column d",
     "0 | 0 | 0 | -q1\nr | 0 | 0 | q2": "row 1 counts the joint variable negative",
-    "h | h | 0 | q1": "row 1, column alpha: the letter of a length",
-    "90° | 0 | 0 | q1": "row 1, column a: an angle is here",
+    "h | h | 0 | q1": "row 1, column alpha: this is the letter of a length",
+    "90° | 0 | 0 | q1": "row 1, column a: this is an angle",
     "0 | 0 | 0 | 2*q1": "row 1, column theta: write the joint variable once",
-    "0 | 0 | 0 | q1\n0 | 0 | 0 | q1 + q2": "row 2, column theta: the joint variable of another row",
-    "0 | 0 | 0 | q1\n0 | 0 | q1 | q2": "row 2, column d: the joint variable of another row",
-    "0 | 90° | d1 | 0\nd1 | 0 | 0 | q2": "row 2, column a: the joint variable of another row",
-    "0 | 0 | q1 | q1": "row 1, column d: the row has a joint variable in theta, too",
-    "0 | 0 | d1* | theta1": "row 1, column d: the row has a joint variable in theta, too",
+    "0 | 0 | 0 | q1\n0 | 0 | 0 | q1 + q2":
+        "row 2, column theta: this is the joint variable of another row",
+    "0 | 0 | 0 | q1\n0 | 0 | q1 | q2":
+        "row 2, column d: this is the joint variable of another row",
+    "0 | 90° | d1 | 0\nd1 | 0 | 0 | q2":
+        "row 2, column a: this is the joint variable of another row",
+    "0 | 0 | q1 | q1": "row 1, column d: this row also has a joint variable in theta",
+    "0 | 0 | d1* | theta1": "row 1, column d: this row also has a joint variable in theta",
     "0 | 0 | 0 | q1\n0 | 0 | 0 | 0\n0 | 0 | 0 | q3": "row 2 has no joint variable; write q2",
     "0 | 0 | 0 | q0\n0 | 0 | 0 | q1": "row 1 has the variable of another joint; its own is q1",
     "r | 0 | h | q1\nr | 90° | h | 0\nr | 0 | 0 | q2": "row 2 has no joint variable, and cannot be",
     "O | 0 | h | q1": "row 1, column a",
     "0 | 90000 | h | q1": "row 1, column alpha: the angle is more than two turns",
     "good morning": "",
-}
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("text", REFUSED)

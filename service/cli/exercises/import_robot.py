@@ -128,7 +128,7 @@ def _imported_table(file: Path, text: str, options: ImportOptions) -> ImportedRo
     """Return the robot of a table. Asks on a terminal for what the table does not say."""
     found = imported_table(text, options)
     while found.questions:
-        if not sys.stdin.isatty():
+        if not is_terminal():
             asked = [
                 say(
                     "{file}: {question} Use one of these options: {options}.",
@@ -142,6 +142,11 @@ def _imported_table(file: Path, text: str, options: ImportOptions) -> ImportedRo
         options = replace(options, **{each.name: _answer(each) for each in found.questions})
         found = imported_table(text, options)
     return found
+
+
+def is_terminal() -> bool:
+    """True if a person can answer at the terminal."""
+    return sys.stdin.isatty()
 
 
 def _option(name: str, choice: str) -> str:

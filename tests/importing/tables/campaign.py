@@ -21,7 +21,7 @@ from tests.importing.tables.styles import Typed
 
 POSES = 20
 SAME = 1e-9
-_SNAP = re.compile(r"row (\d+), (alpha|theta): (\S+) became (\S+)\.$")
+_SNAP = re.compile(r"row (\d+), column (alpha|theta): (\S+) became (\S+)\.$")
 _STEP = 15.0
 
 

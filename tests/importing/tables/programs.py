@@ -27,25 +27,35 @@ def _typed(drawn: Drawn, text: str, asked: tuple[str, ...] = (), **answers: str)
     return Typed(text, [in_metres(row) for row in drawn.rows], answers, must)
 
 
-def _terms(cell: Cell, variable: str, number: str, times: str = "*") -> str:
+def _terms(cell: Cell, variable: str, number: str, times: str) -> str:
     """Return the cell as a sum in which the constant comes first."""
     parts = [number] if cell.number else []
-    parts += [f"{'-' if f < 0 else ''}{'' if abs(f) == 1 else f'{abs(f):g}{times}'}{name}"
-              for name, f in cell.letters.items()]  # fmt: skip
+    for name, factor in cell.letters.items():
+        size = "" if abs(factor) == 1 else f"{abs(factor):g}{times}"
+        parts.append(f"{'-' if factor < 0 else ''}{size}{name}")
     if cell.motion:
         parts.append(variable if cell.motion > 0 else f"-{variable}")
-    text = "+".join(parts).replace("+-", "-")
-    return text or "0"
+    return "+".join(parts).replace("+-", "-") or "0"
 
 
-def _cells(drawn: Drawn, joint_names: str, metres: float, angle: Callable[[float], str], times: str = "*") -> Iterator[list[str]]:  # fmt: skip
+def _cells(
+    drawn: Drawn,
+    variable: str,
+    unit: float,
+    angle: Callable[[float], str],
+    times: str = "*",
+) -> Iterator[list[str]]:
+    """Yield the texts of each row in the order a, α, d, θ; ``unit`` is for lengths, per mm."""
+
+    def length(millimetres: float) -> str:
+        return repr(round(millimetres * unit, 9))
+
     for row, joint in zip(drawn.rows, drawn.joints, strict=True):
-        name = joint_names.replace("#", str(joint))
+        name = variable.replace("#", str(joint))
+        writers = {"a": length, "alpha": angle, "d": length, "theta": angle}
         yield [
-            _terms(row["a"], name, repr(round(row["a"].number * metres, 9)), times),
-            _terms(row["alpha"], name, angle(row["alpha"].number), times),
-            _terms(row["d"], name, repr(round(row["d"].number * metres, 9)), times),
-            _terms(row["theta"], name, angle(row["theta"].number), times),
+            _terms(row[column], name, write(row[column].number), times)
+            for column, write in writers.items()
         ]
 
 
@@ -86,7 +96,9 @@ def toolbox_script(drawn: Drawn, _: np.random.Generator) -> Typed | None:
 
 def web_page(drawn: Drawn, _: np.random.Generator) -> Typed:
     """Return an HTML table with units in the headers."""
-    head = "<tr><th>Link</th><th>θ<sub>i</sub> [°]</th><th>d<sub>i</sub> [mm]</th><th>a<sub>i</sub> [mm]</th><th>α<sub>i</sub> [°]</th></tr>"  # fmt: skip
+    names = ("Link", "θ<sub>i</sub> [°]", "d<sub>i</sub> [mm]", "a<sub>i</sub> [mm]",
+             "α<sub>i</sub> [°]")  # fmt: skip
+    head = "<tr>" + "".join(f"<th>{name}</th>" for name in names) + "</tr>"
     lines = []
     for i, c in enumerate(_cells(drawn, "θ#", 1.0, repr), 1):
         cells = [str(i), c[3], c[2], c[0], c[1]]
@@ -103,7 +115,8 @@ def page_without_units(drawn: Drawn, _: np.random.Generator) -> Typed:
 
 def typeset(drawn: Drawn, _: np.random.Generator) -> Typed:
     """Return a tabular in LaTeX."""
-    lines = [r"\begin{tabular}{c|cccc}", r"Link & $d_i$ [cm] & $\theta_i$ & $a_i$ [cm] & $\alpha_i$ \\ \hline"]  # fmt: skip
+    head = r"Link & $d_i$ [cm] & $\theta_i$ & $a_i$ [cm] & $\alpha_i$ \\ \hline"
+    lines = [r"\begin{tabular}{c|cccc}", head]
     degrees = lambda x: rf"{x!r}^{{\circ}}"  # noqa: E731
     for i, c in enumerate(_cells(drawn, r"q_{#}", 0.1, degrees, " "), 1):
         lines.append(f"{i} & ${c[2]}$ & ${c[3]}$ & ${c[0]}$ & ${c[1]}$ \\\\")
@@ -166,13 +179,12 @@ def modified_heads(drawn: Drawn, _: np.random.Generator) -> Typed | None:
     lines = ["i | α_{i-1} | a_{i-1} (in) | d_i (in) | θ_i"]
     for i, c in enumerate(_cells(drawn, "θ_#", 1 / 25.4, lambda x: f"{x!r}deg"), 1):
         lines.append(f"{i} | {c[1]} | {c[0]} | {c[2]} | {c[3]}")
-    rows = [
-        {
-            name: Cell(round(cell.number / 25.4, 9) * 25.4 if name in ("a", "d") else cell.number, cell.letters, cell.motion)
-            for name, cell in row.items()
-        }
-        for row in drawn.rows
-    ]  # fmt: skip
+
+    def typed_inches(name: str, cell: Cell) -> Cell:
+        number = round(cell.number / 25.4, 9) * 25.4 if name in ("a", "d") else cell.number
+        return Cell(number, cell.letters, cell.motion)
+
+    rows = [{name: typed_inches(name, cell) for name, cell in row.items()} for row in drawn.rows]
     inches = Drawn(drawn.convention, drawn.kinds, rows)
     return _typed(inches, "\n".join(lines))
 

@@ -181,7 +181,7 @@ def _sum(
     if not terms:
         return "0"
     if rng.random() < 0.4:
-        terms = terms[::-1]
+        terms.reverse()
     (sign, first), *others = terms
     text = first if sign > 0 else f"-{first}"
     return text + "".join(f" {'+' if sign > 0 else '-'} {each}" for sign, each in others)

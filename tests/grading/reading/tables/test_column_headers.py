@@ -14,7 +14,8 @@ SPELLINGS = {
     ],
     "alpha": [
         "alpha", "Alpha", "ALPHA", "α", "α_i", "α_{i}", "αᵢ", r"\alpha", r"\alpha_i", r"$\alpha_i$",
-        "alpha_i", "alpha i", "alphai", "twist", "link twist", "Link twist α", "twist angle", "∝", "∝_i", "α_x",
+        "alpha_i", "alpha i", "alphai", "twist", "link twist", "Link twist α", "twist angle",
+        "∝", "∝_i", "α_x",
         "link twist angle", "alpha (twist)", "⍺ⱼ", "⍺", "𝛼", "𝛼ᵢ", "al",
     ],
     "d": [
@@ -24,7 +25,8 @@ SPELLINGS = {
     "theta": [
         "theta", "Theta", "θ", "Θ", "ϑ", "θ_i", "θ_{i}", "θᵢ", r"\theta", r"\theta_i",
         r"$\theta_{i}$", "theta_i", "thetai", "q", "q_i", "qᵢ", "qi", "joint angle",
-        "Joint angle θ", "angle", "th", "θⱼ", "φ_i", r"$\phi_i$", "θ_z", r"$\theta_i^*$", "theta*",
+        "Joint angle θ", "angle", "th", "θⱼ",
+        "φ_i", r"$\phi_i$", "θ_z", r"$\theta_i^*$", "theta*",
     ],
     "label": [
         "i", "j", "n", "k", "#", "link", "Link", "joint", "Joint", "Link i", "joint i", "Joint #",
