@@ -26,7 +26,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips robots durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips tables robots durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -141,6 +141,9 @@ wheel: $(dev) ## install the built wheel with pip and pipx on every Python that 
 slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip of the table: is it named?
 	$(python) -m tests.pose_slips --show
 	$(python) -m tests.pose_slips.unseen --arms 200 --show
+
+tables: $(dev) ## import 500 tables, typed by people and by programs: is it the same robot? (SEED=)
+	$(python) -m tests.importing.tables --tables 500 --seed "$(SEED)"
 
 robots: $(dev) ## draw SEEDS= practice robots of each level: statement, marks, links, labels, forms
 	for level in 1 2 3 4; do $(python) -m tests.variants.robots --level $$level --seeds "$(SEEDS)" || exit; done

@@ -4,22 +4,21 @@ import json
 import math
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 
-from service.importing.home_statement import (
-    HomeRobot,
-    Letters,
-    home_statement,
-    number_text,
-    tool_label,
-)
-from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Row, Table, modified_rows
+import numpy as np
+
+from service.importing.home_statement import HomeRobot, home_statement, sum_text, tool_label
+from service.importing.numbers import angle_text, exact_text, number_text
+from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Row, modified_rows
 from service.kinematics.dh import Convention
 
 _WIDTH = 104
 _POINTS_OF_A_ROW = 2
 _MINUTES_A_ROW = 6
 _INDUSTRIAL = 6
+# Half of the last decimal that a statement shows, in metres.
+_NO_LENGTH = 5e-7
 # x1 turns over between row 1 and row 2.
 _ROWS_TO_TURN = 2
 _MEANINGS = {"a": "distance between two axes", "d": "distance along an axis"}
@@ -27,30 +26,40 @@ _MEANINGS = {"a": "distance between two axes", "d": "distance along an axis"}
 
 @dataclass(frozen=True)
 class Draft:
-    """The author's choices for a new exercise."""
+    """The author's choices for a new exercise.
+
+    ``typed`` has the cells of the author's own table, if it is another one than the robot's.
+    """
 
     title: str
     source: str
     convention: Convention = Convention.STANDARD
-    remarks: Sequence[str] = field(default_factory=tuple)
+    remarks: Sequence[str] = ()
+    typed: Sequence[Row[str]] = ()
 
 
-def letters_for(table: Table) -> Letters:
-    """Return a letter for each length of a standard table that is not 0."""
-    return {
-        (i, j): f"{COLUMNS[j]}{i + 1}"
-        for i, row in enumerate(table)
-        for j in (A, D)
-        if number_text(float(row[j])) != "0"
-    }
+def lettered(robot: HomeRobot) -> HomeRobot:
+    """Return the robot with a letter for each length that is not 0, such as a2 and d4.
+
+    A length along the axis of a sliding joint gets h3 instead of d3, which is its variable.
+    """
+    table = robot.table.copy()
+    letters, lengths = {}, {}
+    for i, j in np.argwhere(np.abs(table) > _NO_LENGTH).tolist():
+        if j not in (A, D):
+            continue
+        slides = j == D and robot.structure[i : i + 1] == "P"
+        name = f"{'h' if slides else COLUMNS[j]}{i + 1}"
+        letters[i, j] = {name: math.copysign(1.0, table[i, j])}
+        lengths[name] = abs(float(table[i, j]))
+        table[i, j] = 0
+    return replace(robot, table=table, letters=letters, lengths=lengths)
 
 
 def exercise_text(robot: HomeRobot, draft: Draft) -> str:
     """Return an exercise file that asks for the table and the pose of the robot."""
-    robot = replace(robot, letters=without_clashes(robot))
     statement = home_statement(robot, draft.convention)
     rows = rows_in(robot, draft.convention)
-    joints = variable_names(robot.structure)
     joint_count, tool = len(robot.structure), tool_label(robot, draft.convention)
     points = _POINTS_OF_A_ROW * len(rows)
     asked = "one row for each joint" + (
@@ -70,7 +79,7 @@ statement = \"\"\"
 [robot]
 structure = {_string(robot.structure)}
 convention = {_string(draft.convention.value)}
-joints = {json.dumps(joints)}
+joints = {json.dumps(robot.variables)}
 table = [
     # a, alpha, d, theta
 {_table(rows)}
@@ -97,12 +106,23 @@ follows = "table"
 title = "The table of this file"
 kind = "right"
 answers.table = {_answer(rows)}
-{_equivalent_check(robot, draft.convention)}"""
+{_typed_check(draft.typed)}{_equivalent_check(robot, draft.convention)}"""
 
 
 def _answer(rows: Sequence[Row[str]]) -> str:
     lines = ["a, alpha, d, theta", *(", ".join(row) for row in rows)]
     return '"""\n' + "\n".join(lines) + '\n"""'
+
+
+def _typed_check(typed: Sequence[Row[str]]) -> str:
+    if not typed:
+        return ""
+    return f"""
+[[checks]]
+title = "The table as it was imported"
+kind = "equivalent"
+answers.table = {_answer(typed)}
+"""
 
 
 def _equivalent_check(robot: HomeRobot, convention: Convention) -> str:
@@ -114,7 +134,10 @@ def _equivalent_check(robot: HomeRobot, convention: Convention) -> str:
     table[0, [A, ALPHA]] *= -1
     table[0, THETA] += math.pi
     table[1, THETA] -= math.pi
-    rows = rows_in(replace(robot, table=table), convention)
+    letters = dict(robot.letters)
+    if (0, A) in letters:
+        letters[0, A] = {name: -factor for name, factor in letters[0, A].items()}
+    rows = rows_in(replace(robot, table=table, letters=letters), convention)
     return f"""
 [[checks]]
 title = "The same robot with x1 turned over"
@@ -128,6 +151,9 @@ def rows_in(robot: HomeRobot, convention: Convention) -> list[Row[str]]:
     rows = _rows(robot)
     if convention is Convention.MODIFIED:
         rows = modified_rows(rows, "0")
+        a, alpha = robot.start
+        first = sum_text(robot.letters.get((-1, A), {}), exact_text(a)), angle_text(alpha)
+        rows[0] = (*first, *rows[0][2:])
         if set(rows[-1]) == {"0"}:
             rows.pop()
     return rows
@@ -142,60 +168,20 @@ def _summary(robot: HomeRobot) -> str:
     return f"{len(robot.structure)} joints ({robot.structure}), {lengths}."
 
 
-def variable_names(structure: str) -> list[str]:
-    """Return the names of the joint variables, such as theta1 and d2 for RP."""
-    return [f"{'d' if kind == 'P' else 'theta'}{i}" for i, kind in enumerate(structure, 1)]
-
-
-def without_clashes(robot: HomeRobot) -> Letters:
-    """Return the letters of the robot's lengths; for a sliding joint, h3 instead of d3."""
-    # d3 is the joint variable.
-    sliding = {i for i, kind in enumerate(robot.structure) if kind == "P"}
-    return {
-        cell: f"h{cell[0] + 1}" if cell[0] in sliding and cell[1] == D else name
-        for cell, name in robot.letters.items()
-    }
-
-
 def _rows(robot: HomeRobot) -> list[Row[str]]:
-    variables = variable_names(robot.structure)
     rows = []
-    for i, row in enumerate(robot.table):
-        cells = [
-            _length(robot, i, A), angle_text(float(row[ALPHA])),
-            _length(robot, i, D), angle_text(float(row[THETA])),
-        ]  # fmt: skip
-        if i < len(variables):
-            column = D if robot.structure[i] == "P" else THETA
-            cells[column] = _moving(variables[i], cells[column])
-        a, alpha, d, theta = cells
+    for i, row in enumerate(robot.table.tolist()):
+        sums: list[dict[str, float]] = [dict(robot.letters.get((i, j), {})) for j in range(4)]
+        if i < len(robot.structure):
+            j = D if robot.structure[i] == "P" else THETA
+            sums[j] = {robot.variables[i]: 1.0, **sums[j]}
+        cells = zip(sums, row, strict=True)
+        a, alpha, d, theta = (
+            sum_text(letters, angle_text(number) if j in (ALPHA, THETA) else exact_text(number))
+            for j, (letters, number) in enumerate(cells)
+        )
         rows.append((a, alpha, d, theta))
     return rows
-
-
-def _length(robot: HomeRobot, i: int, j: int) -> str:
-    value = float(robot.table[i, j])
-    letter = robot.letters.get((i, j))
-    if letter is None:
-        return number_text(value)
-    return f"-{letter}" if value < 0 else letter
-
-
-def _moving(variable: str, constant: str) -> str:
-    if constant == "0":
-        return variable
-    sign, size = ("-", constant[1:]) if constant.startswith("-") else ("+", constant)
-    return f"{variable} {sign} {size}"
-
-
-def angle_text(angle: float) -> str:
-    """Return an angle in degrees.
-
-    >>> angle_text(math.pi / 2), angle_text(-1e-12)
-    ('90deg', '0')
-    """
-    text = number_text(math.degrees(angle))
-    return text if text == "0" else f"{text}deg"
 
 
 def _table(rows: Sequence[Row[str]]) -> str:
@@ -213,15 +199,19 @@ def _symbols(robot: HomeRobot) -> str:
     """Return the section ``[symbols]`` of an exercise file."""
     # It has the variables of sliding joints and the letters, with ranges.
     lines = []
-    for i, kind in enumerate(robot.structure, 1):
+    for i, kind in enumerate(robot.structure):
         if kind == "P":
             lines.append(
-                f'd{i} = {{ kind = "length", unit = "m", range = [0.1, 0.6], '
-                f'description = "displacement of joint {i}" }}'
+                f'{robot.variables[i]} = {{ kind = "length", unit = "m", range = [0.1, 0.6], '
+                f'description = "displacement of joint {i + 1}" }}'
             )
-    for name, length in robot.lengths().items():
-        low, high = (number_text(round(factor * length, 4)) for factor in (0.7, 1.3))
-        meaning = _MEANINGS["a" if name.startswith("a") else "d"]
+    along = {name for (_, j), letters in robot.letters.items() if j == D for name in letters}
+    across = {name for (_, j), letters in robot.letters.items() if j == A for name in letters}
+    for name, length in robot.lengths.items():
+        low, high = (exact_text(float(f"{factor * length:.3g}")) for factor in (0.7, 1.3))
+        meaning = _MEANINGS["a" if name in across else "d"]
+        if name in across & along:
+            meaning = "length of links"
         if robot.real:
             meaning += f" ({number_text(length)} m on the real robot)"
         lines.append(

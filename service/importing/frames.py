@@ -13,13 +13,13 @@ from itertools import pairwise
 import numpy as np
 
 from service.importing.axes import PARALLEL, HomeAxis, common_normal
-from service.importing.snapping import NEAR, STEP
-from service.kinematics.chain import ALPHA, THETA, Table, pose
+from service.importing.snapping import Snaps
+from service.kinematics.chain import ALPHA, COLUMNS, THETA, Table, pose
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers, inverse
+from service.translations import say
 
 _NONE = 1e-9
-_IS_ANGLE = np.isin(np.arange(4), (ALPHA, THETA))
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,8 +37,11 @@ class Placed:
     tool: Matrices
 
 
-def placed(axes: list[HomeAxis], tip: Matrices) -> Placed:
-    """Return the DH table of an arm with these joint axes and this pose of the tip."""
+def placed(axes: list[HomeAxis], tip: Matrices, snaps: Snaps | None = None) -> Placed:
+    """Return the DH table of an arm with these joint axes and this pose of the tip.
+
+    Angles that inexact axes leave inexact are snapped; ``snaps`` lists them.
+    """
     base = _base_frame(axes[0])
     frame, rows = base, []
     for before, axis in pairwise(axes):
@@ -46,15 +49,12 @@ def placed(axes: list[HomeAxis], tip: Matrices) -> Placed:
         rows.append(row)
     row, frame = _last_row(frame, tip)
     rows.append(row)
-    return Placed(_snapped(np.array(rows)), base, inverse(frame) @ tip)
-
-
-def _snapped(table: Table) -> Table:
-    """Return the table with clean angles: 90° instead of 90.005°."""
-    # Inexact axes in a file give inexact angles.
-    multiples = np.round(table / STEP) * STEP
-    is_near = (np.abs(table - multiples) <= NEAR) & _IS_ANGLE
-    return np.asarray(np.where(is_near, multiples, table))
+    table, snaps = np.array(rows), snaps or Snaps()
+    for i, row in enumerate(table):
+        for j in (ALPHA, THETA):
+            place = say("row {row}, column {column}", row=i + 1, column=COLUMNS[j])
+            row[j] = snaps.angle(place, float(row[j]))
+    return Placed(table, base, inverse(frame) @ tip)
 
 
 def _base_frame(axis: HomeAxis) -> Matrices:

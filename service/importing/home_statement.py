@@ -5,11 +5,12 @@ The axes and the tool frame can be computed from these words alone.
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
-from service.kinematics.chain import ALPHA, A, Table, frames
+from service.importing.numbers import exact_text, number_text
+from service.kinematics.chain import ALPHA, A, D, Table, frames
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Matrices, Numbers
 from service.translations import Sentence, bulleted, joined, paragraph, say, template
@@ -41,7 +42,9 @@ _PRISMATIC = (
     template("nine prismatic joints"),
     template("ten prismatic joints"),
 )
-Letters = Mapping[tuple[int, int], str]
+# A sum of letters: the factor of each letter.
+LetterSum = Mapping[str, float]
+Letters = Mapping[tuple[int, int], LetterSum]
 
 
 @dataclass(frozen=True, slots=True)
@@ -55,35 +58,56 @@ class _Way:
 
 @dataclass(frozen=True)
 class HomeRobot:
-    """A standard DH table of constants, the joints' types, and letters in place of some lengths.
+    """A standard DH table of constants, and the joints' types.
 
-    ``letters`` has the letter of a cell by row and column. An additional last row is a fixed tool
-    frame.
+    ``letters`` has the sum of letters that is added to a length of the table, by row and column;
+    ``lengths`` has a typical length for each letter. An additional last row is a fixed tool frame.
+    ``start`` are a and α from the base frame to the axis of joint 1, which are not 0 only in the
+    modified convention; the letters of this a are in row -1.
     """
 
-    # A minus sign in the table stays in front of the letter. A number as text may take the place of
-    # a letter: the statement then has sums such as "0.2 + 0.35".
+    # A number as text may take the place of a letter: the statement then has sums such as
+    # "0.2 + 0.35".
 
     table: Table
     structure: str
-    letters: Letters
+    letters: Letters = field(default_factory=dict)
+    lengths: Mapping[str, float] = field(default_factory=dict)
+    start: tuple[float, float] = (0.0, 0.0)
     real: bool = False
     """True if the lengths are those of a real robot."""
 
-    def lengths(self) -> dict[str, float]:
-        """The value of each letter, which is a length."""
-        return {name: abs(float(self.table[cell])) for cell, name in self.letters.items()}
+    @property
+    def variables(self) -> list[str]:
+        """The names of the joint variables, such as theta1 and d2 for RP.
 
-    def frames(self, **lengths: float) -> Matrices:
-        """Return the poses of the frames {0} to {n} at home. Letters not in ``lengths`` are 0."""
-        table = self.table.copy()
-        for cell, name in self.letters.items():
-            table[cell] = np.sign(table[cell]) * lengths.get(name, 0.0)
-        return frames(table, Convention.STANDARD)
+        A sliding joint has the variable q2 if d2 is the letter of a length.
+        """
+        letters = {name.replace("_", "") for name in self.lengths}
+        return [
+            f"theta{i}" if kind == "R" else f"q{i}" if f"d{i}" in letters else f"d{i}"
+            for i, kind in enumerate(self.structure, 1)
+        ]
+
+    @property
+    def has_numbers(self) -> bool:
+        """True if a length is written as a number."""
+        of_letters = any(name[0].isalpha() for name in self.lengths)
+        return bool(self.table[:, [A, D]].any() or self.start[0]) or not of_letters
+
+    def frames(self, lengths: Mapping[str, float]) -> Matrices:
+        """Return the frames on the joint axes and the tool frame at home, in the base frame.
+
+        Letters not in ``lengths`` are 0.
+        """
+        rows = np.vstack([[*self.start, 0, 0], self.table])
+        for (i, j), letters in self.letters.items():
+            rows[i + 1, j] += sum(factor * lengths.get(name, 0) for name, factor in letters.items())
+        return frames(rows, Convention.STANDARD)[1:]
 
 
 class UnevenLettersError(ValueError):
-    """A coordinate contains a letter with a factor other than 1 or -1."""
+    """A coordinate of a real robot contains a letter with a factor such as 0.707107."""
 
     # The text would be unreadable.
 
@@ -91,12 +115,11 @@ class UnevenLettersError(ValueError):
 def home_statement(robot: HomeRobot, convention: Convention) -> Sentence:
     """Return the statement of an exercise about the robot.
 
-    Raises UnevenLettersError if a coordinate is not a sum of letters.
+    Raises UnevenLettersError if a coordinate of a real robot is not a sum of letters.
     """
-    lettered = any(name[0].isalpha() for name in robot.letters.values())
     at_home = paragraph(
         _structure_in_words(robot.structure),
-        "" if lettered else say("All lengths are in metres."),
+        say("All lengths are in metres.") if robot.has_numbers else "",
         say("At home all joint variables are 0."),
         say("These are the axes at home, in the base frame {{0}}:"),
     )
@@ -118,8 +141,10 @@ def tool_label(robot: HomeRobot, convention: Convention) -> str:
     """Return the label of the tool frame: "e", or else the number of the last row."""
     # It is "e" if a fixed row leads to the tool frame. In the modified convention, frame n is on
     # the last axis. If the tool frame is not on this axis, the table has a row e.
-    last_a, last_alpha = robot.table[-1, [A, ALPHA]]
-    fixed = convention is Convention.MODIFIED and max(abs(last_a), abs(last_alpha)) > _SAME
+    last = len(robot.table) - 1
+    last_a, last_alpha = robot.table[last, [A, ALPHA]]
+    begins_apart = max(abs(last_a), abs(last_alpha)) > _SAME or (last, A) in robot.letters
+    fixed = convention is Convention.MODIFIED and begins_apart
     return "e" if fixed or len(robot.table) > len(robot.structure) else str(len(robot.table))
 
 
@@ -137,7 +162,7 @@ def _structure_in_words(structure: str) -> Sentence:
 
 
 def _joints_in_words(robot: HomeRobot) -> Iterator[Sentence]:
-    at_home = robot.frames(**robot.lengths())
+    at_home = robot.frames(robot.lengths)
     for i, (letter, origin) in enumerate(zip(robot.structure, _origins(robot), strict=False)):
         way = _way(at_home[i, :3, 2])
         if letter == "P":
@@ -148,7 +173,7 @@ def _joints_in_words(robot: HomeRobot) -> Iterator[Sentence]:
 
 def _tool_in_words(robot: HomeRobot, tool_frame: str) -> Sentence:
     *_, origin = _origins(robot)
-    end = robot.frames(**robot.lengths())[-1]
+    end = robot.frames(robot.lengths)[-1]
     x, z = _way(end[:3, 0]), _way(end[:3, 2])
     if tool_frame == "e":
         x_points = say(x.its_points, axis="x", **x.values)
@@ -221,12 +246,12 @@ def _tilted(direction: Numbers) -> _Way | None:
 
 
 def _origins(robot: HomeRobot) -> list[str]:
-    constant = robot.frames()[:, :3, 3]
-    shares = {name: robot.frames(**{name: 1.0})[:, :3, 3] - constant for name in robot.lengths()}
+    constant = robot.frames({})[:, :3, 3]
+    shares = {name: robot.frames({name: 1.0})[:, :3, 3] - constant for name in robot.lengths}
     return [
         "("
         + ", ".join(
-            _sum_text(constant[i, k], {name: share[i, k] for name, share in shares.items()})
+            _coordinate(robot, constant[i, k], {name: each[i, k] for name, each in shares.items()})
             for k in range(3)
         )
         + ")"
@@ -234,27 +259,29 @@ def _origins(robot: HomeRobot) -> list[str]:
     ]
 
 
-def _sum_text(constant: float, shares: Mapping[str, float]) -> str:
+def _coordinate(robot: HomeRobot, constant: float, shares: Mapping[str, float]) -> str:
+    factors = {name: share for name, share in shares.items() if abs(share) > _SAME}
+    uneven = any(abs(4 * factor - round(4 * factor)) > _SAME for factor in factors.values())
+    if uneven and robot.real:
+        # A real robot has numbers, which are easier to read.
+        raise UnevenLettersError
+    rounded = {name: round(factor, 6) for name, factor in factors.items()}
+    return sum_text(rounded, number_text(constant))
+
+
+def sum_text(letters: LetterSum, number: str) -> str:
+    """Return a sum of letters and a number as text.
+
+    >>> sum_text({"a1": 1.0, "a2": -2.0}, "-0.5"), sum_text({}, "0")
+    ('a1 - 2 a2 - 0.5', '0')
+    """
     terms = []
-    for name, share in shares.items():
-        if abs(share) < _SAME:
-            continue
-        if abs(abs(share) - 1) > _SAME:
-            raise UnevenLettersError
-        terms.append(("-" if share < 0 else "+", name))
-    if abs(constant) > _SAME:
-        terms.append(("-" if constant < 0 else "+", number_text(abs(constant))))
+    for name, factor in letters.items():
+        times = "" if abs(factor) == 1 else f"{exact_text(abs(factor))} "
+        terms.append(("-" if factor < 0 else "+", times + name))
+    if number != "0":
+        terms.append(("-" if number.startswith("-") else "+", number.removeprefix("-")))
     if not terms:
         return "0"
     (sign, first), *others = terms
     return ("-" if sign == "-" else "") + first + "".join(f" {s} {t}" for s, t in others)
-
-
-def number_text(value: float) -> str:
-    """Return a number with at most six decimals.
-
-    >>> number_text(-0.4250000001), number_text(-1e-12)
-    ('-0.425', '0')
-    """
-    text = f"{value:.6f}".rstrip("0").rstrip(".")
-    return "0" if text in ("-0", "") else text

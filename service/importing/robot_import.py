@@ -1,17 +1,32 @@
 """Make the text of an exercise file from a URDF file or a pasted DH table."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Final
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Final, Literal
 
 import numpy as np
 
+from service.catalogue import CatalogueError
+from service.catalogue.load import read_exercise
+from service.catalogue.robots.robot import Robot
+from service.expressions import AngleUnit
 from service.importing.axes import UnclearAxesError, home_axes
-from service.importing.exercise_text import Draft, exercise_text, letters_for
+from service.importing.exercise_text import Draft, exercise_text, lettered
 from service.importing.frames import Placed, greatest_difference, placed
-from service.importing.home_statement import HomeRobot, UnevenLettersError, number_text
-from service.importing.pasted_robot import UnusableTableError, robot_of_table
+from service.importing.home_statement import HomeRobot, UnevenLettersError
+from service.importing.numbers import number_text
+from service.importing.pasted_robot import (
+    OpenQuestionsError,
+    PastedRobot,
+    Question,
+    TableChoices,
+    UnusableTableError,
+    pasted_robot,
+)
+from service.importing.snapping import Snaps
 from service.importing.urdf import UnusableUrdfError, read_urdf, tips
+from service.kinematics.chain import ALPHA, COLUMNS, THETA, Row, Table, pose
 from service.kinematics.dh import Convention
 from service.translations import say
 
@@ -20,6 +35,8 @@ _SAME: Final = 1e-6
 _MOST_LINKS: Final = 20
 _LONGEST_LINK: Final = 60
 _UNEVEN: Final = say("with these angles, letters give no readable statement; do without letters")
+_POSES: Final = 100
+_SAME_TABLE: Final = 1e-9
 
 
 class RefusedRobotError(ValueError):
@@ -32,22 +49,33 @@ class SeveralTipsError(RefusedRobotError):
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ImportOptions:
-    """The author's choices. ``base`` and ``tip`` are links in a URDF file."""
+    """The author's choices. ``base`` and ``tip`` are links in a URDF file.
+
+    ``order`` and ``unit`` (of lengths) and ``angles`` say what a DH table leaves open. Without
+    ``convention``, it is the convention that a table names, or else the standard one.
+    """
 
     title: str
     source: str
-    convention: Convention = Convention.STANDARD
+    convention: Convention | None = None
     base: str = ""
     tip: str = ""
     letters: bool = False
+    order: str = ""
+    unit: str = ""
+    angles: Literal["", AngleUnit] = ""
 
 
 @dataclass(frozen=True, slots=True)
 class ImportedRobot:
-    """The text of an exercise file, and remarks for its author."""
+    """The text of an exercise file, and remarks for its author.
 
-    text: str
+    If the text of a table leaves something open, there are only ``questions``.
+    """
+
+    text: str = ""
     remarks: Sequence[str] = ()
+    questions: Sequence[Question] = ()
 
 
 def imported_urdf(data: bytes, options: ImportOptions) -> ImportedRobot:
@@ -64,10 +92,12 @@ def imported_urdf(data: bytes, options: ImportOptions) -> ImportedRobot:
                     say("name the tool's link; the tree ends at: {links}", links=_shown(ends))
                 )
             [tip] = ends
-        arm, exact = read_urdf(data, tip, options.base or None)
-        frames = placed(*home_axes(arm))
+        snaps = Snaps()
+        arm, exact = read_urdf(data, tip, options.base or None, snaps)
+        frames = placed(*home_axes(arm), snaps)
     except (UnusableUrdfError, UnclearAxesError) as error:
         raise RefusedRobotError(error.args[0]) from error
+    frames = replace(frames, table=_written_numbers(frames.table))
     length, angle = greatest_difference(frames, arm.structure, exact.pose)
     if not length <= _LARGEST_DIFFERENCE:
         raise RefusedRobotError(
@@ -81,37 +111,106 @@ def imported_urdf(data: bytes, options: ImportOptions) -> ImportedRobot:
         length=f"{1000 * length:.4f}",
         angle=f"{np.degrees(angle):.4f}",
     )
-    remarks = [accuracy, *_ends(frames, arm.base, arm.tip, len(arm.structure))]
-    letters = letters_for(frames.table) if options.letters else {}
-    return _written(HomeRobot(frames.table, arm.structure, letters, real=True), options, remarks)
+    remarks = [
+        accuracy,
+        *snaps.remarks,
+        *_ends(frames, arm.base, arm.tip, len(arm.structure)),
+    ]
+    robot = HomeRobot(frames.table, arm.structure, real=True)
+    convention = options.convention or Convention.STANDARD
+    made = _written(lettered(robot) if options.letters else robot, convention, options, remarks)
+    return ImportedRobot(made, remarks)
+
+
+def _written_numbers(table: Table) -> Table:
+    """Return the table with lengths and angles as a person would write them."""
+    # Lengths have six decimals in metres, angles six in degrees.
+    angles = np.isin(np.arange(len(COLUMNS)), (ALPHA, THETA))
+    rounded = np.where(angles, np.radians(np.round(np.degrees(table), 6)), np.round(table, 6))
+    return np.asarray(rounded) + 0.0
 
 
 def imported_table(text: str, options: ImportOptions) -> ImportedRobot:
-    """Return an exercise about the robot of a pasted DH table. Raises RefusedRobotError."""
+    """Return an exercise about the robot of a pasted DH table, or questions about the table.
+
+    Raises RefusedRobotError.
+    """
+    choices = TableChoices(
+        order=options.order,
+        unit=options.unit,
+        angles=options.angles,
+        convention=options.convention,
+    )
     try:
-        robot = robot_of_table(text, options.convention)
+        found = pasted_robot(text, choices)
+    except OpenQuestionsError as error:
+        return ImportedRobot(questions=error.questions)
     except UnusableTableError as error:
         raise RefusedRobotError(error.args[0]) from error
-    return _written(robot, options, [])
+    robot, convention = found.made.robot, found.table.convention
+    file = _written(robot, convention, options, found.remarks, found.typed)
+    difference = _difference(file, found)
+    if not difference <= _SAME_TABLE:
+        raise RefusedRobotError(
+            say(
+                "the robot of the file would differ by {difference} from the table",
+                difference=f"{difference:.1e}",
+            )
+        )
+    accuracy = say(
+        "Largest difference to the table at 100 poses: {difference} (m, or entries of the "
+        "rotation matrix).",
+        difference=f"{difference:.1e}",
+    )
+    return ImportedRobot(file, [accuracy, *found.remarks])
+
+
+def _difference(file: str, found: PastedRobot) -> float:
+    """Return the greatest difference between the poses of a file and those of the text as read.
+
+    Raises RefusedRobotError if the file cannot be read.
+    """
+    try:
+        exercise = read_exercise(Path("imported.toml"), file)
+    except CatalogueError as error:
+        raise RefusedRobotError(error.faults[0].reason) from error
+    robot = exercise.reference
+    assert isinstance(robot, Robot)
+    rng = np.random.default_rng(1)
+    lengths = {v.name: rng.uniform(0.1, 2, _POSES) for v in exercise.variables if v.joint is None}
+    variables = [rng.uniform(-np.pi, np.pi, _POSES) for _ in robot.joints]
+    moves = iter(variables)
+    motions = [next(moves) if own else np.zeros(_POSES) for own in found.table.own]
+    named = zip(robot.joints, variables, strict=True)
+    values = lengths | {joint.variable: value for joint, value in named}
+    reached = robot.pose(values, _POSES)
+    expected = pose(found.table.values(lengths, motions), found.table.convention)
+    return float(np.abs(reached - expected).max())
 
 
 def _shown(links: Sequence[str]) -> str:
     return ", ".join(link[:_LONGEST_LINK] for link in links[:_MOST_LINKS])
 
 
-def _written(robot: HomeRobot, options: ImportOptions, remarks: Sequence[str]) -> ImportedRobot:
-    draft = Draft(options.title, options.source, options.convention, remarks)
+def _written(
+    robot: HomeRobot,
+    convention: Convention,
+    options: ImportOptions,
+    remarks: Sequence[str],
+    typed: Sequence[Row[str]] = (),
+) -> str:
+    draft = Draft(options.title, options.source, convention, remarks, typed)
     try:
-        return ImportedRobot(exercise_text(robot, draft), remarks)
+        return exercise_text(robot, draft)
     except UnevenLettersError as error:
         raise RefusedRobotError(_UNEVEN) from error
 
 
 def _ends(frames: Placed, base: str, tip: str, last: int) -> list[str]:
     remarks: list[str] = []
-    for pose, frame, link in ((frames.base, "{0}", base), (frames.tool, f"{{{last}}}", tip)):
-        if np.abs(pose - np.eye(4)).max() > _SAME:
-            rows = "; ".join(" ".join(number_text(each) for each in row) for row in pose[:3])
+    for shift, frame, link in ((frames.base, "{0}", base), (frames.tool, f"{{{last}}}", tip)):
+        if np.abs(shift - np.eye(4)).max() > _SAME:
+            rows = "; ".join(" ".join(number_text(each) for each in row) for row in shift[:3])
             where = say("frame {frame} in the link {link}", frame=frame, link=link)
             if link != base:
                 where = say("{link} in {frame}", link=link, frame=frame)

@@ -1,43 +1,99 @@
-"""Undo the rounding in robot files: 1.5708 becomes π/2."""
+"""Undo the rounding in robot files and tables: 1.5708 becomes π/2."""
 
 # Numbers are snapped before any common normal is computed: two axes that should be parallel and are
 # 0.000004 rad apart have a common normal kilometres away.
 
 import math
+from collections.abc import Sequence
 from typing import Final
 
 import numpy as np
 
+from service.importing.numbers import angle_text, exact_text
 from service.kinematics.transforms import Numbers
+from service.translations import Sentence, say
 
 STEP: Final = math.radians(15)
 NEAR: Final = 1e-4
 _FEWEST_DECIMALS: Final = 2
 _LENGTH_DECIMALS: Final = 5
+# Smaller changes are errors of floating-point numbers, not of a file.
+_LEAST_SNAP: Final = 1e-12
 
 
-def snapped_angle(text: str) -> float:
+def snapped_angle(value: float, decimals: int = 0) -> float:
     """Return an angle in radians; a rounded multiple of 15° becomes exact.
 
-    >>> snapped_angle("1.57") == math.pi / 2, snapped_angle("1.6")
-    (True, 1.6)
+    ``decimals`` is the number of decimals with which the angle was written in radians, or 0.
+
+    >>> snapped_angle(1.57, 2) == math.pi / 2, snapped_angle(0.7847, 4)
+    (True, 0.7847)
     """
+    return _multiple(value) if is_multiple(value, decimals) else value
+
+
+def is_multiple(value: float, decimals: int = 0) -> bool:
+    """True if an angle in radians is a multiple of 15°, exact or rounded."""
     # A number is a rounded multiple if it is within 1e-4 of the multiple. A number with two or more
     # decimals is also a rounded multiple if it equals the multiple, rounded to the same number of
     # decimals.
-    value = float(text)
-    multiple = round(value / STEP) * STEP
-    decimals = len(text.partition(".")[2]) if "e" not in text.lower() else 0
-    rounded = decimals >= _FEWEST_DECIMALS and round(multiple, decimals) == value
-    return multiple if rounded or abs(value - multiple) <= NEAR else value
+    multiple = _multiple(value)
+    rounded = round(multiple, decimals) if decimals >= _FEWEST_DECIMALS else multiple
+    return abs(value - multiple) <= NEAR or abs(value - rounded) < _LEAST_SNAP
 
 
-def snapped_length(text: str) -> float:
+def _multiple(value: float) -> float:
+    return round(value / STEP) * STEP
+
+
+def decimals_of(text: str) -> int:
+    """Return the number of decimals of a written number; 0 for a number such as 1e-3."""
+    return len(text.partition(".")[2]) if "e" not in text.lower() else 0
+
+
+def snapped_length(value: float) -> float:
     """Return a length in metres, rounded to 0.01 mm."""
-    return round(float(text), _LENGTH_DECIMALS)
+    return round(value, _LENGTH_DECIMALS)
 
 
 def snapped_direction(direction: Numbers) -> Numbers:
     """Return a unit vector in which entries near 0 are exactly 0."""
     kept = np.where(np.abs(direction) <= NEAR, 0.0, direction)
     return np.asarray(kept / np.linalg.norm(kept))
+
+
+class Snaps:
+    """The numbers that were changed, one by one, as remarks for the author."""
+
+    def __init__(self) -> None:
+        self.remarks: list[Sentence] = []
+
+    def angle(self, place: str, value: float, written: str = "") -> float:
+        """Return the snapped angle. ``written`` is its text in radians, if it was written so."""
+        snapped = snapped_angle(value, decimals_of(written))
+        self._note(place, value - snapped, written or angle_text(value), angle_text(snapped))
+        return snapped
+
+    def length(self, place: str, written: str) -> float:
+        """Return the snapped length."""
+        value = float(written)
+        snapped = snapped_length(value)
+        self._note(place, value - snapped, written, exact_text(snapped))
+        return snapped
+
+    def direction(self, place: str, direction: Numbers) -> Numbers:
+        """Return the snapped direction."""
+        snapped = snapped_direction(direction)
+        change = float(np.abs(snapped - direction).max())
+        self._note(place, change, _vector(direction), _vector(snapped))
+        return snapped
+
+    def _note(self, place: str, change: float, written: str, value: str) -> None:
+        if abs(change) > _LEAST_SNAP and written != value:
+            self.remarks.append(
+                say("{place}: {written} became {value}.", place=place, written=written, value=value)
+            )
+
+
+def _vector(numbers: Sequence[float] | Numbers) -> str:
+    return f"({', '.join(map(exact_text, numbers))})"

@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from service.importing.snapping import snapped_angle, snapped_direction, snapped_length
+from service.importing.snapping import Snaps
 from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
 from service.translations import say
 
@@ -102,7 +102,9 @@ class _Collector:
             raise UnusableUrdfError(
                 say("the file has more than {most} elements or is too deep", most=_MOST_ELEMENTS)
             )
-        if "xacro" in tag or any("${" in value or "$(" in value for value in attributes.values()):
+        # Many makers leave a property behind that nothing uses.
+        is_template = "xacro" in tag and tag != "xacro:property"
+        if is_template or any("${" in value or "$(" in value for value in attributes.values()):
             raise UnusableUrdfError(
                 say(
                     "the file is a xacro template; expand it first: xacro arm.urdf.xacro > arm.urdf"
@@ -176,9 +178,12 @@ def _ends(collected: _Collector) -> list[str]:
     return [link for link in collected.links if link not in parents]
 
 
-def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]:
+def read_urdf(
+    data: bytes, tip: str, base: str | None = None, snaps: Snaps | None = None
+) -> tuple[Arm, Arm]:
     """Return the arm from ``base`` to ``tip`` twice: with rounded numbers repaired, and unchanged.
 
+    ``snaps`` lists the repairs.
     Without ``base``, the arm begins at the root of the tree. Raises UnusableUrdfError.
     """
     collected = _collected(data)
@@ -193,7 +198,7 @@ def read_urdf(data: bytes, tip: str, base: str | None = None) -> tuple[Arm, Arm]
             raise UnusableUrdfError(reason)
     path = _path(collected, tip, base)
     first = path[0].parent if path else tip
-    return _arm(path, first, tip, snap=True), _arm(path, first, tip, snap=False)
+    return _arm(path, first, tip, snaps or Snaps()), _arm(path, first, tip, None)
 
 
 def _path(collected: _Collector, tip: str, base: str | None) -> list[_Joint]:
@@ -222,11 +227,11 @@ def _path(collected: _Collector, tip: str, base: str | None) -> list[_Joint]:
     return path[::-1]
 
 
-def _arm(path: list[_Joint], base: str, tip: str, *, snap: bool) -> Arm:
+def _arm(path: list[_Joint], base: str, tip: str, snaps: Snaps | None) -> Arm:
     fixed = np.eye(4)
     joints = []
     for joint in path:
-        fixed = fixed @ _origin(joint, snap=snap)
+        fixed = fixed @ _origin(joint, snaps)
         if joint.kind == "fixed":
             continue
         if joint.kind not in (*_TURNING, "prismatic"):
@@ -246,9 +251,7 @@ def _arm(path: list[_Joint], base: str, tip: str, *, snap: bool) -> Arm:
                     joint=joint.name[:_SHOWN],
                 )
             )
-        joints.append(
-            UrdfJoint(joint.name, joint.kind == "prismatic", fixed, _axis(joint, snap=snap))
-        )
+        joints.append(UrdfJoint(joint.name, joint.kind == "prismatic", fixed, _axis(joint, snaps)))
         fixed = np.eye(4)
     if not 1 <= len(joints) <= _MOST_JOINTS:
         raise UnusableUrdfError(
@@ -264,23 +267,31 @@ def _arm(path: list[_Joint], base: str, tip: str, *, snap: bool) -> Arm:
     return Arm(base, tip, tuple(joints), fixed)
 
 
-def _origin(joint: _Joint, *, snap: bool) -> Matrices:
+def _origin(joint: _Joint, snaps: Snaps | None) -> Matrices:
     xyz, rpy = (list(_numbers(joint, text)) for text in (joint.xyz, joint.rpy))
-    lengths = [snapped_length(text) if snap else float(text) for text in xyz]
-    roll, pitch, yaw = (snapped_angle(text) if snap else float(text) for text in rpy)
+    name = joint.name[:_SHOWN]
+    if snaps is None:
+        lengths, (roll, pitch, yaw) = [*map(float, xyz)], map(float, rpy)
+    else:
+        place = say("joint {joint!r}, xyz", joint=name)
+        lengths = [snaps.length(place, text) for text in xyz]
+        place = say("joint {joint!r}, rpy", joint=name)
+        roll, pitch, yaw = (snaps.angle(place, float(text), text) for text in rpy)
     origin = rot_z(yaw) @ rot_y(pitch) @ rot_x(roll)
     origin[:3, 3] = lengths
     return np.asarray(origin)
 
 
-def _axis(joint: _Joint, *, snap: bool) -> Numbers:
+def _axis(joint: _Joint, snaps: Snaps | None) -> Numbers:
     axis = np.array([float(text) for text in _numbers(joint, joint.axis)])
     length = float(np.linalg.norm(axis))
     if not length > 0:
         raise UnusableUrdfError(
             say("the axis of joint {joint!r} has no direction", joint=joint.name[:_SHOWN])
         )
-    return snapped_direction(axis / length) if snap else axis / length
+    if snaps is None:
+        return axis / length
+    return snaps.direction(say("joint {joint!r}, axis", joint=joint.name[:_SHOWN]), axis / length)
 
 
 def _numbers(joint: _Joint, text: str) -> Iterator[str]:

@@ -32,6 +32,10 @@ REFUSED = {
     "encoding": (b'<?xml version="1.0" encoding="foo"?><robot/>', "encoding"),
     "xacro": (b'<robot xmlns:xacro="http://ros.org/wiki/xacro"><xacro:arm/></robot>', "xacro"),
     "xacro without namespace": (b"<robot><xacro:arm/></robot>", "xacro"),
+    "xacro property": (
+        urdf([ONE]).replace(b"</robot>", b'<xacro:property name="a" value="${b}"/></robot>'),
+        "xacro",
+    ),
     "xacro value": (urdf([ONE]).replace(b"0.100000000", b"${h}"), "xacro"),
     "loop": (
         urdf([ONE, ONE]).replace(b"</robot>", b'<joint name="x" type="fixed"><parent link="l2"/>'
@@ -64,6 +68,12 @@ def test_an_unusable_file_is_refused_with_its_reason(name: str) -> None:
     with pytest.raises(UnusableUrdfError, match=reason):
         read_urdf(text, tip)
     assert time.process_time() - began < 1
+
+
+def test_an_unused_xacro_property_is_no_template() -> None:
+    unused = b'<xacro:property name="pi" value="3.14159"/></robot>'
+    arm, _ = read_urdf(urdf([ONE]).replace(b"</robot>", unused), "l1")
+    assert arm.structure == "R"
 
 
 def test_an_undeclared_prefix_does_not_matter() -> None:

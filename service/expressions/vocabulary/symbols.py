@@ -121,6 +121,8 @@ class Vocabulary:
                             second=symbol.name,
                         )
                     )
+        # Formulas name their symbols so: l_arm, although its normal form is larm.
+        self.by_name[symbol.name] = symbol
         if symbol.joint is not None:
             if symbol.joint in self.turning or symbol.joint in self.sliding:
                 raise ValueError(say("joint {joint} has two joint variables", joint=symbol.joint))

@@ -111,6 +111,12 @@ def _prepared(text: str, reader: Reader) -> str:
     return _with_indices_from_one(_without_own_units(text, reader), reader)
 
 
+def stated_units(text: str) -> set[str]:
+    """Return the units in sentences and comments such as "all lengths in mm", in small letters."""
+    found = {unit[1].lower() for unit in islice(_IN_UNIT.finditer(text), _MOST_UNITS)}
+    return found & (ANGLE_UNITS.keys() | METRES.keys())
+
+
 def _without_own_units(text: str, reader: Reader) -> str:
     # "in radians" in "all angles in radians" becomes blanks if that is the unit. Every character
     # keeps its place. Another unit stays, and such a sentence is refused; so is a sentence that

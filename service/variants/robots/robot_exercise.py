@@ -3,11 +3,14 @@
 from collections.abc import Mapping
 from typing import Final
 
+import numpy as np
+
 from service.catalogue import Exercise, ExerciseLevel
 from service.catalogue.compile import compile_exercise
 from service.catalogue.files.schema import ExerciseSpec
-from service.importing.exercise_text import letters_for, rows_in, variable_names, without_clashes
-from service.importing.home_statement import HomeRobot, home_statement, number_text
+from service.importing.exercise_text import lettered, rows_in
+from service.importing.home_statement import HomeRobot, home_statement
+from service.importing.numbers import number_text
 from service.kinematics.chain import A, D
 from service.kinematics.dh import Convention
 from service.translations import Sentence, say, template
@@ -62,7 +65,7 @@ def _fields(name: PracticeId) -> dict[str, object]:
         "robot": {
             "structure": structure,
             "convention": convention,
-            "joints": variable_names(structure),
+            "joints": home.variables,
             "table": [list(row) for row in rows],
         },
         "symbols": _symbols(robot, home),
@@ -110,15 +113,16 @@ def home_robot(plan: Plan) -> HomeRobot:
     """Return a planned robot, with letters or with numbers as its lengths."""
     table = table_of(plan)
     if plan.letters:
-        robot = HomeRobot(table, plan.structure, letters_for(table))
-        return HomeRobot(table, plan.structure, without_clashes(robot))
+        return lettered(HomeRobot(table, plan.structure))
+    # Each number is written as a letter would be: "0.2 + 0.35".
     numbers = {
-        (i, j): number_text(cm / 100)
-        for i, row in enumerate(plan.rows)
-        for j, cm in ((A, row.a), (D, row.d))
-        if cm
+        (i, j): {number_text(float(table[i, j])): 1.0}
+        for i, j in np.argwhere(table).tolist()
+        if j in (A, D)
     }
-    return HomeRobot(table, plan.structure, numbers)
+    table[:, [A, D]] = 0
+    lengths = {text: float(text) for number in numbers.values() for text in number}
+    return HomeRobot(table, plan.structure, numbers, lengths)
 
 
 def _symbols(robot: Generated, home: HomeRobot) -> Mapping[str, object]:
@@ -129,8 +133,9 @@ def _symbols(robot: Generated, home: HomeRobot) -> Mapping[str, object]:
         if kind == "P"
     }
     if robot.plan.letters:
-        for (i, j), letter in home.letters.items():
-            between = tuple(number_text(factor * float(home.table[i, j])) for factor in (0.7, 1.3))
+        for (_, j), [letter] in home.letters.items():
+            length = home.lengths[letter]
+            between = tuple(number_text(factor * length) for factor in (0.7, 1.3))
             meaning = say("distance between two axes") if j == A else say("distance along an axis")
             symbols[letter] = _length(between, meaning)
     return symbols

@@ -90,3 +90,70 @@ def test_a_robot_without_a_table_is_not_exported(run: Run) -> None:
     made = run("exercises", "export", "planar-rpr-poe")
     assert made.exit_code == 2
     assert "no robot with a DH table" in made.stderr
+
+
+OPEN = "131.2 | 90 | 0 | q1\n100 | 0 | 0 | q2 - 90\n"
+
+
+def test_what_a_table_leaves_open_is_asked_by_its_options(run: Run, tmp_path: Path) -> None:
+    table = tmp_path / "arm.txt"
+    table.write_text(OPEN, encoding="utf-8")
+    command = ["exercises", "import", table, "--table", "--output", tmp_path / "made"]
+    made = run(*command)
+    assert made.exit_code == 2
+    assert 'What is their order? Use one of these options: --order "a alpha' in made.stderr
+    command += ["--order", "a alpha d theta"]
+    made = run(*command)
+    assert made.exit_code == 2
+    assert "In which unit is the number 131.2 in row 1, column a?" in made.stderr
+    assert "--unit m, --unit cm, --unit mm" in made.stderr
+    assert "in degrees or in radians? Use one of these options: --degrees" in made.stderr
+    assert not (tmp_path / "made").exists()
+    made = run(*command, "--unit", "mm", "--degrees")
+    assert made.exit_code == 0
+    assert "The numbers of column a are in mm." in made.stdout
+    text = (tmp_path / "made" / "arm.toml").read_text("utf-8")
+    assert '["0.1312", "90deg", "0", "theta1"]' in text
+    assert '["0.1",    "0",     "0", "theta2 - 90deg"]' in text
+    assert "# The numbers of column a are in mm." in text
+    assert "the unit furlong is not known" in run(*command, "--unit", "furlong").stderr
+
+
+def test_a_terminal_is_asked(run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    table = tmp_path / "arm.txt"
+    table.write_text(OPEN, encoding="utf-8")
+    answers = iter(["a alpha d theta", "mm", "degrees"])
+    monkeypatch.setattr("service.cli.exercises.import_robot.is_terminal", lambda: True)
+    monkeypatch.setattr("typer.prompt", lambda *_, **__: next(answers))
+    made = run("exercises", "import", table, "--table", "--output", tmp_path)
+    assert made.exit_code == 0
+    assert '["0.1312", "90deg", "0", "theta1"]' in (tmp_path / "arm.toml").read_text("utf-8")
+
+
+def test_each_snap_is_listed_on_the_screen_and_in_the_file(run: Run, tmp_path: Path) -> None:
+    table = tmp_path / "arm.txt"
+    table.write_text("a | alpha | d | theta\nh | 1.5708 | 0 | q1\nh | 0 | 0 | q2 - 1.57\n")
+    made = run("exercises", "import", table, "--table", "--output", tmp_path)
+    text = (tmp_path / "arm.toml").read_text("utf-8")
+    for snap in (
+        "row 1, column alpha: 1.5708 became 90deg.",
+        "row 2, column theta: -1.57 became -90deg.",
+    ):
+        assert snap in made.stdout
+        assert f"# {snap}" in text
+
+
+def test_each_snap_of_a_urdf_is_listed(run: Run, file: Path, tmp_path: Path) -> None:
+    made = run("exercises", "import", file, "--output", tmp_path)
+    snap = "joint 'j1', rpy: 1.5708 became 90deg."
+    assert snap in made.stdout
+    assert f"# {snap}" in (tmp_path / "elbow.toml").read_text("utf-8")
+
+
+def test_letters_for_tenths_of_a_millimetre_pass_the_check(run: Run, tmp_path: Path) -> None:
+    made = tmp_path / "short.urdf"
+    parts = [ELBOW[0], Part("revolute", [0.0001, 0, 0.1], [1.5708, 0, 0]), *ELBOW[2:]]
+    made.write_bytes(urdf(parts, 4))
+    assert run("exercises", "import", made, "--letters", "--output", tmp_path).exit_code == 0
+    checked = run("exercises", "check", tmp_path / "short.toml")
+    assert checked.exit_code == 0, checked.output

@@ -51,3 +51,9 @@ def test_vocabularies_with_the_same_symbols_are_equal() -> None:
     assert hash(one) == hash(other)
     assert one != Vocabulary([joint_variable(2)])
     assert one != "vocabulary"
+
+
+def test_a_symbol_is_known_by_its_canonical_name() -> None:
+    # Formulas name their symbols so.
+    arm = Symbol("l_arm", "length")
+    assert Vocabulary([arm]).by_name["l_arm"] is arm

@@ -3,7 +3,7 @@
 import re
 import unicodedata
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
 from service.expressions import AngleUnit, Kind
@@ -20,6 +20,11 @@ from service.grading.reading.tables.words import (
 
 LABEL: Final = "label"
 ASIDE: Final = "aside"
+# A number that is added to θ, or to the variable of the joint.
+THETA_OFFSET: Final = "theta offset"
+OFFSET: Final = "offset"
+# The letter l, which heads the link lengths or the numbers of the links.
+LENGTH_OR_LABEL: Final = "l"
 QUANTITIES: Final[Mapping[str, Kind]] = {
     "a": "length", "alpha": "angle", "d": "length", "theta": "angle",
 }  # fmt: skip
@@ -30,7 +35,7 @@ SHOWN: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 _LONGEST: Final = 60
 # Characters that NFKC leaves alone, or replaces by wrong ones.
 _SIGNS: Final = str.maketrans(
-    {"⍺": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
+    {"⍺": "α", "∝": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
 )
 # An accent in LaTeX: \'e. And "n°", a number in French, Spanish and Italian.
 _ACCENT: Final = re.compile(r"\\['`\"^~](?=[a-z{])")
@@ -49,6 +54,10 @@ _SHIFTED: Final = re.compile(r"(?<![a-z])([ijkn])\s?-\s?1(?!\d)|([a-z])([ijkn])\
 _WORD: Final = re.compile(r"[a-z]+~?|#|[^\sa-z#]")
 _GLUED: Final = re.compile(r"(a|r|d|q|th|alpha|theta)([ijkn]~?)")
 _INDEX: Final = re.compile(r"[ijkn]~?")
+# The axis of a parameter: d_z, a_x, but d_x is the length along x.
+_ALONG: Final = re.compile(
+    r"(?<![a-z])(?:(a|r|d)\s?x|(d)\s?z|(alpha)\s?x|(theta|φ|phi)\s?z)(?![a-z])"
+)
 # The number of a row after the name of a parameter: θ_1, a_{2}, d(3); but not a_{i-1}.
 _NUMBER: Final = re.compile(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
 _IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
@@ -66,14 +75,17 @@ _TRAILING_UNIT: Final = re.compile(
 class Header:
     """The meaning of a header.
 
-    ``column`` is a, alpha, d, theta, "label", or "aside" for a column that is ignored. ``shifted``
-    is true for an index such as in a_{i-1}.
+    ``column`` is a, alpha, d, theta, "label", or "aside" for a column that is ignored; it is
+    "theta offset" for a number that is added to θ, and "l" for the letter l. ``shifted`` is true
+    for an index such as in a_{i-1}. ``is_word`` is true for the word "offset", which means d, or
+    beside a column d a number that is added to the variable of the joint.
     """
 
     # ``unit`` is in small letters.
     column: str
     unit: str = ""
     shifted: bool = False
+    is_word: bool = field(default=False, compare=False)
 
     @property
     def angle_unit(self) -> AngleUnit | None:
@@ -113,6 +125,7 @@ def read_header(text: str) -> Header | None:
     plain, unit = _plain(text)
     if ASIDES.fullmatch(plain):
         return Header(ASIDE)
+    plain = _ALONG.sub(_without_axis, plain)
     found: set[str] = set()
     terms: set[str] = set()
     indices: list[str] = []
@@ -137,15 +150,26 @@ def read_header(text: str) -> Header | None:
 def _decided(
     found: set[str], terms: set[str], unit: str, indices: list[str], *, places: bool
 ) -> Header | None:
+    if found == {"theta"} and terms == {"d"}:
+        return Header(THETA_OFFSET, unit)
+    if terms == {"a"}:
+        # The letter of "link length l".
+        found = found - {LENGTH_OR_LABEL}
     if "alpha" in found | terms:
         # "angle" in "twist angle" does not mean θ.
         terms = terms - {"theta"}
     if len(found | terms) == 1:
         [column] = found | terms
-        return Header(column, unit, any(index.endswith("~") for index in indices))
+        shifted = any(index.endswith("~") for index in indices)
+        return Header(column, unit, shifted, is_word="d" in terms - found)
     if not found and not terms and (places or indices) and not unit:
         return Header(LABEL)
     return None
+
+
+def _without_axis(named: re.Match[str]) -> str:
+    across, along, twist, turn = named.groups()
+    return "a" if across else along or twist or turn
 
 
 def is_wordy(text: str) -> bool:

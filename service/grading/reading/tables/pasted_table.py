@@ -2,9 +2,10 @@
 
 # Spans count in the whole pasted text.
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
+from typing import Final
 
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
@@ -32,10 +33,12 @@ from service.grading.reading.tables.unit_row import with_units_in_headers
 from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
-from service.kinematics.chain import COLUMNS
+from service.grids.cutting.source_text import joined
+from service.kinematics.chain import COLUMNS, THETA, D
 from service.translations import listed, say
 
 ColumnOrder = tuple[int | None, Header]
+_OFFSETS: Final = (column_headers.OFFSET, column_headers.THETA_OFFSET)
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,10 +49,12 @@ class PastedRow:
     """
 
     # Then one cell is repeated in all four places. ``named`` is the arrangement of the cells by
-    # their names, None if no name contradicts its column.
+    # their names, None if no name contradicts its column. ``aside`` are the texts in columns that
+    # are ignored, such as the type of the joint.
     cells: tuple[GridCell, ...]
     problem: Finding | None = None
     named: Arrangement | None = None
+    aside: tuple[str, ...] = ()
 
     @property
     def texts(self) -> list[str]:
@@ -72,13 +77,16 @@ class PastedTable:
     convention: str | None = None
 
 
-def read_pasted_table(text: str, reader: Reader) -> PastedTable:
-    """Read the rows of a pasted DH table. Raises GridError if there is none."""
+def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
+    """Read the rows of a pasted DH table; columns without names are in ``order``.
+
+    Raises GridError if there is no table.
+    """
     robot = pasted_robot(text, reader)
     if robot:
         table = table_of_robot(robot, reader)
     else:
-        table = table_of(pasted_grid(text, reader, of_table=True), reader, comments=text)
+        table = table_of(pasted_grid(text, reader, of_table=True), reader, order, comments=text)
     refuse_other_units(text, table.headers, reader)
     return table
 
@@ -101,8 +109,9 @@ def table_of(
     found = _found_headers(grid.rows[0], reader)
     named = None if found is not None else columns_in_comments(comments)
     if found is None:
-        columns, labels, more = _columns_in_order(grid, named or [*map(Header, order)])
+        columns, labels, more = _columns_in_order(grid, order, named)
     else:
+        found = _with_meanings(found)
         columns, labels, more = _columns_by_headers(grid.rows[0], found)
     headings = int(found is not None)
     if labels is None:
@@ -116,7 +125,7 @@ def table_of(
             place_of(grid.rows[0]),
         )
     width = len(grid.rows[0]) if found is not None else max(map(len, body))
-    rows = tuple(_row(row, columns, width, reader) for row in body)
+    rows = tuple(_row(row, columns, width, reader, found or ()) for row in body)
     if labels is not None:
         labelled, more = in_order([row[labels] if labels < len(row) else row[0] for row in body])
         rows = tuple(rows[i] for i in labelled)
@@ -215,6 +224,22 @@ def _found_headers(row: Sequence[GridCell], reader: Reader) -> list[Header | Non
     return None
 
 
+def _with_meanings(found: Sequence[Header | None]) -> list[Header | None]:
+    """Return the headers with the meanings of "l" and "offset" that the other headers leave."""
+    columns = [header.column for header in found if header]
+    of_l = column_headers.LABEL if "a" in columns else "a"
+    is_offset = any(each and each.column == "d" and not each.is_word for each in found)
+
+    def meant(header: Header | None) -> Header | None:
+        if header and header.column == column_headers.LENGTH_OR_LABEL:
+            return replace(header, column=of_l)
+        if header and header.is_word and header.column == "d" and is_offset:
+            return replace(header, column=column_headers.OFFSET)
+        return header
+
+    return [meant(header) for header in found]
+
+
 def _columns_by_headers(
     row: Sequence[GridCell], found: Sequence[Header | None]
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
@@ -230,10 +255,11 @@ def _columns_by_headers(
     for i, header in enumerate(found):
         if header is None or header.column in (column_headers.LABEL, column_headers.ASIDE):
             continue
+        name = SHOWN.get(header.column, header.column)
         if header.column in places:
             message = say(
                 "Two columns are {parameter}: {first} and {second}. Each parameter has one column.",
-                parameter=SHOWN[header.column],
+                parameter=name,
                 first=quoted(row[places[header.column]].text),
                 second=quoted(row[i].text),
             )
@@ -248,12 +274,13 @@ def _columns_by_headers(
         )
         raise GridError("missing_header", message, place_of(row))
     columns = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
+    columns = _with_units_of_offsets(row, found, columns)
     for (place, header), column in zip(columns, COLUMNS, strict=True):
         _check_unit(header, column, row[place or 0])
     labels = next((i for i, h in enumerate(found) if h and h.column == column_headers.LABEL), None)
     if labels is None and found[0] is None:
         labels = 0
-    return columns, labels, (*_left_aside(row, found), *_convention_hint(row, columns))
+    return columns, labels, (*_on_columns(row, found), *_convention_hint(row, columns))
 
 
 def _either(first: str, second: str) -> str:
@@ -302,16 +329,38 @@ def _check_unit(header: Header, column: str, cell: GridCell) -> None:
         raise GridError("header_unit", message, cell.whole)
 
 
-def _left_aside(row: Sequence[GridCell], found: Sequence[Header | None]) -> tuple[Finding, ...]:
-    return tuple(
-        _note(
-            "column_left_aside",
-            say("The column {name} was ignored.", name=quoted(cell.text)),
-            cell,
-        )
-        for cell, header in zip(row, found, strict=True)
-        if header and header.column == column_headers.ASIDE
-    )
+def _with_units_of_offsets(
+    row: Sequence[GridCell], found: Sequence[Header | None], columns: tuple[ColumnOrder, ...]
+) -> tuple[ColumnOrder, ...]:
+    """Return the columns with the unit of an offset, if the column of the variable has none."""
+    changed = list(columns)
+    for cell, offset in zip(row, found, strict=True):
+        if offset is None or offset.column not in _OFFSETS or not offset.unit:
+            continue
+        j = THETA if offset.angle_unit else D
+        place, header = changed[j]
+        if header.unit not in ("", offset.unit):
+            message = say(
+                "The headers {name} and {other} have different units. Correct the headers.",
+                name=quoted(cell.text),
+                other=quoted(row[place or 0].text),
+            )
+            raise GridError("header_unit", message, cell.whole)
+        changed[j] = place, replace(header, unit=offset.unit)
+    return tuple(changed)
+
+
+def _on_columns(row: Sequence[GridCell], found: Sequence[Header | None]) -> Iterator[Finding]:
+    for cell, header in zip(row, found, strict=True):
+        if header and header.column == column_headers.ASIDE:
+            message = say("The column {name} was ignored.", name=quoted(cell.text))
+            yield _note("column_left_aside", message, cell)
+        if header and header.column in _OFFSETS:
+            message = say(
+                "The column {name} was added to the variables of the joints.",
+                name=quoted(cell.text),
+            )
+            yield _note("column_added", message, cell)
 
 
 def _convention_hint(
@@ -329,8 +378,9 @@ def _convention_hint(
 
 
 def _columns_in_order(
-    grid: Grid, order: Sequence[Header]
+    grid: Grid, assumed: Sequence[str], named: Sequence[Header] | None
 ) -> tuple[tuple[ColumnOrder, ...], int | None, tuple[Finding, ...]]:
+    order = named or [*map(Header, assumed)]
     width = max(map(len, grid.rows))
     has_labels = width == len(COLUMNS) + 1 and all(is_label(row[0].text) for row in grid.rows)
     if width != len(COLUMNS) and not has_labels:
@@ -354,11 +404,13 @@ def _columns_in_order(
         "is different, such as θ, d, a, α in the Robotics Toolbox, put headers above "
         "them."
     )
-    if tuple(names) != tuple(COLUMNS) or any(header.unit for header in order):
-        shown = ", ".join(map(_shown, order))
+    shown = ", ".join(map(_shown, order))
+    if named:
         message = say(
             "The columns were read in the order of your comment: {parameters}.", parameters=shown
         )
+    elif tuple(names) != COLUMNS:
+        message = say("The columns were read in the order {parameters}.", parameters=shown)
     finding = _note("column_order", message, grid.rows[0][0])
     return columns, 0 if has_labels else None, (finding,)
 
@@ -368,7 +420,11 @@ def _shown(header: Header) -> str:
 
 
 def _row(
-    row: Sequence[GridCell], columns: Sequence[ColumnOrder], width: int, reader: Reader
+    row: Sequence[GridCell],
+    columns: Sequence[ColumnOrder],
+    width: int,
+    reader: Reader,
+    found: Sequence[Header | None] = (),
 ) -> PastedRow:
     if len(row) != width:
         message = say(
@@ -379,9 +435,34 @@ def _row(
         )
         finding = reading_error("row_length", message, place_of(row))
         return PastedRow((row[0],) * len(COLUMNS), finding)
-    cells = tuple(row[place or 0] for place, _ in columns)
+    cells = [row[place or 0] for place, _ in columns]
+    aside = []
+    for cell, header in zip(row, found, strict=False):
+        if header and header.column == column_headers.ASIDE:
+            aside.append(cell.text)
+        if header and header.column in _OFFSETS and cell.text.strip("-– "):
+            j = THETA if header.column == column_headers.THETA_OFFSET else _moving(cells, reader)
+            cells[j] = _sum(cells[j], cell)
     named = arranged_row([cell.text for cell in cells], reader.vocabulary)
-    return PastedRow(tuple(cells[i] for i in named.order) if named else cells, named=named)
+    ordered = tuple(cells[i] for i in named.order) if named else tuple(cells)
+    return PastedRow(ordered, named=named, aside=tuple(aside))
+
+
+def _moving(cells: Sequence[GridCell], reader: Reader) -> int:
+    """Return the column of the joint variable: d if θ is a number and d is none, else θ."""
+    d, theta = (
+        reader.read(cells[j].text, QUANTITIES[COLUMNS[j]], in_table=True).expression
+        for j in (D, THETA)
+    )
+    turns = theta is None or theta.symbols
+    return THETA if turns or (d is not None and not d.symbols) else D
+
+
+def _sum(cell: GridCell, offset: GridCell) -> GridCell:
+    if not cell.text.strip("-– "):
+        return offset
+    nothing = offset.cut(0, 0)
+    return joined([cell, nothing.spelled(" + ("), offset, nothing.spelled(")")], cell.at)
 
 
 def _note(code: str, message: str, cell: GridCell) -> Finding:

@@ -3,11 +3,17 @@
 from dataclasses import replace
 from typing import Final, Literal
 
-from service.grading.reading.tables.column_headers import QUANTITIES, read_header
+from service.grading.reading.tables.column_headers import (
+    LENGTH_OR_LABEL,
+    QUANTITIES,
+    THETA_OFFSET,
+    read_header,
+)
 from service.grading.reading.tables.words import ANGLE_UNITS, METRES, in_plain_words
 from service.grids import Grid, GridCell
 from service.grids.cutting.source_text import joined
 
+_KINDS: Final = {**QUANTITIES, LENGTH_OR_LABEL: "length", THETA_OFFSET: "angle"}
 _BRACKETS = "()[]"
 _UNIT_WORDS: Final = frozenset(
     {"unit", "units", "einheit", "einheiten", "unite", "unites", "unidad", "unidades", "单位"}
@@ -52,7 +58,7 @@ def _unit_of(column: str, cell: GridCell) -> GridCell | Literal[""] | None:
     if not cell.text.strip("-– ") or (column in ("", "label") and _says_unit(cell.text)):
         return ""
     unit = in_plain_words(cell.text).strip(f"{_BRACKETS} ")
-    units = {"angle": ANGLE_UNITS, "length": METRES}.get(QUANTITIES.get(column, ""), {})
+    units = {"angle": ANGLE_UNITS, "length": METRES}.get(_KINDS.get(column, ""), {})
     return cell if unit in units else None
 
 

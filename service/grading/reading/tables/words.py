@@ -16,7 +16,9 @@ from service.expressions import AngleUnit
 LETTERS: Final[Mapping[str, str]] = {
     "a": "a", "r": "a", "alpha": "alpha", "al": "alpha", "alfa": "alpha", "d": "d",
     "theta": "theta", "th": "theta", "teta": "theta", "tita": "theta", "q": "theta",
-    "vartheta": "theta",
+    "vartheta": "theta", "phi": "theta", "varphi": "theta", "φ": "theta",
+    # The link length, or the number of the link.
+    "l": "l",
 }  # fmt: skip
 TERMS: Final[Mapping[str, str]] = {
     **dict.fromkeys(("length", "lange", "gliedlange", "armlange", "armteillange"), "a"),
@@ -31,6 +33,7 @@ TERMS: Final[Mapping[str, str]] = {
 }  # fmt: skip
 PLACES: Final = frozenset(
     {"link", "joint", "row", "frame", "axis", "index", "no", "nr", "number", "name", "label", "#"}
+    | {"links", "joints", "rows", "frames", "axes"}
     | {"kinematics", "id"}
     | {"gelenk", "glied", "achse", "arm", "armteil", "zeile", "reihe", "korper", "nummer"}
     | {"gelenknummer", "gliednummer", "achsnummer", "zeilennummer"}

@@ -28,10 +28,42 @@ export function importForm({ id, named, written }) {
   const robot = byId("robot", HTMLTextAreaElement);
   const state = byId("imported", HTMLElement);
   const file = byId("robot-file", HTMLInputElement);
+  const questions = byId("questions", HTMLFieldSetElement);
   /** @param {string} name */
   const value = (name) => byId(name, HTMLInputElement).value.trim();
 
+  /** @type {Map<string, HTMLSelectElement>} */
+  const answers = new Map();
+
+  function forget() {
+    answers.clear();
+    questions.querySelectorAll("label, select").forEach((each) => each.remove());
+    questions.hidden = true;
+  }
+
+  /** @param {{ name: string, text: string, choices: string[] }[]} asked */
+  function ask(asked) {
+    /** @type {Record<string, string>} */
+    const shown = {
+      degrees: worded("degrees"),
+      radians: worded("radians"),
+      standard: worded("standard"),
+      modified: worded("modified"),
+    };
+    for (const { name, text, choices } of asked) {
+      const options = choices.map((each) => h("option", { value: each }, shown[each] ?? each));
+      const field = h("select", { id: `question-${name}`, required: true }, h("option", { value: "" }, "…"), ...options);
+      answers.set(name, field);
+      questions.append(h("label", { for: field.id }, visible(text)), field);
+    }
+    questions.hidden = false;
+    answers.get(asked[0].name)?.focus();
+  }
+
+  robot.addEventListener("input", forget);
+
   whenChosen(file, async ([chosen]) => {
+    forget();
     robot.value = await chosen.text();
     kind.value = /\.(urdf|xml)$/iu.test(chosen.name) ? "urdf" : "table";
     named(idOf(chosen.name));
@@ -52,10 +84,16 @@ export function importForm({ id, named, written }) {
       tip: value("tip"),
       base: value("base"),
       letters: byId("letters", HTMLInputElement).checked && kind.value === "urdf",
-      convention: byId("convention", HTMLSelectElement).value,
+      convention: byId("convention", HTMLSelectElement).value || null,
+      ...Object.fromEntries([...answers].map(([name, field]) => [name, field.value])),
     };
     try {
-      const { text, remarks } = await (await post("../tutor/import", JSON.stringify(body))).json();
+      const { text, remarks, questions: asked } = await (await post("../tutor/import", JSON.stringify(body))).json();
+      if (asked.length > 0) {
+        ask(asked);
+        state.textContent = worded("Answer the questions above, then make the exercise.");
+        return;
+      }
       written(text);
       const all = [...remarks, worded("The exercise is in the editor. Read its statement, then save it.")];
       state.replaceChildren(...all.flatMap((each) => [visible(each), h("br")]));

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field, TypeAdapter
 
 from service.api.http.problems import ProblemError, message_of
 from service.catalogue import ID_ADVICE, is_exercise_id
+from service.expressions import AngleUnit
 from service.importing.robot_import import (
     ImportedRobot,
     ImportOptions,
@@ -35,11 +36,14 @@ class ImportRequest(BaseModel):
     base: _Name = ""
     tip: _Name = ""
     letters: bool = False
-    convention: Convention = Convention.STANDARD
+    convention: Convention | None = None
+    order: _Name = ""
+    unit: _Name = ""
+    angles: Literal["", AngleUnit] = ""
 
 
 def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
-    """Return the exercise file for a robot, as JSON. Raises ProblemError."""
+    """Return the exercise file for a robot, or questions about it, as JSON. Raises ProblemError."""
     if not is_exercise_id(body.id):
         raise _refused(say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE))
     options = ImportOptions(
@@ -49,6 +53,9 @@ def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
         base=body.base,
         tip=body.tip,
         letters=body.letters,
+        order=body.order,
+        unit=body.unit,
+        angles=body.angles,
     )
     try:
         if body.kind == "urdf":
@@ -59,7 +66,10 @@ def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
         reason = told(message_of(error), language.translation).rstrip(".。")
         raise _refused(say("{reason}.", reason=f"{reason[:1].upper()}{reason[1:]}")) from error
     remarks = [told(each, language.translation) for each in found.remarks]
-    return _ROBOT.dump_json(replace(found, remarks=remarks))
+    questions = [
+        replace(each, text=told(each.text, language.translation)) for each in found.questions
+    ]
+    return _ROBOT.dump_json(replace(found, remarks=remarks, questions=questions))
 
 
 def _refused(detail: str) -> ProblemError:

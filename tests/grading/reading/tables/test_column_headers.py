@@ -10,21 +10,23 @@ SPELLINGS = {
         "a", "A", "a_i", "a_{i}", "aᵢ", "$a_i$", "ai", "a i", "a(i)", "a_j", "a_n", "r", "r_i", "R",
         "link length", "Link Length", "length", "link length a", "a (link length)",
         "Link length, a_i", "length a_i", r"\mathrm{a}_i", r"\textbf{a}", "**a**",
-        "`a`", "*a*", "a:", "𝑎",
+        "`a`", "*a*", "a:", "𝑎", "a_x", "d_x", "Link length L",
     ],
     "alpha": [
         "alpha", "Alpha", "ALPHA", "α", "α_i", "α_{i}", "αᵢ", r"\alpha", r"\alpha_i", r"$\alpha_i$",
         "alpha_i", "alpha i", "alphai", "twist", "link twist", "Link twist α", "twist angle",
+        "∝", "∝_i", "α_x",
         "link twist angle", "alpha (twist)", "⍺ⱼ", "⍺", "𝛼", "𝛼ᵢ", "al",
     ],
     "d": [
         "d", "D", "d_i", "d_{i}", "dᵢ", "$d_i$", "di", "offset", "link offset", "joint offset",
-        "Link Offset d", "d (offset)", "dⱼ",
+        "Link Offset d", "d (offset)", "dⱼ", "d_z",
     ],
     "theta": [
         "theta", "Theta", "θ", "Θ", "ϑ", "θ_i", "θ_{i}", "θᵢ", r"\theta", r"\theta_i",
         r"$\theta_{i}$", "theta_i", "thetai", "q", "q_i", "qᵢ", "qi", "joint angle",
-        "Joint angle θ", "angle", "th", "θⱼ", r"$\theta_i^*$", "theta*",
+        "Joint angle θ", "angle", "th", "θⱼ",
+        "φ_i", r"$\phi_i$", "θ_z", r"$\theta_i^*$", "theta*",
     ],
     "label": [
         "i", "j", "n", "k", "#", "link", "Link", "joint", "Joint", "Link i", "joint i", "Joint #",
@@ -32,7 +34,7 @@ SPELLINGS = {
         "index", "axis", "Glied", "Gelenk Nr.", "Glied-Nr.", "Gelenknummer", "Zeile", "Reihe",
         "Körper", "Articulation", "N° d'articulation", "numéro de l’axe", "Segment", "Liaison",
         "Corps", "Articulación", "Eslabón", "N.º de eslabón", "连杆", "关节", "连杆 i",
-        "连杆号", "行",
+        "连杆号", "行", "Links", "Joints",
     ],
     "aside": ["type", "Joint type", "variable", "joint variable", "comment", "limits", "home",
         "q_min [deg]", "θ_max", "max", "lower limit", "upper bound", "cos(alpha)", "sin(α_i)"],
@@ -127,9 +129,19 @@ def test_units_of_lengths(text: str, column: str, metres: float) -> None:
     [
         "", " ", "foo",
         "a1", "a_1", "theta1", "θ₁", "0", "-90", "pi/2", "a alpha", "a+d", "d_{i+1}",
-        "alpha (rad/s)", "b", "l", "x", "beta", "phi", "a, d", "Abstand", "i [m]", "a" * 100, "cos",
+        "alpha (rad/s)", "b", "x", "beta", "a, d", "Abstand", "i [m]", "a" * 100, "cos",
         "q1*", "=", "a=", "90deg", "\x00", "\ud800",
     ],
 )  # fmt: skip
 def test_other_texts_are_not_headers(text: str) -> None:
     assert read_header(text) is None
+
+
+@pytest.mark.parametrize("text", ["theta_offset", "θ offset", r"$\theta_{offset}$", "offset θ"])
+def test_an_offset_of_theta_is_no_column_of_theta(text: str) -> None:
+    assert read_header(text) == Header("theta offset")
+
+
+@pytest.mark.parametrize("text", ["L", "l", "L_i", "l_i"])
+def test_the_letter_l_depends_on_the_other_headers(text: str) -> None:
+    assert read_header(text) == Header("l")

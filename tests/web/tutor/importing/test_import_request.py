@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 from service.catalogue import Exercise
 from service.cli.commands.exercises import commands
 from tests.importing.test_arms import file_of
-from tests.importing.test_exercise_text import PASTED
+from tests.importing.test_pasted_robot import PASTED
 from tests.importing.test_urdf import REFUSED
 from tests.web.tutor.test_tutor_routes import Tutor
 
@@ -67,9 +67,22 @@ def test_other_refusals_have_their_reasons(tutor: Tutor) -> None:
 
 def test_refusals_are_told_in_the_language_of_the_reader(tutor: Tutor) -> None:
     for kind, text, said in (
-        ("table", "a,alpha,d,theta\n1,0,0,0\n1,0,0,theta2\n", "Zeile 1 hat keine Gelenkvariable."),
+        ("table", "a,alpha,d,theta\n1,0,0,0\n1,0,0,0\n", "Zeile 1 hat keine Gelenkvariable"),
         ("urdf", "<sdf/>", "Die Datei beginnt mit <sdf>, nicht mit <robot>."),
     ):
         body = {"kind": kind, "text": text, "id": "arm", "tip": "l1"}
         refused = tutor.ask("POST", "/tutor/import", json=body, params={"lang": "de"})
-        assert refused.json()["detail"] == said
+        assert refused.json()["detail"].startswith(said)
+
+
+def test_what_a_table_leaves_open_is_asked_in_the_language_of_the_reader(tutor: Tutor) -> None:
+    body = {"kind": "table", "text": "a,alpha,d,theta\n131.2,90,0,q1\n", "id": "arm"}
+    asked = tutor.ask("POST", "/tutor/import", json=body, params={"lang": "de"}).json()
+    unit, angles = asked["questions"]
+    assert (asked["text"], unit["name"], angles["name"]) == ("", "unit", "angles")
+    assert unit["text"].startswith("Die Tabelle nennt keine Längeneinheit.")
+    assert (unit["choices"][2], angles["choices"]) == ("mm", ["degrees", "radians"])
+    answered = {**body, "unit": "mm", "angles": "degrees", "order": "", "convention": None}
+    made = tutor.ask("POST", "/tutor/import", json=answered).json()
+    assert made["questions"] == []
+    assert '["0.1312", "90deg", "0", "theta1"]' in made["text"]

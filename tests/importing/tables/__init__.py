@@ -1,0 +1,1 @@
+"""Import DH tables that are typed in many ways, and compare the robots."""
