@@ -24,6 +24,7 @@ from service.grids import (
     read_grids,
     read_robot,
 )
+from service.grids.cutting.once import remembering
 from service.time_slices import checkpoint
 from service.translations import say
 
@@ -83,7 +84,8 @@ def grids_as_written(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
 def _cut(way: str, text: str, reader: Reader, read: Callable[[], R]) -> R:
     # Raises GridError if the text may not be cut.
     _charge(text, reader)
-    return once(way, text, reader, read)
+    with remembering(reader.budget.searched):
+        return once(way, text, reader, read)
 
 
 def once(way: str, text: str, reader: Reader, read: Callable[[], R]) -> R:
@@ -158,9 +160,7 @@ def _charge(text: str, reader: Reader) -> None:
     if len(text) > GRID_LIMITS.characters or reader.budget.charge_pasted(text):
         # A text that is too long is not cut.
         return
-    message = say(
-        "The pasted texts have more than {most:,} characters together.", most=MAX_PASTED
-    )
+    message = say("The pasted texts have more than {most:,} characters together.", most=MAX_PASTED)
     if reader.budget.pasted >= 0:
         message = say(
             "The pasted texts have more than {most:,} brackets and quotation marks together.",
