@@ -79,6 +79,8 @@ class WorkBudget:
     unreadable: set[object] = field(default_factory=set)
     # What was found in each pasted text, by the way of reading it; each text is charged once.
     found: dict[tuple[object, ...], Any] = field(default_factory=dict)
+    # What was searched for in these texts and in their pieces.
+    searched: dict[tuple[object, str], Any] = field(default_factory=dict)
     _charged: set[str] = field(default_factory=set)
     # The whole submission; the work for reading its later parts is reserved.
     answers: object = None

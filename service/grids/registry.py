@@ -6,7 +6,7 @@ from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, too_many_cells
 from service.grids.cutting.limits import GRID_LIMITS
-from service.grids.cutting.once import remembering
+from service.grids.cutting.once import remembers
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats import (
     columns,
@@ -52,7 +52,7 @@ _SEPARATOR_LINE: Final = re.compile(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
 _THIN_SPACE: Final = "\\,"
 
 
-@remembering
+@remembers
 def read_grid(text: str, *, of_table: bool = False) -> Grid:
     """Return the grid in a pasted text, in linear time. Raises only GridError, for any text."""
     # The length of the text is bounded by ``GRID_LIMITS``. With ``of_table``, later statements of a
@@ -72,7 +72,7 @@ def read_grid(text: str, *, of_table: bool = False) -> Grid:
     return replace(found, notes=(*notes, *found.notes)) if notes else found
 
 
-@remembering
+@remembers
 def read_robot(text: str) -> RobotTable | None:
     """Return the DH table of the robot that a pasted script describes; None for any other text.
 

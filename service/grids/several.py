@@ -12,7 +12,7 @@ from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, too_many_matrices
 from service.grids.cutting.limits import GRID_LIMITS
-from service.grids.cutting.once import remembering
+from service.grids.cutting.once import remembers
 from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.formats import latex
@@ -58,7 +58,7 @@ class NamedGrid:
     grid: Grid | GridError
 
 
-@remembering
+@remembers
 def read_grids(text: str) -> tuple[NamedGrid, ...]:
     """Return the matrices in a pasted text, in order.
 

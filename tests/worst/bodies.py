@@ -3,7 +3,17 @@
 from collections.abc import Mapping
 from typing import Final
 
-from tests.worst.entry_points import ATTEMPTS, FILE, FRAMES, GRADE, PREVIEW, Attack
+from tests.worst.entry_points import (
+    ATTEMPTS,
+    BATCH,
+    FILE,
+    FRAMES,
+    GRADE,
+    HINTS,
+    PREVIEW,
+    SOLUTION,
+    Attack,
+)
 from tests.worst.seeds import (
     HALVES,
     LONG_TABLE,
@@ -14,6 +24,7 @@ from tests.worst.seeds import (
     links_of,
     padded,
     previews_of,
+    run,
 )
 
 ARM: Final = "stanford-arm"
@@ -38,6 +49,23 @@ _TWELVE_ROWS: Final = [
     [f"{0.271 * (i + 1) * (j - 1.3) + i:.3g}" for j in range(4)] for i in range(12)
 ]
 _UNKNOWN: Final = {"answers": {f"part{i}": 0 for i in range(15_500)}}
+
+
+def _everywhere(text: str) -> Attack:
+    return _graded(links=[text] * 6, pose=text, table=text)
+
+
+# The pasted texts that cost most, at each entry point that reads pasted texts.
+NESTED: Final = "[" + "(" * 12_900 + ")" * 12_900 + "]"
+_PASTED: Final[Mapping[str, str]] = {
+    "nested brackets": NESTED,
+    "nested brackets around a word": run("[" + "(" * 3_900, "x", ")" * 3_900 + "]"),
+    "pairs of brackets": run("[" + "()" * 3_900, "x", "]"),
+    "a long word after a table": run("A1 = [1, 2; 3, 4]\nA2 = ", "matrix"),
+    "slashes in a list": run("a = [1]; alpha = [2]; d = [3]; theta=[", "/"),
+    "dollars in quotes": run("'", "$", "'"),
+    "short words in brackets": run("[", "a1 ", "]"),
+}
 
 KNOWN: Final[Mapping[str, Attack]] = {
     "cells that nearly repair": _graded(pose=_HALVES),
@@ -103,4 +131,19 @@ KNOWN: Final[Mapping[str, Attack]] = {
     "unknown parts": Attack(GRADE, ARM, _UNKNOWN),
     "unknown fields": Attack(GRADE, ARM, {**_UNKNOWN["answers"], "answers": {}}),
     "unknown parts in a file": Attack(FILE, ARM, _UNKNOWN),
+    **{name: _everywhere(text) for name, text in _PASTED.items()},
+    **{f"{name}, previewed": _previewed(text, "links") for name, text in _PASTED.items()},
+    "thin spaces, previewed": _previewed(run("{'a': 1, ", "\\, ", "}"), "links"),
+    **{
+        f"nested brackets at {entry}": Attack(entry, ARM, _everywhere(NESTED).body)
+        for entry in (ATTEMPTS, FILE, BATCH, HINTS, SOLUTION)
+    },
+    **{
+        f"{text} at {entry}": Attack(entry, ARM, {"answers": {"links": links_of(cell)}})
+        for entry in (BATCH, HINTS, SOLUTION)
+        for text, cell in {"sines in degrees": "sind(30)" * 25, "roots": "√2 " * 65}.items()
+    },
 }
+
+# A table of random decimals may cost more than other answers, until it is judged with less work.
+OF_DECIMALS: Final = frozenset({name for name in KNOWN if "decimals" in name or "rows too" in name})

@@ -33,8 +33,14 @@ from tests.benchmarks.floors import stanford_pose
 
 GRADE, ATTEMPTS, PREVIEW, FILE = "grade", "attempts", "preview", "file"
 PREVIEWS, FRAMES = "many-previews", "frames"
-ENTRIES = (GRADE, ATTEMPTS, PREVIEW, PREVIEWS, FRAMES, FILE)
-_PATHS = {PREVIEW: "/v1/preview", PREVIEWS: "/v1/previews", FRAMES: "/v1/frames"}
+# A batch holds only one submission, because a batch may cost as much as its submissions together.
+BATCH, HINTS, SOLUTION = "batch", "hints", "solution"
+ENTRIES = (GRADE, ATTEMPTS, PREVIEW, PREVIEWS, FRAMES, FILE, BATCH, HINTS, SOLUTION)
+# The entry points that take a submission.
+SUBMITTED = (GRADE, ATTEMPTS, FILE, BATCH, HINTS, SOLUTION)
+_PATHS = {
+    PREVIEW: "/v1/preview", PREVIEWS: "/v1/previews", FRAMES: "/v1/frames", BATCH: "/v1/grade",
+}  # fmt: skip
 _CACHES = (
     *reader._memoized, reader._parsed, reading_work._memoized,
     reading_work._of_word, words.split, decimals.decimals_of,
@@ -106,16 +112,46 @@ class Target:
             best = min(best, time.process_time() - start)
         return best, status
 
+    def ratio(self, attack: Attack, enough: float = 0.0, most: int = 8) -> tuple[float, int]:
+        """Return the least cost of a request as a multiple of the floor, and its status."""
+        # The floor is measured before and after each request, because a busy machine slows both.
+        # The least of some rounds counts: other programs only ever add to a cost. Nothing is
+        # measured again once a cost is below ``enough``.
+        best, status = float("inf"), 0
+        for _ in range(most):
+            before = floor_seconds()
+            seconds, status = self.seconds(attack, 1)
+            best = min(best, 2 * seconds / (before + floor_seconds()))
+            if best < enough:
+                break
+        return best, status
+
     def _action(self, attack: Attack) -> Callable[[], int]:
-        content = attack.content
+        content = self._content(attack)
         if attack.entry == FILE:
             path = Path(self._folder.name) / "submission.json"
             path.write_bytes(content)
             return lambda: self._file(path, attack.exercise)
         if attack.entry == ATTEMPTS:
             return lambda: self._loop.run_until_complete(self._recorded(attack.exercise, content))
-        url = _PATHS.get(attack.entry, f"/v1/exercises/{attack.exercise}/grade")
+        name = attack.entry if attack.entry in (HINTS, SOLUTION) else GRADE
+        url = _PATHS.get(attack.entry, f"/v1/exercises/{attack.exercise}/{name}")
         return lambda: self._loop.run_until_complete(self._posted(url, content))
+
+    def _content(self, attack: Attack) -> bytes:
+        # The bodies of a batch and of a hint are a submission, and more around it.
+        if attack.entry == BATCH:
+            return b'{"submissions": [{"exercise": "%b", %b]}' % (
+                attack.exercise.encode(),
+                attack.content[1:],
+            )
+        if attack.entry == HINTS:
+            part = self.exercises[attack.exercise].parts[0].id
+            return b'{"part": "%b", "code": "sign", "step": 1, %b' % (
+                part.encode(),
+                attack.content[1:],
+            )
+        return attack.content
 
     async def _recorded(self, exercise: str, content: bytes) -> int:
         # A learner with too many attempts would be refused.

@@ -8,7 +8,8 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
 from tests.grids.writers import FORMATS
-from tests.worst.entry_points import ATTEMPTS, FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
+from tests.worst.entry_points import FRAMES, PREVIEW, PREVIEWS, SUBMITTED, Attack
+from tests.worst.seeds import NESTING, RUNS, runs
 
 # A list or object, and the index or key of one of its items.
 Place = tuple[Any, Any]
@@ -41,6 +42,7 @@ class Mutator:
         self._of_text: tuple[Callable[[str], str], ...] = (
             self._repeated, self._lengthened, self._wrapped, self._pieced, self._cut,
             self._renumbered, self._spliced, self._replaced,
+            self._run, self._nested, self._run_inside,
         )  # fmt: skip
 
     def mutated(self, attack: Attack, others: Sequence[Attack]) -> Attack:
@@ -60,9 +62,9 @@ class Mutator:
                 self._answers(body["answers"], other)
         if self._choose.random() < 0.03:
             body["angle_unit"] = self._choose.choice(("radians", "degrees"))
-        if attack.entry in (GRADE, ATTEMPTS, FILE) and self._choose.random() < 0.03:
+        if attack.entry in SUBMITTED and self._choose.random() < 0.03:
             body["echo"] = self._choose.random() < 0.5
-        if attack.entry in (GRADE, ATTEMPTS, FILE) and self._choose.random() < 0.03:
+        if attack.entry in SUBMITTED and self._choose.random() < 0.03:
             body["feedback"] = self._choose.choice(("full", "hints", "verdicts", "score"))
         found = Attack(attack.entry, attack.exercise, body)
         return found if len(found.content) < LONGEST else attack
@@ -212,3 +214,17 @@ class Mutator:
 
     def _replaced(self, _: str) -> str:
         return self._choose.choice(self._cells)
+
+    def _run(self, _: str) -> str:
+        return next(runs(self._choose, 1))
+
+    def _run_inside(self, text: str) -> str:
+        at = self._choose.randint(0, len(text))
+        unit = "".join(self._choose.choices(RUNS, k=self._choose.choice((1, 1, 2, 3))))
+        return text[:at] + unit * self._choose.choice((10, 200, 2_000, 12_000)) + text[at:]
+
+    def _nested(self, text: str) -> str:
+        opener, closer = self._choose.choice(NESTING)
+        depth = self._choose.choice((10, 100, 1_000, 3_900))
+        start, end = self._slice(text)
+        return text[:start] + opener * depth + text[start:end] + closer * depth + text[end:]

@@ -6,7 +6,7 @@ from typing import Any
 
 from service.catalogue import Exercise
 from tests.expressions.fuzzing import hostile, seeds
-from tests.worst.entry_points import ATTEMPTS, FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, Attack
+from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, SUBMITTED, Attack
 
 KEYS = ("a", "alpha", "d", "theta")
 HALVES = "½" * 78
@@ -24,6 +24,43 @@ def grid(rows: int, columns: int, runs: int = 6) -> list[list[str]]:
 def padded(rows: int, size: int = 16_000, pad: str = "$") -> str:
     lines = [", ".join(f"c{(i + j) % 3 + 1}" for j in range(4)) for i in range(rows)]
     return "\n".join(lines) + "\n" + pad * (size - sum(map(len, lines)) - rows)
+
+
+LONGEST_PASTED = 26 * 1024
+# Signs that a reader of pasted texts may search again and again, in runs and nested.
+RUNS = (
+    "(", ")", "()", "[]", "{}", "[[", "'", '"', "''", '"" ', "$", "$$", " ", "\t", "\n", ",", ", ",
+    ";", "\\", "\\\\", "\\, ", "|", "&", "1", "12 ", "x", "a1 ", "matrix", "a = ", "a: ", "a.", "%",
+    "# ", "//", "/*", "(*", "...", "`", "**", "<", "<td>", "_", "^", "-", ">>> ", "(a, ", "'a', ",
+    "½", "θ₁", "\x85", "\r",
+)  # fmt: skip
+AROUND = (
+    ("", ""), ("[", "]"), ("A1 = [1, 2; 3, 4]\nA2 = ", ""), ("DH = [1 2 3 4];\nT = ", ""),
+    ("[1, 2; 3, ", "]"), ("a = [1]; alpha = [2]; d = [3]; theta=[", ""), ("{'a': 1, ", "}"),
+    ("Link('d', 1); SerialLink(", ")"), ("\\begin{bmatrix} 1 & 2 \\\\ ", "\\end{bmatrix}"),
+    ("'", "'"), ("f(", "[1, 2])"), ("| a | b |\n|---|---|\n| ", "|"), ("1, 2, 3, 4\n", ""),
+    ("Link 1: a = ", ", alpha = 0, d = 1, theta = q1"), ("T = [■(1&2@", "@3&4)]"),
+)  # fmt: skip
+NESTING = (("(", ")"), ("[", "]"), ("{", "}"), ("\\left(", "\\right)"), ("f(", ")"), ("$", "$"))
+
+
+def run(before: str, unit: str, after: str = "", size: int = LONGEST_PASTED) -> str:
+    """Return a text of ``size`` characters that is mostly ``unit``, again and again."""
+    left = size - len(before) - len(after)
+    return before + (unit * (left // len(unit) + 1))[:left] + after
+
+
+def runs(choose: random.Random, number: int) -> Iterator[str]:
+    """Yield long texts of few signs: in runs, in nested pairs, and mixed."""
+    for _ in range(number):
+        before, after = choose.choice(AROUND)
+        size = choose.choice((3_000, 8_000, 12_000, LONGEST_PASTED))
+        unit = "".join(choose.choices(RUNS, k=choose.choice((1, 1, 1, 2, 3))))
+        if choose.random() < 0.3:
+            opener, closer = choose.choice(NESTING)
+            depth = choose.choice((50, 500, 3_900, 12_900))
+            before, after = before + opener * depth, closer * depth + after
+        yield run(before, unit, after, max(size, len(before) + len(after)))
 
 
 def links_of(text: str, number: int = 0, links: int = 6) -> list[list[list[str]]]:
@@ -109,29 +146,41 @@ def _free_frames(name: str) -> Iterator[Attack]:
             yield free_frames_of(name, "", rows=rows)
 
 
+def _runs(name: str, exercise: Exercise, choose: random.Random) -> Iterator[Attack]:
+    for text in runs(choose, 3):
+        for entry in SUBMITTED:
+            yield Attack(entry, name, {"answers": {part.id: text for part in exercise.parts}})
+        for part in exercise.parts:
+            yield Attack(PREVIEW, name, {"text": text, "exercise": name, "part": part.id})
+
+
+def _previews(name: str, exercise: Exercise) -> Iterator[Attack]:
+    for part in exercise.parts:
+        for text in ("c12 " * 16, "sind(30)" * 8, HALVES):
+            yield previews_of(name, part.id, text)
+        for runs in (1, 6):
+            text = "\n".join(map(", ".join, grid(8, 4, runs)))
+            body = {"text": text, "exercise": name, "part": part.id}
+            yield Attack(PREVIEW, name, body)
+
+
 def attacks(exercises: Mapping[str, Exercise], seed: int) -> Iterator[Attack]:
     """Yield the first request bodies of the search."""
     choose = random.Random(seed)
     for name, exercise in exercises.items():
         bodies = [*answers_of(exercise), *(each for each in _spread(exercise, choose) if each)]
         for answers in bodies:
-            yield Attack(GRADE, name, {"answers": answers})
-            yield Attack(ATTEMPTS, name, {"answers": answers})
-            yield Attack(FILE, name, {"answers": answers})
+            for entry in SUBMITTED:
+                yield Attack(entry, name, {"answers": answers})
             for answered, answer in answers.items():
                 if isinstance(answer, str):
                     body = {"text": answer, "exercise": name, "part": answered}
                     yield Attack(PREVIEW, name, body)
+        yield from _runs(name, exercise, choose)
         if exercise.reference is not None:
             yield frames_of(name, len(exercise.joints), "sin(30)" * 60)
             yield frames_of(name, len(exercise.joints), halves(0))
-        for part in exercise.parts:
-            for text in ("c12 " * 16, "sind(30)" * 8, HALVES):
-                yield previews_of(name, part.id, text)
-            for runs in (1, 6):
-                text = "\n".join(map(", ".join, grid(8, 4, runs)))
-                body = {"text": text, "exercise": name, "part": part.id}
-                yield Attack(PREVIEW, name, body)
+        yield from _previews(name, exercise)
     name = next(iter(exercises))
     yield from _free_frames(name)
     for text in cells():

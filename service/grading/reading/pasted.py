@@ -24,6 +24,7 @@ from service.grids import (
     read_grids,
     read_robot,
 )
+from service.grids.cutting.once import remembering
 from service.time_slices import checkpoint
 from service.translations import say
 
@@ -83,7 +84,8 @@ def grids_as_written(text: str, reader: Reader) -> tuple[NamedGrid, ...]:
 def _cut(way: str, text: str, reader: Reader, read: Callable[[], R]) -> R:
     # Raises GridError if the text may not be cut.
     _charge(text, reader)
-    return once(way, text, reader, read)
+    with remembering(reader.budget.searched):
+        return once(way, text, reader, read)
 
 
 def once(way: str, text: str, reader: Reader, read: Callable[[], R]) -> R:

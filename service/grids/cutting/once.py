@@ -1,6 +1,7 @@
 """Search a pasted text for the same thing only once, though several formats ask for it."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from contextvars import ContextVar
 from functools import wraps
 from typing import Any, Final, ParamSpec, TypeVar
@@ -13,28 +14,35 @@ R = TypeVar("R")
 # To search a shorter text again costs no more than to remember what was found.
 _WORTH_IT: Final = 200
 
-# What was found in each text, while a pasted text is read.
+# What was found in each text, while pasted texts are read.
 _found: ContextVar[dict[tuple[object, str], Any] | None] = ContextVar("found", default=None)
 
 
-def remembering(read: Callable[P, R]) -> Callable[P, R]:
+@contextmanager
+def remembering(found: dict[tuple[object, str], Any]) -> Iterator[None]:
+    """Let each search ``once`` remember in ``found`` what it finds."""
+    token = _found.set(found)
+    try:
+        yield
+    finally:
+        _found.reset(token)
+
+
+def remembers(read: Callable[P, R]) -> Callable[P, R]:
     """Let a function that reads a pasted text make each search ``once``."""
 
     @wraps(read)
     def reads(*args: P.args, **named: P.kwargs) -> R:
         if _found.get() is not None:
             return read(*args, **named)
-        token = _found.set({})
-        try:
+        with remembering({}):
             return read(*args, **named)
-        finally:
-            _found.reset(token)
 
     return reads
 
 
 def once(search: Callable[[str], R]) -> Callable[[str], R]:
-    """Let a search remember what it finds in each text, until the pasted text is read.
+    """Let a search remember what it finds in each text, until the pasted texts are read.
 
     The search takes linear time and gives way before it begins. Nobody may change its result.
     """

@@ -1,6 +1,7 @@
 """Split CSV, TSV and semicolon files into lines and cells, which may be quoted."""
 
 import re
+from collections.abc import Mapping
 
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.pairs import pairs
@@ -35,7 +36,7 @@ def split_cells(source: SourceText, separator: str, *, brackets: bool) -> list[l
 
 
 def _cell(
-    source: SourceText, start: int, stops: str, ends: dict[int, int], plain: re.Pattern[str]
+    source: SourceText, start: int, stops: str, ends: Mapping[int, int], plain: re.Pattern[str]
 ) -> tuple[SourceText, int]:
     text = source.text
     i = start
