@@ -307,6 +307,15 @@ def test_the_slack_is_a_unit_of_each_decimal(
         # Two unknowns with the same effect share it.
         ([[1.0, 1.0]], [1.9], True), ([[1.0, 1.0]], [2.1], False),
         ([[1.0, 1.0]], [-0.98], True), ([[1.0, 1.0]], [-1.1], False),
+        # If the shares in proportion to the effects are too large, others take over.
+        ([[1.0, 2.0]], [2.9], True),
+        ([[1.0, 2.0]], [3.1], False),
+        ([[1.0, 2.0]], [-1.4], True),
+        ([[1.0, 2.0]], [-1.6], False),
+        ([[1.0, -2.0, 4.0]], [5.8], True),
+        ([[1.0, -2.0, 4.0]], [6.1], False),
+        ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 0.8], True),
+        ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 2.6], False),
         # Each of two unknowns has an effect of its own.
         ([[1.0, 0.0], [0.0, 1.0]], [0.9, -0.4], True),
         ([[1.0, 0.0], [0.0, 1.0]], [-0.4, 0.9], True),

@@ -15,7 +15,7 @@ from service.grading.judging.marking.marks import (
     steps_lost,
     unjudged_report,
 )
-from service.grading.lost_points import lost_in_row, without_places
+from service.grading.lost_points import little_worth, lost_in_row, without_places
 from service.grading.part import Content, Judged
 from service.grading.report import combined
 from tests.grading.support.robots import COLUMNS, EXACT, SCARA, STANFORD, Row
@@ -329,11 +329,13 @@ def test_rows_of_zeros_are_named_if_points_are_lost(table: PartSpec) -> None:
     assert (told.rows, told.points) == (("3",), 0.25)
     assert part_report(table, judged(RIGHT)).little_worth is None
     assert part_report(table, judged("-+++ ++++ -+++ ++++")).little_worth is None
-    # An eighth of the points is little, and more is not.
-    for points, named in ((2, True), (1.99, False)):
-        zeros = Content(((False,), (True,)), ((0,), (1,)), besides=True)
-        part = table.model_copy(update={"points": points})
-        assert part_report(part, judged("+ -", zeros)).little_worth is not None or not named
+    big = [RowReport("1", Verdict.CORRECT, p, p, ()) for p in (0.0, 1.0, 1.001)]
+    told = little_worth(big, 8)
+    assert told is not None
+    # A row that is worth nothing, or more than an eighth of 8 points, is not named.
+    assert (told.rows, told.points) == (("1",), 1.0)
+    wrong = [replace(big[1], verdict=Verdict.INCORRECT)]
+    assert little_worth(wrong, 8) is None
 
 
 def test_an_answer_has_earned_a_share_of_what_needs_knowledge(table: PartSpec) -> None:

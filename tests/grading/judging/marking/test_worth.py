@@ -55,6 +55,8 @@ def test_the_scara_s_table_is_worth_the_points_of_the_docs() -> None:
         (("x...", "xx..", "....", "..x."), 3, 62, (13, 13, 13, 13)),
         # One unit and four rows: all fifths are at most a third of the unit.
         (("x...", "....", "....", "...."), 8, 24, (2, 2, 2, 2)),
+        # Of 35 quarters, 26 for the unit would leave more than a quarter.
+        (("x...", "....", "....", "...."), 8.75, 27, (2, 2, 2, 2)),
         # 48 / 12.8 is 3.75; with units of 4 nothing would be left for the rows.
         (("xxx.", "xxx.", "xxx.", "xxx."), 12, 3, (3, 3, 3, 3)),
         (("xxxx", "xxxx", "xxxx"), 12, 3, (4, 4, 4)),
@@ -177,6 +179,14 @@ def test_a_hundredth_of_a_point_goes_to_one_cell() -> None:
     # A loss is a step at least, also in a group that is worth nothing.
     assert found.groups == dict.fromkeys(range(4), 1)
     assert found.fifth(0) == 1
+    fixed = worth(content("x...", "xx..", "....", "..x.", besides=True, most=3), 0.01)
+    assert fixed.groups == {0: 1, 1: 2, 2: 1, 3: 1}
+    cells = worth(SCARA, 0.01, "cells")
+    assert (cells.unit, cells.slip) == (1, 1)
+    assert worth(SCARA, 0.01, "rows").slip == 1
+    for equal in (True, False):
+        pose = content("xx", ".x", groups="00", equal=equal)
+        assert (worth(pose, 0.01).unit, worth(pose, 0.01).rows) == (1, (1, 0))
 
 
 @together(
