@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from sqlalchemy import Connection
 
 from service.access.caller import Scope
 from service.access.key_table import add_key
@@ -23,6 +24,7 @@ from service.contract.courses import (
     Extension,
     LinksRequest,
     NewAssignment,
+    NewCourse,
     NewLearner,
 )
 from service.courses import learner_view, roll
@@ -30,6 +32,7 @@ from service.courses.assignments import add_assignment, assignments_of, change_a
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links
 from service.courses.results.gradebook import gradebook, handed_in, missing, written_gradebook
+from service.courses.terms import learner_terms, terms_of
 from service.translations import ENGLISH
 from service.web.assets import load_assets
 from service.web.courses.course_pages import CourseState, assignment_page
@@ -108,6 +111,47 @@ def test_learners_read_the_titles_of_exercises_in_their_language(class_: Class) 
     [course] = told.json()["courses"]
     assert course["assignments"][0]["exercises"][0]["title"] == "SCARA-Roboter"
     assert class_.own()["title"] == "SCARA manipulator"
+
+
+@pytest.mark.parametrize(
+    ("place", "named"),
+    [
+        (("nothing", "homework", "ada"), "no course nothing"),
+        (("robots", "homework", "nobody"), "no learner nobody"),
+        (("robots", "nothing", "ada"), "no assignment nothing"),
+    ],
+)
+def test_what_a_course_does_not_have_is_named(
+    class_: Class, place: tuple[str, str, str], named: str
+) -> None:
+    class_.assign()
+    assert class_.do(lambda it: terms_of(it, "robots", "homework", "ada")).id == "homework"
+    with pytest.raises(CourseError, match=named):
+        class_.do(lambda it: terms_of(it, *place))
+
+
+def test_a_learner_s_assignments_are_listed_course_by_course(class_: Class) -> None:
+    def second(connection: Connection) -> None:
+        course = NewCourse(id="arms", title="Arms", zone="Asia/Tokyo")
+        roll.add_course(connection, course, NOW)
+        roll.add_learners(connection, "arms", [NewLearner(learner="ada", name="Ada")])
+
+    class_.do(second)
+    for course, name in (("robots", "a"), ("arms", "b"), ("robots", "c"), ("arms", "d")):
+        exercises = [{"exercise": "scara", "points": 1}]
+        fields = {"id": name, "title": name, "exercises": exercises, "due": "2027-01-01T00:00"}
+        new = NewAssignment.model_validate(fields)
+        class_.do(partial(add_assignment, course=course, new=new, known={"scara"}))
+
+    def told(only: str | None) -> list[tuple[str, str, str]]:
+        found = class_.do(lambda it: list(learner_terms(it, "ada", only)))
+        return [(course, each.id, str(each.zone)) for course, each in found]
+
+    arms = [("arms", name, "Asia/Tokyo") for name in "bd"]
+    robots = [("robots", name, "Europe/Berlin") for name in "ac"]
+    assert told(None) == [*arms, *robots]
+    assert (told("arms"), told("robots")) == (arms, robots)
+    assert class_.do(lambda it: list(learner_terms(it, "grace", "arms"))) == []
 
 
 def test_an_extension_may_give_more_attempts(class_: Class) -> None:

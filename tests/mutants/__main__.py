@@ -49,7 +49,11 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "terms": Package(
         ["service/courses/terms.py"],
-        ["tests/courses/test_terms.py", "tests/courses/test_courses.py"],
+        [
+            "tests/courses/test_terms.py",
+            "tests/courses/test_courses.py",
+            "tests/courses/test_paid_hints.py",
+        ],
         ["tests/courses/test_terms"],
     ),
     "gradebook": Package(

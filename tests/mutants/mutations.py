@@ -8,6 +8,7 @@ import ast
 import copy
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Final
 
 _COMPARED: Final[dict[type[ast.cmpop], type[ast.cmpop]]] = {
@@ -166,7 +167,7 @@ def _called(node: ast.AST) -> str:
 def _changes(spot: _Spot) -> Iterator[_Change]:
     node = spot.node
     for new in (*_other_values(node), *_other_statements(node)):
-        yield (lambda new=new: spot.put(new)), (lambda: spot.put(node))
+        yield partial(spot.put, new), partial(spot.put, node)
     match node:
         case ast.Compare():
             yield from (_swapped(node.ops, i) for i in range(len(node.ops)))
