@@ -196,3 +196,10 @@ def test_all_secrets_follow_from_one_and_differ() -> None:
     assert len({*derived(one), *derived(other)}) == 2 * len(derived(one))
     # What signs must not be what is stored.
     assert one.check != one.token_secret.hex()
+
+
+def test_stored_keys_stay_valid() -> None:
+    # RFC 2104: the secret is the key of both hashes, and the API key is a message.
+    inner = hmac.new(b"s" * 64, b"dh-grader keys", "sha256").digest()
+    told = hmac.new(inner, b"dhg_1", "sha256").hexdigest()
+    assert Secret("s" * 64).key_digest("dhg_1") == told

@@ -203,7 +203,8 @@ class Reached:
         def order(name: str) -> tuple[bool, float, str]:
             return not name.startswith(tuple(homes)), self._seconds[name], name
 
-        chosen, spent = [], 0.0
+        chosen: list[str] = []
+        spent = 0.0
         for name in sorted(found & self._seconds.keys(), key=order):
             spent += self._seconds[name]
             if chosen and spent > most:
@@ -411,9 +412,8 @@ def _replace(name: str, old: object, new: object) -> None:
         if isinstance(each, FunctionType):
             if each.__defaults__ and any(value is old for value in each.__defaults__):
                 each.__defaults__ = tuple(new if v is old else v for v in each.__defaults__)
-            for key, value in (each.__kwdefaults__ or {}).items():
-                if value is old:
-                    each.__kwdefaults__[key] = new
+            named = each.__kwdefaults__ or {}
+            named.update({key: new for key, value in named.items() if value is old})
 
 
 def _called_by_module(tree: ast.Module) -> set[str]:

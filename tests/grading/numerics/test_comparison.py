@@ -1,6 +1,7 @@
 """Compare values with expected values."""
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 import pytest
@@ -337,7 +338,7 @@ def test_shifts_within_rounding_explain_an_error(
         units = np.full(rates.shape[1], unit)
 
         def left(shifts: np.ndarray, unit: float = unit) -> np.ndarray:
-            return unit * (shifts @ rates.T - wanted)
+            return np.asarray(unit * (shifts @ rates.T - wanted))
 
         found = fitted_shifts(left, units, 1e-9)
         assert (found is not None) is is_possible
@@ -361,9 +362,14 @@ def test_a_fit_follows_a_bend_and_ends_where_nothing_is_finite() -> None:
     assert far == pytest.approx([0.5, 7.0])
     assert fitted_unknowns(lambda u: (u - [0.5, 7.0], np.eye(2)), sizes, 2, 1e-9) is None
     for value in (np.nan, np.inf):
-        hole = np.array([[1.0, 0.0], [0.0, value]])
-        assert fitted_unknowns(lambda u, h=hole: (u - 0.5, h), sizes, 1, 1e-9) is None
-        assert fitted_unknowns(lambda u, v=value: (u + v, np.eye(2)), sizes, 1, 1e-9) is None
+        hole, bad = np.array([[1.0, 0.0], [0.0, value]]), np.array([0.1, value])
+        for error, rates in ((np.full(2, 0.1), hole), (bad, np.eye(2))):
+            given = error, rates
+            assert fitted_unknowns(partial(_always, given), sizes, 1, 1e-9) is None
+
+
+def _always(given: tuple[np.ndarray, np.ndarray], _: object) -> tuple[np.ndarray, np.ndarray]:
+    return given
 
 
 def test_the_steps_of_derivatives_are_half_a_unit_or_half_the_digits() -> None:

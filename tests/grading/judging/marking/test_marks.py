@@ -270,6 +270,8 @@ def test_a_lazy_answer_keeps_only_the_fifths_of_its_rows(table: PartSpec) -> Non
         (judged(TWO, whole_cost=0.001), [("whole", None, 0.25)]),
         (judged(ONE, stands_still=True), [("no_motion", None, 8)]),
         (judged(RIGHT, slips=1, at_least=judged(RIGHT)), [("outside_cells", None, 0.25)]),
+        # A quarter of a point is lost in one row, and none in the other.
+        (judged(TWO, at_least=judged(RIGHT)), [("cells", "1", 0.25)]),
     ],
 )
 def test_each_loss_has_a_cause(
