@@ -12,6 +12,7 @@ SEEDS  ?= 10000
 SEED   ?= 1
 MINUTES ?= 10
 SECONDS ?= 60
+SAMPLE ?= 100
 
 python  := "$(VENV)/bin/python"
 install := $(python) -m pip install --quiet --disable-pip-version-check
@@ -26,7 +27,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips tables robots durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips tables robots mutants durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -147,6 +148,9 @@ tables: $(dev) ## import 500 tables, typed by people and by programs: is it the 
 
 robots: $(dev) ## draw SEEDS= practice robots of each level: statement, marks, links, labels, forms
 	for level in 1 2 3 4; do $(python) -m tests.variants.robots --level $$level --seeds "$(SEEDS)" || exit; done
+
+mutants: $(dev) ## change rights, marks and comparisons in small ways: does a test notice? (SAMPLE=, SEED=, PACKAGES=, RESUME=)
+	$(python) -m tests.mutants $(PACKAGES) --sample "$(SAMPLE)" --seed "$(SEED)" $(if $(RESUME),--resume "$(RESUME)")
 
 durability: $(dev) ## kill the service while it records attempts and hand-ins, and migrations, 20 times on each database
 	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py

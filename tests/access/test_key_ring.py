@@ -14,7 +14,7 @@ from service.access import key_lookups
 from service.access.caller import Caller, Scope
 from service.access.key_lookups import KeyPlace
 from service.access.key_ring import KeyRing
-from service.access.key_table import add_key, all_keys, keys_at, revoke_key
+from service.access.key_table import add_key, all_keys, keys_at, revoke_key, settle
 from service.access.key_text import new_key_text
 from service.access.keys import CredentialError, Key, KeysBusyError, KeysUnreachableError, Secret
 from service.attempts.storage.database import in_transaction, open_database
@@ -24,6 +24,7 @@ from tests.guards import ANSWER
 SECRET = Secret("0123456789abcdef" * 4)
 # How long the key rings of these tests memoize keys (seconds).
 MEMOIZED_SECONDS = 0.05
+TICK = timedelta(microseconds=1)
 
 
 @pytest.fixture
@@ -117,6 +118,90 @@ def test_the_last_use_is_written_once_a_minute(engine: Engine) -> None:
     again.close()
     with engine.connect() as connection:
         assert all_keys(connection) == [known]
+
+
+def test_repeated_uses_are_written_once(engine: Engine) -> None:
+    written: list[str] = []
+
+    @event.listens_for(engine, "before_cursor_execute")
+    def note(*given: object) -> None:
+        written.append(str(given[2]))
+
+    one, other = made(engine)[0], made(engine)[0]
+    ring = KeyRing(engine, SECRET, 0.0)
+    for _ in range(3):
+        asked(ring, one, other)
+    ring.close()
+    assert len([each for each in written if each.startswith("UPDATE")]) == 2
+
+
+def test_keys_belong_to_one_secret(engine: Engine) -> None:
+    other, now = Secret("x" * 64), datetime.now(UTC)
+
+    def has_secret(secret: Secret | None) -> bool:
+        ring = KeyRing(engine, secret)
+        ring.close()
+        return ring.has_their_secret
+
+    # Nothing is recorded yet.
+    assert has_secret(SECRET)
+    assert in_transaction(engine, lambda it: settle(it, SECRET, now))
+    _, known = made(engine)
+    assert [has_secret(each) for each in (SECRET, other, None)] == [True, False, True]
+    # While a key is valid, no key can be made with another secret.
+    assert not in_transaction(engine, lambda it: settle(it, other, now))
+    assert in_transaction(engine, lambda it: settle(it, SECRET, now))
+    assert not in_transaction(engine, lambda it: settle(it, other, known.expires_at - TICK))
+    assert has_secret(SECRET)
+    # After the last one has ended, another secret may begin.
+    assert in_transaction(engine, lambda it: settle(it, other, known.expires_at))
+    assert [has_secret(each) for each in (SECRET, other)] == [False, True]
+
+
+def test_a_revoked_key_holds_no_secret(engine: Engine) -> None:
+    other, now = Secret("x" * 64), datetime.now(UTC)
+    in_transaction(engine, lambda it: settle(it, SECRET, now))
+    _, known = made(engine)
+    in_transaction(engine, lambda it: revoke_key(it, known.id, now))
+    assert in_transaction(engine, lambda it: settle(it, other, now))
+
+
+def test_a_ring_asks_for_the_first_key_once_in_a_while(engine: Engine) -> None:
+    ring = KeyRing(engine, SECRET, seconds=3600)
+    assert not asyncio.run(ring.are_needed())
+    made(engine)
+    assert not asyncio.run(ring.are_needed())
+    # The program itself has made a key, so it need not ask.
+    ring.expect_keys()
+    assert asyncio.run(ring.are_needed())
+    ring.close()
+
+
+def test_a_session_is_that_of_its_key(engine: Engine) -> None:
+    key, known = made(engine, Scope.TUTOR)
+    ring = KeyRing(engine, SECRET)
+    [caller] = asked(ring, key)
+    session = ring.session(caller, known.expires_at)
+    assert asyncio.run(ring.session_caller(session)) == caller
+    expired = ring.session(caller, datetime.now(UTC) - timedelta(seconds=2))
+    with pytest.raises(CredentialError, match="The session has expired"):
+        asyncio.run(ring.session_caller(expired))
+    # A token of a learner is no session, and a session no token.
+    learner = Caller(known.scopes, None, "ada", known.id)
+    with pytest.raises(CredentialError, match="no session"):
+        asyncio.run(ring.session_caller(ring.token(learner, known.expires_at)))
+    with pytest.raises(CredentialError, match="neither a key nor a token"):
+        asked(ring, session)
+    ring.close()
+
+
+def test_without_a_secret_no_key_is_valid(engine: Engine) -> None:
+    key, _ = made(engine)
+    ring = KeyRing(engine, None)
+    for asking in (ring.caller(key), ring.session_caller("a.b.c")):
+        with pytest.raises(CredentialError, match="DH_GRADER_SECRET is not set"):
+            asyncio.run(asking)
+    ring.close()
 
 
 def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:

@@ -11,8 +11,8 @@ from typing import Any, Final
 
 import pytest
 
-from service.access.caller import Scope
-from service.access.keys import CredentialError, Secret
+from service.access.caller import Caller, Scope
+from service.access.keys import CredentialError, Key, Secret
 from service.access.tokens import LearnerToken, signed, verified
 
 SECRET: Final = Secret("0123456789abcdef" * 4).token_secret
@@ -139,3 +139,67 @@ def test_a_damaged_token_is_refused() -> None:
             assert isinstance(found, str) or spoilt[:-1] == list(right)[:-1]
     for odd in ("", ".", "..", "...", "a.b", "\xff.\xff.\xff", "." * 9000, "e30.e30."):
         assert isinstance(outcome(odd), str)
+
+
+ONE, BOTH = frozenset({"scara"}), frozenset({"scara", "puma"})
+
+
+@pytest.mark.parametrize(
+    ("of_token", "of_key", "expected"),
+    [
+        (None, None, None),
+        (ONE, None, ONE),
+        (None, ONE, ONE),
+        (BOTH, ONE, ONE),
+        (ONE, BOTH, ONE),
+        (frozenset({"puma"}), ONE, frozenset()),
+        (frozenset(), None, frozenset()),
+    ],
+)
+def test_a_token_has_at_most_the_exercises_and_scopes_of_its_key(
+    of_token: frozenset[str] | None, of_key: frozenset[str] | None, expected: frozenset[str] | None
+) -> None:
+    told = LearnerToken("0011aaff", "ada", frozenset({Scope.GRADE, Scope.TUTOR}), of_token)
+    for course in (None, "robots"):
+        scopes = frozenset({Scope.GRADE, Scope.RECORD})
+        holder = Caller(scopes, of_key, key_id="0011aaff", course=course)
+        grades = frozenset({Scope.GRADE})
+        assert told.caller(holder) == Caller(grades, expected, "ada", "0011aaff", course)
+
+
+def test_a_key_is_valid_until_it_expires_or_is_revoked() -> None:
+    now, tick = datetime(2026, 10, 1, 8, tzinfo=UTC), timedelta(microseconds=1)
+    key = Key("0011aaff", "Moodle", frozenset({Scope.RECORD}), ONE, now, now, None, None, "robots")
+    caller = key.caller(now - tick)
+    # Every key may grade.
+    scopes = frozenset({Scope.GRADE, Scope.RECORD})
+    assert caller == Caller(scopes, ONE, None, "0011aaff", "robots")
+    for moment in (now, now + tick):
+        with pytest.raises(CredentialError, match=r"^The key has expired\.$"):
+            key.caller(moment)
+    revoked = Key("0011aaff", "", frozenset(), None, now, now + tick, revoked_at=now)
+    with pytest.raises(CredentialError, match=r"^The key was revoked\.$"):
+        revoked.caller(now)
+
+
+def test_all_secrets_follow_from_one_and_differ() -> None:
+    one, other = (Secret(letter * 64) for letter in "ab")
+
+    def derived(secret: Secret) -> list[object]:
+        return [
+            secret.check, secret.token_secret, secret.session_secret, secret.lti_secret,
+            secret.key_digest("dhg_1"), secret.key_digest("dhg_2"),
+            secret.link_key("1"), secret.link_key("2"),
+        ]  # fmt: skip
+
+    assert derived(one) == derived(Secret("a" * 64))
+    assert len({*derived(one), *derived(other)}) == 2 * len(derived(one))
+    # What signs must not be what is stored.
+    assert one.check != one.token_secret.hex()
+
+
+def test_stored_keys_stay_valid() -> None:
+    # RFC 2104: the secret is the key of both hashes, and the API key is a message.
+    inner = hmac.new(b"s" * 64, b"dh-grader keys", "sha256").digest()
+    told = hmac.new(inner, b"dhg_1", "sha256").hexdigest()
+    assert Secret("s" * 64).key_digest("dhg_1") == told

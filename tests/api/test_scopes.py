@@ -188,6 +188,18 @@ class Guarded:
         headers = {"Idempotency-Key": f"{next(_number)}", "Accept-Language": language}
         return await client.request(method, path, content=body, headers=headers)
 
+    def new_key(self, scope: Scope, **only: Any) -> str:
+        """Make a key; ``only`` may restrict it to ``exercises`` or to a ``course``."""
+        text = new_key_text()
+        digest, only = SECRET.key_digest(text), {"exercises": None, "course": None, **only}
+        in_transaction(
+            self.store.engine,
+            lambda it: add_key(
+                it, "", digest, [scope], only["exercises"], NOW, NOW + YEAR, only["course"]
+            ),
+        )
+        return text
+
     def ask(self, method: str, path: str, credential: str = "", **more: Any) -> httpx.Response:
         async def asked() -> httpx.Response:
             async with self.client(credential) as client:
@@ -497,6 +509,35 @@ def test_a_token_has_no_right_that_its_key_does_not_have(guarded: Guarded) -> No
         {"exercises": []}, {"exercises": ["nothing"]}, {"minutes": 481}, {"key": "x"}
     ]  # fmt: skip
     assert [made(record, **each).status_code for each in wrong] == [422] * len(wrong)
+
+
+def test_a_token_of_a_course_s_key_is_for_this_course_only(guarded: Guarded) -> None:
+    made = guarded.new_key(Scope.RECORD, course="robots")
+    token = guarded.ask("POST", "/v1/tokens", made, json={"learner": "ada"}).json()["token"]
+    body = {"exercise": EXERCISE, **ADA}
+
+    def status(path: str) -> int:
+        headers = {"Idempotency-Key": path}
+        return guarded.ask("POST", path, token, json=body, headers=headers).status_code
+
+    assert status("/v1/courses/robots/assignments/homework/attempts") == 201
+    assert status("/v1/courses/others/assignments/homework/attempts") == 403
+    # An attempt outside of the course's assignments.
+    path = f"/v1/exercises/{EXERCISE}/attempts"
+    assert guarded.ask("POST", path, token, json=ADA).status_code == 403
+
+
+def test_a_key_of_an_exercise_is_for_its_variants_too(guarded: Guarded) -> None:
+    varied = "vertical-axes"
+    own, other = (guarded.new_key(Scope.RECORD, exercises=[each]) for each in (varied, OTHER))
+    for name in (varied, f"{varied}~k7"):
+        for key, graded, recorded in ((own, 200, 201), (other, 403, 403)):
+            path = f"/v1/exercises/{name}"
+            assert guarded.ask("POST", f"{path}/grade", key, json=ANSWERS).status_code == graded
+            assert guarded.ask("POST", f"{path}/attempts", key, json=ADA).status_code == recorded
+            many = {"submissions": [{"exercise": name, **ANSWERS}]}
+            [told] = guarded.ask("POST", "/v1/grade", key, json=many).json()["results"]
+            assert list(told) == ["report" if graded == 200 else "problem"]
 
 
 def test_each_of_many_submissions_must_be_to_an_exercise_of_the_key(guarded: Guarded) -> None:

@@ -34,7 +34,8 @@ from service.courses import learner_view, roll
 from service.courses.assignments import add_assignment, assignments_of, change_assignment, extend
 from service.courses.errors import CourseError
 from service.courses.links import issue_links, revoke_links
-from service.courses.results.gradebook import gradebook, missing, written_gradebook
+from service.courses.results.gradebook import gradebook, handed_in, missing, written_gradebook
+from service.courses.terms import learner_terms, terms_of
 from service.server.installed import installed_app
 from service.settings import Settings
 from service.translations import ENGLISH
@@ -43,7 +44,7 @@ from service.web.courses.course_pages import CourseState, assignment_page
 from tests.access.kept_services import SECRET
 from tests.attempts.databases import KINDS
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, Class, days
-from tests.courses.results.test_workbook import as_tutor
+from tests.courses.results.test_workbook import as_tutor, sheets
 
 
 def points(class_: Class) -> list[list[float | None]]:
@@ -115,6 +116,47 @@ def test_learners_read_the_titles_of_exercises_in_their_language(class_: Class) 
     [course] = told.json()["courses"]
     assert course["assignments"][0]["exercises"][0]["title"] == "SCARA-Roboter"
     assert class_.own()["title"] == "SCARA manipulator"
+
+
+@pytest.mark.parametrize(
+    ("place", "named"),
+    [
+        (("nothing", "homework", "ada"), "no course nothing"),
+        (("robots", "homework", "nobody"), "no learner nobody"),
+        (("robots", "nothing", "ada"), "no assignment nothing"),
+    ],
+)
+def test_what_a_course_does_not_have_is_named(
+    class_: Class, place: tuple[str, str, str], named: str
+) -> None:
+    class_.assign()
+    assert class_.do(lambda it: terms_of(it, "robots", "homework", "ada")).id == "homework"
+    with pytest.raises(CourseError, match=named):
+        class_.do(lambda it: terms_of(it, *place))
+
+
+def test_a_learner_s_assignments_are_listed_course_by_course(class_: Class) -> None:
+    def second(connection: Connection) -> None:
+        course = NewCourse(id="arms", title="Arms", zone="Asia/Tokyo")
+        roll.add_course(connection, course, NOW)
+        roll.add_learners(connection, "arms", [NewLearner(learner="ada", name="Ada")])
+
+    class_.do(second)
+    for course, name in (("robots", "a"), ("arms", "b"), ("robots", "c"), ("arms", "d")):
+        exercises = [{"exercise": "scara", "points": 1}]
+        fields = {"id": name, "title": name, "exercises": exercises, "due": "2027-01-01T00:00"}
+        new = NewAssignment.model_validate(fields)
+        class_.do(partial(add_assignment, course=course, new=new, known={"scara"}))
+
+    def told(only: str | None) -> list[tuple[str, str, str]]:
+        found = class_.do(lambda it: list(learner_terms(it, "ada", only)))
+        return [(course, each.id, str(each.zone)) for course, each in found]
+
+    arms = [("arms", name, "Asia/Tokyo") for name in "bd"]
+    robots = [("robots", name, "Europe/Berlin") for name in "ac"]
+    assert told(None) == [*arms, *robots]
+    assert (told("arms"), told("robots")) == (arms, robots)
+    assert class_.do(lambda it: list(learner_terms(it, "grace", "arms"))) == []
 
 
 def test_an_extension_may_give_more_attempts(class_: Class) -> None:
@@ -348,6 +390,36 @@ def test_the_gradebook_and_who_is_missing(class_: Class) -> None:
     assert canvas[1] == "    Points Possible,,,,,10"
     [attempt] = [each for each in class_.own()["attempts"] if each["counts"]]
     assert attempt["id"] == best["id"]
+
+
+@BOTH
+def test_an_attempt_in_which_nothing_could_be_read_counts_nowhere(class_: Class) -> None:
+    class_.assign(limit=1, due=days(1))
+    unread = class_.hand_in("a", {"table": "???"}).json()["attempt"]
+    tutor = as_tutor(class_)
+
+    def told() -> list[Any]:
+        absent = class_.do(lambda it: missing(it, "robots", "homework"))
+        book = tutor.ask("GET", "/v1/courses/robots/gradebook?format=xlsx", "tutor")
+        [_, ada, _] = sheets(book.content)["Hand-ins"]
+        learners = [each.learner for each in absent]
+        return [points(class_), learners, class_.do(lambda it: handed_in(it, "robots")), ada[3:4]]
+
+    assert told() == [[[None], [None]], ["ada", "grace"], {}, []]
+    # A tutor's points make it count.
+    asyncio.run(class_.store.override(unread["id"], 12.0, "Handed in on paper.", "Prof. X"))
+    assert told() == [[[5.0], [None]], ["grace"], {"homework": 1}, [1.0]]
+
+
+def test_between_due_date_and_closing_date_no_learner_sees_the_solution(class_: Class) -> None:
+    class_.assign(due=days(-1), closes=days(1), solution="after_due")
+    path = "/v1/courses/robots/assignments/homework/solutions/scara"
+    assert class_.ask("GET", path).status_code == 403
+    assert not class_.own()["shows_solution"]
+    closed = AssignmentChange.model_validate({"due": days(-2), "closes": days(-1)})
+    class_.do(lambda it: change_assignment(it, "robots", "homework", closed, {"scara"}))
+    assert class_.ask("GET", path).status_code == 200
+    assert class_.own()["shows_solution"]
 
 
 def test_a_forgotten_learner_is_in_no_course_and_has_no_link(class_: Class) -> None:

@@ -1,5 +1,7 @@
-"""Test when an attempt is on time, late or refused."""
+"""Test what an assignment allows a learner at a moment: attempts, practice and the solution."""
 
+from collections.abc import Mapping
+from dataclasses import replace
 from datetime import datetime, timedelta
 from types import SimpleNamespace
 from typing import Any
@@ -8,7 +10,10 @@ from zoneinfo import ZoneInfo
 import pytest
 
 from service.attempts.policy import AttemptRefusedError, ruling
-from service.courses.terms import extended
+from service.catalogue import Exercise, FeedbackLevel
+from service.catalogue.attempts import AttemptsSpec
+from service.courses.terms import LearnerTerms, extended
+from tests.together import together
 
 BERLIN = ZoneInfo("Europe/Berlin")
 
@@ -73,3 +78,116 @@ def test_an_attempt_is_on_time_late_or_refused(
     now = at(when, zone)
     assert now is not None
     assert judged(now.astimezone(ZoneInfo("UTC")) + later * TICK, closes, own) == expected
+
+
+OPENS = "2026-10-20T08:00"
+
+
+def terms(
+    dates: str, practice: Any = "open", solution: Any = "never", levels: str = ""
+) -> LearnerTerms:
+    """Return terms with the dates in ``dates``: some of opens, due and closes."""
+    known = {"opens": OPENS, "due": DUE, "closes": CLOSES}
+    rules = AttemptsSpec.model_validate({name: at(known[name]) for name in dates.split()})
+    feedback = tuple(map(FeedbackLevel, levels.split())) or None
+    return LearnerTerms(
+        1, "homework", "Homework", BERLIN, {"scara": 10.0}, rules, feedback, practice, solution,
+        is_extended=False,
+    )  # fmt: skip
+
+
+def around(date: str) -> tuple[datetime, datetime, datetime]:
+    """Return the moment before a date, the date, and the moment after it."""
+    moment = at(date)
+    assert moment is not None
+    return moment - TICK, moment, moment + TICK
+
+
+@together(
+    ("dates", "date", "expected"),
+    [
+        ("opens due closes", OPENS, "not_open open open"),
+        ("opens due closes", DUE, "open open late"),
+        ("opens due closes", CLOSES, "late late closed"),
+        # If no closing date is given, the due date closes the assignment.
+        ("opens due", DUE, "open open closed"),
+        ("due", OPENS, "open open open"),
+        ("", DUE, "open open open"),
+    ],
+)
+def test_an_assignment_is_open_late_or_closed(dates: str, date: str, expected: str) -> None:
+    assert [terms(dates).state(moment) for moment in around(date)] == expected.split()
+
+
+@together(
+    ("solution", "dates", "date", "is_full", "expected"),
+    [
+        # Others may still hand in between the due date and the closing date.
+        ("after_due", "due closes", DUE, False, "no no no"),
+        ("after_due", "due closes", DUE, True, "no no no"),
+        ("after_due", "due closes", CLOSES, False, "no no yes"),
+        ("after_due", "due", DUE, False, "no no yes"),
+        ("after_due", "", DUE, True, "no no no"),
+        ("after_full", "due closes", OPENS, True, "yes yes yes"),
+        ("after_full", "due closes", CLOSES, False, "no no no"),
+        ("never", "due closes", CLOSES, True, "no no no"),
+    ],
+)
+def test_the_solution_is_shown_after_the_end_or_for_full_marks(
+    solution: str, dates: str, date: str, is_full: bool, expected: str
+) -> None:
+    shown = [
+        terms(dates, solution=solution).shows_solution(moment, is_full=is_full)
+        for moment in around(date)
+    ]
+    assert ["yes" if each else "no" for each in shown] == expected.split()
+
+
+@together(
+    ("practice", "dates", "is_full", "expected"),
+    [
+        ("open", "due closes", False, "yes yes yes"),
+        ("none", "due closes", True, "no no no"),
+        ("after", "due closes", False, "no no yes"),
+        ("after", "due closes", True, "yes yes yes"),
+        ("after", "opens", False, "no no no"),
+    ],
+)
+def test_practice_is_open_always_never_or_after_the_due_date(
+    practice: str, dates: str, is_full: bool, expected: str
+) -> None:
+    found = [terms(dates, practice).may_practise(each, is_full=is_full) for each in around(DUE)]
+    assert ["yes" if each else "no" for each in found] == expected.split()
+
+
+@together(
+    ("of_assignment", "of_exercise", "expected"),
+    [
+        # One level for each of four attempts; the last level is for all later attempts.
+        ("score verdicts", "hints", "score verdicts verdicts verdicts"),
+        ("full", "full", "full full full full"),
+        # Never more than the exercise allows in any attempt.
+        ("full", "verdicts", "verdicts verdicts verdicts verdicts"),
+        ("full hints", "score verdicts", "verdicts verdicts verdicts verdicts"),
+        ("score full", "score hints", "score hints hints hints"),
+        # Without levels of its own, the assignment has those of the exercise.
+        ("", "score verdicts hints", "score verdicts hints hints"),
+    ],
+)
+def test_a_report_never_tells_more_than_the_exercise_allows(
+    catalogue: Mapping[str, Exercise], of_assignment: str, of_exercise: str, expected: str
+) -> None:
+    levels = tuple(map(FeedbackLevel, of_exercise.split()))
+    exercise = replace(catalogue["scara"], feedback_by_attempt=levels)
+    found = [terms("", levels=of_assignment).feedback_at(exercise, n) for n in (1, 2, 3, 4)]
+    assert found == expected.split()
+
+
+def test_the_prices_of_hints_are_the_assignment_s_or_the_exercise_s(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    exercise = replace(catalogue["scara"], attempts=AttemptsSpec(hint_prices=[0.1, 0.2, 0.3]))
+    free = terms("")
+    assert free.hint_prices(exercise) == [0.1, 0.2, 0.3]
+    priced = replace(free, rules=AttemptsSpec(hint_prices=[0.3, 0.4, 0.5]))
+    assert priced.hint_prices(exercise) == [0.3, 0.4, 0.5]

@@ -23,6 +23,9 @@ from service.formats.shared import spreadsheet
 # The points of an attempt that count, as a share of 1.
 SHARE = func.coalesce(attempts.c.awarded, attempts.c.points) / func.nullif(attempts.c.max_points, 0)
 
+# The attempts that count: those in which something could be read, or that a tutor has given points.
+COUNTS = or_(attempts.c.ordinal.is_not(None), attempts.c.awarded.is_not(None))
+
 # A learner, an assignment and an exercise.
 GradebookPlace = tuple[str, str, str]
 
@@ -89,11 +92,10 @@ def missing(connection: Connection, course: str, assignment: str) -> list[Missin
 
 def handed_in(connection: Connection, course: str) -> dict[str, int]:
     """Return the number of learners who have handed in, by assignment."""
-    # Attempts that cannot be read do not count.
     rows = connection.execute(
         select(assignments.c.id, func.count(attempts.c.learner.distinct()).label("number"))
         .join_from(attempts, assignments)
-        .where(assignments.c.course == course, attempts.c.ordinal.is_not(None))
+        .where(assignments.c.course == course, COUNTS)
         .group_by(assignments.c.id)
     )
     return {row.id: row.number for row in rows}
@@ -146,7 +148,7 @@ def _shares(
         .where(
             of.assignment.in_(names),
             of.assignment.is_not(None),
-            or_(of.ordinal.is_not(None), of.awarded.is_not(None)),
+            COUNTS,
         )
         .group_by(of.assignment, of.learner, of.exercise)
         .subquery()

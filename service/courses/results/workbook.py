@@ -13,7 +13,7 @@ from sqlalchemy import Connection, func, select, true
 from service.attempts.storage.tables import assignments, attempts
 from service.contract.courses import Gradebook
 from service.courses import roll
-from service.courses.results.gradebook import GradebookPlace, gradebook
+from service.courses.results.gradebook import COUNTS, GradebookPlace, gradebook
 from service.formats.shared.plain_text import visible
 
 _PEOPLE: Final = ("learner", "name", "email")
@@ -21,7 +21,7 @@ _WIDTHS: Final = (14, 28, 30)
 
 
 class HandIns(NamedTuple):
-    """The number of a learner's attempts at an exercise, and the time of the last attempt."""
+    """The number of a learner's counted attempts at an exercise, and the time of the last one."""
 
     number: int
     last: datetime
@@ -46,7 +46,7 @@ def _hand_ins(
     rows = connection.execute(
         select(*place, func.count(), func.max(of.at, type_=of.at.type))
         .join_from(attempts, assignments)
-        .where(assignments.c.course == course, chosen, of.assignment.is_not(None))
+        .where(assignments.c.course == course, chosen, of.assignment.is_not(None), COUNTS)
         .group_by(*place)
     )
     return {(learner, name, exercise): HandIns(*found) for learner, name, exercise, *found in rows}

@@ -1,4 +1,4 @@
-"""Only a request from the server's own machine has a tutor's rights."""
+"""Test whose requests have a tutor's rights, and which pages may send them."""
 
 import asyncio
 from typing import Any
@@ -7,7 +7,17 @@ import httpx
 import pytest
 from fastapi import FastAPI, Request
 
-from service.api.permissions.access import Access
+from service.access.open_access import OPEN_HERE
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import (
+    PLAIN_COOKIE,
+    SECURE_COOKIE,
+    Access,
+    is_loopback,
+    is_same_origin,
+    session_in,
+)
+from tests.together import together
 
 PROGRAM = {"host": "127.0.0.1:8000"}
 
@@ -106,3 +116,119 @@ def test_the_setting_decides_if_it_is_set() -> None:
     name = {"host": "grader.example.edu", "origin": "https://grader.example.edu"}
     assert answered(True, {**name, "sec-fetch-site": "same-origin"}, **far)
     assert not answered(True, name, **far)
+
+
+def request(headers: dict[str, str], method: str = "GET", scheme: str = "http") -> Request:
+    raw = [(name.encode(), value.encode()) for name, value in headers.items()]
+    return Request({"type": "http", "method": method, "scheme": scheme, "headers": raw})
+
+
+LINK = {"sec-fetch-site": "cross-site", "sec-fetch-mode": "navigate", "sec-fetch-dest": "document"}
+OWN = {"host": "a.example", "origin": "http://a.example"}
+
+
+@together(
+    ("method", "scheme", "headers", "expected"),
+    [
+        # Programs send neither header.
+        ("POST", "http", {}, True),
+        ("POST", "http", {"sec-fetch-site": "same-origin"}, True),
+        ("POST", "http", {"sec-fetch-site": "none"}, True),
+        ("POST", "http", {"sec-fetch-site": "cross-site"}, False),
+        ("GET", "http", {"sec-fetch-site": "same-site"}, False),
+        # A link that the user follows; a form, a frame and a script are none.
+        ("GET", "http", LINK, True),
+        ("HEAD", "http", LINK, True),
+        ("POST", "http", LINK, False),
+        ("GET", "http", {**LINK, "sec-fetch-dest": "iframe"}, False),
+        ("GET", "http", {**LINK, "sec-fetch-mode": "cors"}, False),
+        ("GET", "http", {**LINK, **OWN, "origin": "http://b.example"}, False),
+        # The origin is a scheme and a host.
+        ("POST", "http", OWN, True),
+        ("POST", "https", {**OWN, "origin": "https://a.example"}, True),
+        ("POST", "https", OWN, False),
+        ("POST", "http", {**OWN, "origin": "https://a.example"}, False),
+        ("POST", "http", {**OWN, "origin": "http://b.example"}, False),
+        ("POST", "http", {**OWN, "origin": "http://a.example:8000"}, False),
+        ("POST", "http", {**OWN, "origin": "null"}, False),
+        # Behind a proxy that hides the scheme, the browser knows better.
+        (
+            "POST", "http",
+            {**OWN, "origin": "https://a.example", "sec-fetch-site": "same-origin"}, True,
+        ),
+        (
+            "POST", "http",
+            {**OWN, "origin": "https://b.example", "sec-fetch-site": "same-origin"}, False,
+        ),
+        ("POST", "http", {**OWN, "origin": "https://a.example", "sec-fetch-site": "none"}, False),
+    ],
+)  # fmt: skip
+def test_a_page_of_another_origin_is_noticed(
+    method: str, scheme: str, headers: dict[str, str], expected: bool
+) -> None:
+    assert is_same_origin(request(headers, method, scheme)) is expected
+
+
+@together(
+    ("scheme", "cookies", "headers", "expected"),
+    [
+        ("http", {}, {}, ""),
+        ("http", {PLAIN_COOKIE: "plain"}, {}, "plain"),
+        ("http", {SECURE_COOKIE: "secure"}, {}, "secure"),
+        ("http", {PLAIN_COOKIE: "plain", SECURE_COOKIE: "secure"}, {}, "secure"),
+        ("https", {SECURE_COOKIE: "secure"}, {}, "secure"),
+        # Over HTTPS, anybody in the network may have set the plain cookie.
+        ("https", {PLAIN_COOKIE: "plain"}, {}, ""),
+        (
+            "http", {PLAIN_COOKIE: "plain"},
+            {"host": "a", "origin": "https://a", "sec-fetch-site": "same-origin"}, "",
+        ),
+        (
+            "http", {SECURE_COOKIE: "secure"},
+            {"host": "a", "origin": "https://a", "sec-fetch-site": "same-origin"}, "secure",
+        ),
+        ("http", {"other": "x"}, {}, ""),
+        ("http", {PLAIN_COOKIE: "plain"}, {"sec-fetch-site": "cross-site"}, ""),
+    ],
+)  # fmt: skip
+def test_the_session_is_in_the_cookie_that_counts(
+    scheme: str, cookies: dict[str, str], headers: dict[str, str], expected: str
+) -> None:
+    cookie = "; ".join(f"{name}={value}" for name, value in cookies.items())
+    sent = request({**headers, "cookie": cookie}, scheme=scheme)
+    assert session_in(sent.scope) == expected
+
+
+@pytest.mark.parametrize(
+    ("host", "expected"),
+    [
+        ("127.0.0.1", True), ("127.8.8.8", True), ("::1", True), ("10.0.0.7", False),
+        ("::2", False), ("localhost", False), ("", False), ("127.0.0.1.example", False),
+    ],
+)  # fmt: skip
+def test_a_loopback_address_is_a_number(host: str, expected: bool) -> None:
+    assert is_loopback(host) is expected
+
+
+@pytest.mark.parametrize(
+    ("allowed", "origin", "passes"),
+    [
+        ((), "https://course.example", False),
+        (("https://course.example",), "https://course.example", True),
+        (("https://course.example",), "https://evil.example", False),
+        (("*",), "https://evil.example", True),
+        ((), "http://a.example", True),
+    ],
+)
+def test_only_pages_of_allowed_origins_record_attempts(
+    allowed: tuple[str, ...], origin: str, passes: bool
+) -> None:
+    access = Access(OPEN_HERE)
+    sent = request({"host": "a.example", "origin": origin}, "POST")
+    sent.scope["server"] = ("127.0.0.1", 8000)
+    if passes:
+        access.require_allowed_origin(sent, allowed)
+    else:
+        with pytest.raises(ProblemError) as refused:
+            access.require_allowed_origin(sent, allowed)
+        assert refused.value.status == 403

@@ -1,6 +1,7 @@
 """Compare values with expected values."""
 
 from collections.abc import Mapping
+from functools import partial
 
 import numpy as np
 import pytest
@@ -9,9 +10,25 @@ from hypothesis import strategies as st
 
 from service.catalogue import Exercise
 from service.expressions import read
-from service.grading.numerics.comparison import Match, difference, is_rounded, matches, same
-from service.grading.numerics.samples import SAMPLES, draw
+from service.grading.numerics.comparison import (
+    Match,
+    SharedDecimals,
+    difference,
+    difference_steps,
+    entry_matches,
+    fitted_shifts,
+    fitted_unknowns,
+    is_rounded,
+    matches,
+    nearly_equal,
+    rounding_slack,
+    same,
+)
+from service.grading.numerics.samples import SAMPLES, Samples, draw
+from tests.together import together
 
+# The most decimals of an entry, and of all entries together, that may be rounded.
+MAX_DECIMALS, MAX_SHARED_DECIMALS = 16, 32
 ANGLES = st.floats(-50, 50)
 TURNS = st.integers(-20, 20)
 
@@ -91,3 +108,300 @@ def test_a_single_decimal_is_rounded_like_a_decimal_in_a_sum(
             towards_zero = units * np.sign(float(text))
             assert found or not -0.499 < towards_zero < 0.499
             assert not found or -0.501 < towards_zero < 1.001
+
+
+@pytest.fixture
+def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
+    return catalogue["stanford-arm"]
+
+
+@together(
+    ("expected", "scale", "error", "match"),
+    [
+        # A billionth of the scale, and 1e-12 of the size.
+        (0.0, 1.0, 0.9e-9, Match.EXACT),
+        (0.0, 1.0, 1.1e-9, Match.DIFFERENT),
+        (0.0, 1000.0, 0.9e-6, Match.EXACT),
+        (0.0, 1000.0, 1.1e-6, Match.DIFFERENT),
+        (0.0, 0.001, 1.1e-12, Match.DIFFERENT),
+        (1e6, 1.0, 0.95e-6, Match.EXACT),
+        (1e6, 1.0, 1.2e-6, Match.DIFFERENT),
+        (-1e6, 1.0, -0.95e-6, Match.EXACT),
+        (-1e6, 1.0, -1.2e-6, Match.DIFFERENT),
+    ],
+)
+def test_equal_values_differ_by_a_billionth(
+    expected: float, scale: float, error: float, match: Match
+) -> None:
+    assert matches(np.full(4, expected + error), np.full(4, expected), scale) == match
+    # At one sample of four.
+    actual = np.full(4, expected)
+    actual[2] += error
+    assert matches(actual, np.full(4, expected), scale) == match
+
+
+def test_each_entry_has_its_own_match() -> None:
+    expected = np.zeros((2, 3, 4))
+    actual = expected.copy()
+    assert (matches(actual, expected, 1.0) == Match.EXACT).all()
+    assert matches(actual, expected, 1.0).shape == (2, 3)
+    actual[0, 1, 3], actual[1, 0, 0], actual[1, 2] = 1.0, np.nan, 2 * np.pi
+    told = [
+        [Match.EXACT, Match.DIFFERENT, Match.EXACT],
+        [Match.UNDEFINED, Match.EXACT, Match.DIFFERENT],
+    ]
+    assert matches(actual, expected, 1.0).tolist() == told
+    # A whole turn is no difference of the third column's angles.
+    told[1][2] = Match.EXACT
+    is_angle = np.array([False, False, True])[:, None]
+    assert matches(actual, expected, 1.0, is_angle).tolist() == told
+
+
+def test_without_a_mask_whole_turns_are_a_difference() -> None:
+    turn = np.array([2 * np.pi])
+    assert difference(turn, np.zeros(1)) == turn
+    assert matches(turn, np.zeros(1), 1.0) == Match.DIFFERENT
+    assert not same(turn, np.zeros(1))
+    assert not nearly_equal(turn, np.zeros(1))
+
+
+def test_only_rounded_decimals_count_as_equal(arm: Exercise) -> None:
+    texts = ("pi/2", "1.571", "1.5", "1.572", "7.854", None, "1/0")
+    wanted = np.full((len(texts), SAMPLES), np.pi / 2)
+    samples = draw(arm, None)
+    read_ = [None if text is None else read(text, arm.vocabulary) for text in texts]
+    actual = np.full_like(wanted, np.nan)
+    for i, each in enumerate(read_):
+        if each is not None and texts[i] != "1/0":
+            actual[i] = each.evaluate(samples.values)
+    actual[5] = 1.571
+    same_, rounded, no = Match.EXACT, Match.ROUNDED, Match.DIFFERENT
+    told = [same_, rounded, no, no, no, no, Match.UNDEFINED]
+    assert entry_matches(read_, actual, wanted, 1.0, samples).tolist() == told
+    # 7.854 is 5π/2, and so π/2 after a whole turn.
+    told[4] = rounded
+    assert entry_matches(read_, actual, wanted, 1.0, samples, True).tolist() == told
+    is_angle = (np.arange(len(texts)) != 4)[:, None]
+    told[4] = no
+    assert entry_matches(read_, actual, wanted, 1.0, samples, is_angle).tolist() == told
+    # The shape of the entries is kept.
+    found = entry_matches(
+        read_[:4], actual[:4].reshape(2, 2, -1), wanted[:4].reshape(2, 2, -1), 1.0, samples
+    )
+    assert found.tolist() == [told[:2], told[2:4]]
+
+
+@together(
+    ("text", "true", "expected"),
+    [
+        # Rounded, 1.571 is half a unit away at most; cut off, it is less than a unit nearer to 0.
+        ("1.571", 1.5705, True), ("1.571", 1.57049, False),
+        ("1.571", 1.57199, True), ("1.571", 1.572, False),
+        ("-1.571", -1.5705, True), ("-1.571", -1.57049, False),
+        ("-1.571", -1.57199, True), ("-1.571", -1.572, False),
+        ("0 + 1.571", 1.5705, True), ("0 + 1.571", 1.57049, False),
+        ("0 + 1.571", 1.57199, True), ("0 + 1.571", 1.572, False),
+        ("0.999", 1.0, False), ("15.71", 15.705, True), ("15.71", 15.7049, False),
+        # A sum of two decimals may be twice as far away.
+        ("1.571 + 1.571", 3.1411, True), ("1.571 + 1.571", 3.1409, False),
+        ("1.571 + 1.571", 3.14395, True), ("1.571 + 1.571", 3.1441, False),
+        ("1.571 - 1.571", 0.0014, True), ("1.571 - 1.571", 0.0016, False),
+        ("1.571*0.500", 0.785398, True), ("1.571*0.500", 0.79, False),
+        # Two figures are not rounded.
+        ("1.5", 1.5001, False), ("0.05", 0.0501, False),
+    ],
+)  # fmt: skip
+def test_a_decimal_is_rounded_or_cut_off(
+    catalogue: Mapping[str, Exercise], text: str, true: float, expected: bool
+) -> None:
+    exercise = catalogue["stanford-arm"]
+    entry = read(text, exercise.vocabulary)
+    found = is_rounded(entry, np.full(SAMPLES, true), 1.0, draw(exercise, None))
+    assert found is expected
+
+
+def test_a_rounded_decimal_is_the_same_at_all_samples(arm: Exercise) -> None:
+    samples = draw(arm, None)
+    for text in ("1.571", "0 + 1.571"):
+        expected = np.full(SAMPLES, np.pi / 2)
+        assert is_rounded(read(text, arm.vocabulary), expected, 1.0, samples)
+        expected[3] -= 1e-4
+        assert not is_rounded(read(text, arm.vocabulary), expected, 1.0, samples)
+
+
+def test_an_entry_with_many_decimals_counts_as_exact(arm: Exercise) -> None:
+    samples = draw(arm, None)
+    for count, expected in ((MAX_DECIMALS, True), (MAX_DECIMALS + 1, False)):
+        entry = read(" + ".join(["1.001"] * count), arm.vocabulary)
+        true = np.full(SAMPLES, 1.001 * count + 0.0003)
+        assert is_rounded(entry, true, 1.0, samples) is expected
+        assert bool(rounding_slack(entry, samples)) is expected
+
+
+@together(
+    ("one", "other", "scale", "angle", "slack", "expected"),
+    [
+        # A thousandth of the size.
+        (2.0 + 1.9e-3, 2.0, 2.0, False, 0.0, True), (2.0 + 2.1e-3, 2.0, 2.0, False, 0.0, False),
+        (-2.0 + 1.9e-3, -2.0, 2.0, False, 0.0, True), (0.0, 1e-3, 1.0, False, 0.0, False),
+        # Nothing but floating-point errors around 0.
+        (0.9e-9, 0.0, 1.0, False, 0.0, True), (1.1e-9, 0.0, 1.0, False, 0.0, False),
+        (0.9e-7, 0.0, 100.0, False, 0.0, True), (1.1e-7, 0.0, 100.0, False, 0.0, False),
+        # Of larger values, a thousandth of the robot's largest: 1.5 typical lengths, 4 radians.
+        (100.0 + 1.4e-3, 100.0, 1.0, False, 0.0, True),
+        (100.0 + 1.6e-3, 100.0, 1.0, False, 0.0, False),
+        (100.0 + 2.9e-3, 100.0, 2.0, False, 0.0, True),
+        (100.0 + 3.1e-3, 100.0, 2.0, False, 0.0, False),
+        (100.0 + 3.9e-3, 100.0, 1.0, True, 0.0, True),
+        (100.0 + 4.1e-3, 100.0, 1.0, True, 0.0, False),
+        # A known error, but never more than a hundredth.
+        (1.005, 1.0, 1.0, False, 0.006, True), (1.005, 1.0, 1.0, False, 0.004, False),
+        (1.009, 1.0, 1.0, False, 0.5, True), (1.011, 1.0, 1.0, False, 0.5, False),
+        (2 * np.pi + 0.5, 0.5, 1.0, True, 0.0, True),
+        (np.nan, 1.0, 1.0, False, 0.0, False), (1.0, np.nan, 1.0, False, 0.0, False),
+        (np.inf, 1.0, 1.0, False, 0.0, False), (1.0, np.inf, 1.0, False, 0.0, False),
+    ],
+)  # fmt: skip
+def test_nearly_equal_values_differ_by_rounding(
+    one: float, other: float, scale: float, angle: bool, slack: float, expected: bool
+) -> None:
+    with np.errstate(invalid="ignore"):
+        values = np.full(4, one), np.full(4, other)
+        assert same(*values, scale, angle, slack) is expected
+        assert nearly_equal(*values, scale, angle, slack) == expected
+        # One sample of four is enough to differ.
+        single = values[1].copy()
+        single[1] = one
+        if not expected and np.isfinite(other):
+            assert not same(single, values[1], scale, angle, slack)
+            assert not nearly_equal(single, values[1], scale, angle, slack)
+
+
+def test_the_defaults_of_a_comparison_are_a_length_of_scale_1() -> None:
+    for scale, expected in ((1.4e-3, True), (1.6e-3, False)):
+        one, other = np.array([100.0 + scale]), np.array([100.0])
+        assert same(one, other) is expected
+        assert nearly_equal(one, other) == expected
+
+
+@together(
+    ("text", "slack"),
+    [
+        ("1.571", 1e-3), ("-1.571", 1e-3), ("1.571 + 0.86603", 1.01e-3), ("15.71", 1e-2),
+        ("3 * 1.571", 3e-3), ("pi/2", 0.0), ("1.5", 0.0), ("1.000 * 2.00", 2e-3 + 1e-2),
+    ],
+)  # fmt: skip
+def test_the_slack_is_a_unit_of_each_decimal(
+    catalogue: Mapping[str, Exercise], text: str, slack: float
+) -> None:
+    exercise = catalogue["stanford-arm"]
+    found = rounding_slack(read(text, exercise.vocabulary), draw(exercise, None))
+    assert found == pytest.approx(slack, rel=1e-9)
+
+
+@together(
+    ("effects", "error", "is_possible"),
+    [
+        # One unknown: from half a unit away from 0 to a whole unit.
+        ([[1.0]], [0.9], True), ([[1.0]], [1.1], False),
+        ([[1.0]], [-0.49], True), ([[1.0]], [-0.6], False),
+        # Two unknowns with the same effect share it.
+        ([[1.0, 1.0]], [1.9], True), ([[1.0, 1.0]], [2.1], False),
+        ([[1.0, 1.0]], [-0.98], True), ([[1.0, 1.0]], [-1.1], False),
+        # If the shares in proportion to the effects are too large, others take over.
+        ([[1.0, 2.0]], [2.9], True),
+        ([[1.0, 2.0]], [3.1], False),
+        ([[1.0, 2.0]], [-1.4], True),
+        ([[1.0, 2.0]], [-1.6], False),
+        ([[1.0, -2.0, 4.0]], [5.8], True),
+        ([[1.0, -2.0, 4.0]], [6.1], False),
+        ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 0.8], True),
+        ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 2.6], False),
+        # Each of two unknowns has an effect of its own.
+        ([[1.0, 0.0], [0.0, 1.0]], [0.9, -0.4], True),
+        ([[1.0, 0.0], [0.0, 1.0]], [-0.4, 0.9], True),
+        ([[1.0, 0.0], [0.0, 1.0]], [0.9, -0.6], False),
+        ([[1.0, 0.0], [0.0, 1.0]], [-0.6, 0.9], False),
+        # The sum of both is 1.4, the difference 0.4 or 1.6: (0.9, 0.5), or (1.5, −0.1).
+        ([[1.0, 1.0], [1.0, -1.0]], [1.4, 0.4], True),
+        ([[1.0, 1.0], [1.0, -1.0]], [1.4, 1.6], False),
+        # More errors than unknowns can explain.
+        ([[1.0], [1.0]], [0.5, 0.5], True), ([[1.0], [1.0]], [0.5, 0.4], False),
+        ([[1.0], [0.0]], [0.5, 1e-6], False),
+    ],
+)  # fmt: skip
+def test_shifts_within_rounding_explain_an_error(
+    effects: list[list[float]], error: list[float], is_possible: bool
+) -> None:
+    rates, wanted = np.array(effects), np.array(error)
+    for unit in (1.0, 1e-3):
+        units = np.full(rates.shape[1], unit)
+
+        def left(shifts: np.ndarray, unit: float = unit) -> np.ndarray:
+            return np.asarray(unit * (shifts @ rates.T - wanted))
+
+        found = fitted_shifts(left, units, 1e-9)
+        assert (found is not None) is is_possible
+        if found is not None:
+            assert np.abs(left(found)).max() <= 1e-9
+            assert -0.501 < found.min() <= found.max() < 1.0
+
+
+def test_a_fit_follows_a_bend_and_ends_where_nothing_is_finite() -> None:
+    def bent(unknowns: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        [x, y] = unknowns
+        return np.array([np.sin(x) - 0.3, y + x * x - 0.2]), np.array([[np.cos(x), 0], [2 * x, 1]])
+
+    sizes = np.ones(2)
+    for count in (1, 2):
+        found = fitted_unknowns(bent, sizes, count, 1e-9)
+        x = np.arcsin(0.3)
+        assert found == pytest.approx([x, 0.2 - x * x], abs=1e-8)
+    # Only the first unknown is bounded.
+    far = fitted_unknowns(lambda u: (u - [0.5, 7.0], np.eye(2)), sizes, 1, 1e-9)
+    assert far == pytest.approx([0.5, 7.0])
+    assert fitted_unknowns(lambda u: (u - [0.5, 7.0], np.eye(2)), sizes, 2, 1e-9) is None
+    for value in (np.nan, np.inf):
+        hole, bad = np.array([[1.0, 0.0], [0.0, value]]), np.array([0.1, value])
+        for error, rates in ((np.full(2, 0.1), hole), (bad, np.eye(2))):
+            given = error, rates
+            assert fitted_unknowns(partial(_always, given), sizes, 1, 1e-9) is None
+
+
+def _always(given: tuple[np.ndarray, np.ndarray], _: object) -> tuple[np.ndarray, np.ndarray]:
+    return given
+
+
+def test_the_steps_of_derivatives_are_half_a_unit_or_half_the_digits() -> None:
+    found = difference_steps(np.array([1.0, 1e-3, 1e-9]))
+    assert found == pytest.approx([0.5, 0.5, 1000.0])
+
+
+def test_the_decimals_of_several_entries_move_together(arm: Exercise) -> None:
+    samples = draw(arm, None)
+    texts = ("pi", None, "1.571", "1.5", "0.866 + 0.50")
+    entries = [None if text is None else read(text, arm.vocabulary) for text in texts]
+    shared = SharedDecimals(entries, samples)
+    assert shared.count == 2
+    assert shared.units == pytest.approx([1e-3, 1e-3])
+    values = np.full((len(texts), SAMPLES), 7.0)
+    moved = shared.shifted(np.array([[0.0, 0.0], [1.0, -0.5]]), values)
+    assert moved.shape == (2, len(texts), SAMPLES)
+    # Entries without a decimal keep the given values.
+    told = [[7.0, 7.0, 1.571, 7.0, 1.366], [7.0, 7.0, 1.572, 7.0, 1.3655]]
+    assert moved[..., 0] == pytest.approx(np.array(told))
+    assert np.ptp(moved, axis=-1).max() == 0.0
+    assert (values == 7.0).all()
+
+
+def test_too_many_decimals_are_not_tested_together(arm: Exercise) -> None:
+    samples = Samples({})
+    eight, one = (read(" + ".join(["1.001"] * n), arm.vocabulary) for n in (8, 1))
+    most = [eight] * (MAX_SHARED_DECIMALS // 8)
+    assert SharedDecimals(most, samples).count == MAX_SHARED_DECIMALS
+    more = SharedDecimals([*most, one], samples)
+    assert (more.count, len(more.units)) == (0, 0)
+    assert more.shifted(np.zeros((1, 0)), np.ones((5, 3))).tolist() == np.ones((1, 5, 3)).tolist()
+    # An entry with more decimals than are tested alone is left out.
+    long = read(" + ".join(["1.001"] * (MAX_DECIMALS + 1)), arm.vocabulary)
+    assert SharedDecimals([long, one], samples).count == 1

@@ -1,12 +1,23 @@
 """Compute by hand the cost of slips in textbook tables."""
 
 from collections.abc import Mapping
+from dataclasses import replace
+from typing import Any
 
 import pytest
 
-from service.catalogue import Exercise
+from service.catalogue import Exercise, PartSpec
 from service.grading import CellReport, PartReport, RowReport, Verdict
-from service.grading.lost_points import lost_in_row
+from service.grading.judging.marking.marks import (
+    has_earned,
+    least_lost,
+    part_report,
+    steps_lost,
+    unjudged_report,
+)
+from service.grading.lost_points import little_worth, lost_in_row, without_places
+from service.grading.part import Content, Judged
+from service.grading.report import combined
 from tests.grading.support.robots import COLUMNS, EXACT, SCARA, STANFORD, Row
 from tests.grading.support.submitting import graded_table, handed_in, not_correct, part
 from tests.grading.support.worth import worth_of_rows
@@ -154,3 +165,263 @@ def test_a_single_value_has_lost_its_points_in_its_row() -> None:
     assert lost_in_row(row, 1.0).message == "row 3"
     mark = RowReport("marked", Verdict.INCORRECT, 0.0, 1.0, (CellReport("marked", row.verdict),))
     assert lost_in_row(mark, 1.0).message == "the mark"
+
+
+VERDICTS = {
+    "+": Verdict.CORRECT, "-": Verdict.INCORRECT, "?": Verdict.UNREADABLE, ".": Verdict.MISSING,
+}  # fmt: skip
+# The cells of the SCARA's table that need knowledge; a unit is 1.75 points, a row 0.25.
+KNOWN = tuple(tuple(cell == "x" for cell in row) for row in ("x...", "xx..", "....", "..x."))
+TABLE = Content(KNOWN, tuple((i,) * 4 for i in range(4)), besides=True)
+RIGHT = "++++ ++++ ++++ ++++"
+ONE, TWO = "-+++ ++++ ++++ ++++", "-+++ -+++ ++++ ++++"
+
+
+def judged(verdicts: str, content: Content = TABLE, **more: Any) -> Judged:
+    """Return the judgement with the verdicts of ``verdicts``: a word for each row."""
+    rows = []
+    for i, word in enumerate(verdicts.split(), start=1):
+        each = [VERDICTS[sign] for sign in word]
+        cells = tuple(map(CellReport, ("a", "alpha", "d", "theta"), each))
+        rows.append(RowReport(str(i), combined(each), 0.0, 0.0, cells))
+    return Judged(tuple(rows), content, **more)
+
+
+@pytest.fixture
+def table(catalogue: Mapping[str, Exercise]) -> PartSpec:
+    """The part for the SCARA's table: 8 points, for what needs knowledge."""
+    part = next(each for each in catalogue["scara"].parts if each.id == "table")
+    assert (part.points, part.marking) == (8, "content")
+    return part
+
+
+# Verdicts, other fields of the judgement, and the points that each row loses.
+LOSSES: list[tuple[str, dict[str, Any], list[float]]] = [
+    (RIGHT, {}, [0, 0, 0, 0]),
+    (ONE, {}, [1.75, 0, 0, 0]),
+    # A cell that needs no knowledge costs a unit, too, but a row never loses more than it has.
+    ("+-++ ++++ ++++ ++++", {}, [1.75, 0, 0, 0]),
+    ("--++ ++++ ++++ ++++", {}, [2, 0, 0, 0]),
+    ("++++ ++++ -+++ ++++", {}, [0, 0, 0.25, 0]),
+    ("++++ --++ ++++ ++++", {}, [0, 3.5, 0, 0]),
+    ("++++ ---+ ++++ ++++", {}, [0, 3.75, 0, 0]),
+    # An empty cell costs as much as a wrong one.
+    ("++++ +.++ ++++ ++++", {}, [0, 1.75, 0, 0]),
+    ("++++ ++++ ++++ ....", {}, [0, 0, 0, 2]),
+    # Unreadable cells that need no knowledge cost a fifth of a unit together.
+    ("?+++ ++++ ++++ ++++", {}, [1.75, 0, 0, 0]),
+    ("+?++ ++++ ++++ ++++", {}, [0.25, 0, 0, 0]),
+    ("+??? ++++ ++++ ++++", {}, [0.25, 0, 0, 0]),
+    ("++++ ++++ ???? ++++", {}, [0, 0, 0.25, 0]),
+    ("???? ???? ???? ????", {}, [2, 3.75, 0.25, 2]),
+    ("---- ---- ---- ----", {}, [2, 3.75, 0.25, 2]),
+    # A slip that no cell shows costs a unit, of the rows with a mistake first.
+    ("++++ -+++ ++++ ++++", {"slips": 1}, [0, 3.5, 0, 0]),
+    # A slip of the whole answer costs its share, if its cells cost more.
+    ("-+++ --++ ++++ ++-+", {"whole_cost": 0.25}, [0.5, 1.0, 0, 0.5]),
+    (ONE, {"whole_cost": 0.25}, [1.75, 0, 0, 0]),
+    (TWO, {"whole_cost": 0.5}, [1.75, 1.75, 0, 0]),
+    # The cells may be explained more cheaply than they were judged.
+    (TWO, {"lost": 1.0}, [1.0, 0.75, 0, 0]),
+    (TWO, {"lost": 3.0}, [1.75, 1.75, 0, 0]),
+    ("---- ++++ ++++ ++++", {"lost": 0.2}, [0.25, 0, 0, 0]),
+    ("---- ---- ++++ ++++", {"lost": 2.2}, [1.25, 2.5, 0, 0]),
+    # Limits by other judgements.
+    (ONE, {"at_most": judged(TWO)}, [2, 1, 0.25, 0.25]),
+    (TWO, {"at_most": judged(ONE)}, [1.75, 1.75, 0, 0]),
+    (TWO, {"at_least": judged(ONE)}, [1.0, 0.75, 0, 0]),
+    (ONE, {"at_least": judged(TWO)}, [1.75, 0, 0, 0]),
+    (ONE, {"at_least": judged(RIGHT)}, [0.25, 0, 0, 0]),
+    # With a row more than the limit, each wrong cell loses a unit at most.
+    (ONE, {"at_most": judged(TWO), "needs_all": True}, [1.75, 0, 0, 0]),
+    (TWO, {"at_most": judged(ONE), "needs_all": True}, [1.75, 1.75, 0, 0]),
+    # A wrong answer earns a unit at most for each cell that was written and is not lazy.
+    (TWO, {"written": 2}, [1.75, 1.75, 0, 0]),
+    (TWO, {"written": 4}, [1.75, 1.75, 0, 0]),
+]  # fmt: skip
+
+
+@pytest.mark.parametrize(("verdicts", "more", "lost"), LOSSES)
+def test_the_points_that_each_row_loses(
+    verdicts: str, more: dict[str, Any], lost: list[float], table: PartSpec
+) -> None:
+    answer = judged(verdicts, **more)
+    report = part_report(table, answer)
+    assert [row.max_points for row in report.rows] == [2, 3.75, 0.25, 2]
+    found = [row.max_points - row.points for row in report.rows]
+    assert sum(found) == sum(lost) == 8 - report.points
+    assert sum(each.points for each in report.lost) == sum(lost)
+    assert 0.25 * steps_lost(table, answer) == sum(lost)
+    if "at_most" not in more:
+        assert found == lost
+
+
+def test_a_lazy_answer_keeps_only_the_fifths_of_its_rows(table: PartSpec) -> None:
+    for written, lost in ((0, 7.0), (1, 5.25), (3, 1.75)):
+        assert part_report(table, judged(ONE, written=written)).points == 8 - lost
+    # A slip of the whole answer may have moved the cells.
+    moved = judged("---- ---- ---- ----", written=0, whole_cost=0.25)
+    assert part_report(table, moved).points == 6
+    assert part_report(table, judged(RIGHT, written=0)).points == 8
+
+
+@pytest.mark.parametrize(
+    ("answer", "lost"),
+    [
+        (judged(RIGHT), []),
+        (judged(TWO), [("cells", "1", 1.75), ("cells", "2", 1.75)]),
+        (judged(RIGHT, slips=2), [("outside_cells", None, 3.5)]),
+        (judged(ONE, slips=1), [("cells", "1", 1.75), ("outside_cells", None, 1.75)]),
+        (judged(RIGHT, slips=9), [("outside_cells", None, 8)]),
+        (judged(TWO, whole_cost=0.25), [("whole", None, 2)]),
+        (
+            judged("---- ---- ++++ ++++", whole_cost=0.25, beside=judged(ONE)),
+            [("whole", None, 2), ("cells", "1", 1.75)],
+        ),
+        (judged("---- ++++ ++++ ++++", whole_cost=0.25), [("cells", "1", 2)]),
+        (judged(TWO, whole_cost=0.001), [("whole", None, 0.25)]),
+        (judged(ONE, stands_still=True), [("no_motion", None, 8)]),
+        (judged(RIGHT, slips=1, at_least=judged(RIGHT)), [("outside_cells", None, 0.25)]),
+        # A quarter of a point is lost in one row, and none in the other.
+        (judged(TWO, at_least=judged(RIGHT)), [("cells", "1", 0.25)]),
+    ],
+)
+def test_each_loss_has_a_cause(
+    answer: Judged, lost: list[tuple[str, str | None, float]], table: PartSpec
+) -> None:
+    report = part_report(table, answer)
+    assert [(each.code, each.row, each.points) for each in report.lost] == lost
+    assert report.points == 8 - sum(points for _, _, points in lost)
+
+
+@pytest.mark.parametrize(
+    ("marking", "verdicts", "points"),
+    [
+        ("whole", ONE, 0), ("whole", RIGHT, 8),
+        ("rows", ONE, 6), ("rows", "---- ++++ ++++ ++++", 6), ("rows", TWO, 4),
+        ("rows", "++++ ++++ ++++ ?+++", 6), ("rows", "---- ---- ---- ----", 0),
+        # 8 points for 16 cells.
+        ("cells", ONE, 7.5), ("cells", "---- ++++ +-++ ++++", 5.5), ("cells", RIGHT, 8),
+    ],
+)  # fmt: skip
+def test_the_exercise_chooses_the_marking(
+    marking: str, verdicts: str, points: float, table: PartSpec
+) -> None:
+    part = table.model_copy(update={"marking": marking})
+    report = part_report(part, judged(verdicts))
+    assert report.points == points
+    if marking == "whole" and points == 0:
+        assert [each.code for each in report.lost] == ["all_or_nothing"]
+    assert report.little_worth is None
+    # Other limits are for the marking by content.
+    assert part_report(part, judged(verdicts, lost=0.2, written=0)).points == points
+    assert least_lost(part, judged(verdicts), 2) == 0
+
+
+def test_the_verdict_is_that_of_the_rows_and_the_points(table: PartSpec) -> None:
+    for answer, verdict in (
+        (judged(RIGHT), Verdict.CORRECT),
+        (judged(RIGHT, slips=1), Verdict.PARTIAL),
+        (judged(ONE), Verdict.PARTIAL),
+        (judged("---- ---- ---- ----"), Verdict.INCORRECT),
+        (judged("???? ???? ???? ????"), Verdict.UNREADABLE),
+        (judged(".... .... .... ...."), Verdict.MISSING),
+        # Right cells that earn nothing make nothing partly right.
+        (judged("-+++ --++ -+++ ++-+", stands_still=True), Verdict.INCORRECT),
+    ):
+        assert part_report(table, answer).verdict is verdict
+    rows = part_report(table, judged("--++ +?++ -+++ ++++")).rows
+    assert [row.verdict for row in rows] == [
+        Verdict.INCORRECT, Verdict.PARTIAL, Verdict.INCORRECT, Verdict.CORRECT
+    ]  # fmt: skip
+    assert [row.points for row in rows] == [0, 2, 0, 2]
+
+
+def test_rows_of_zeros_are_named_if_points_are_lost(table: PartSpec) -> None:
+    told = part_report(table, judged(ONE)).little_worth
+    assert told is not None
+    assert (told.rows, told.points) == (("3",), 0.25)
+    assert part_report(table, judged(RIGHT)).little_worth is None
+    assert part_report(table, judged("-+++ ++++ -+++ ++++")).little_worth is None
+    big = [RowReport("1", Verdict.CORRECT, p, p, ()) for p in (0.0, 1.0, 1.001)]
+    told = little_worth(big, 8)
+    assert told is not None
+    # A row that is worth nothing, or more than an eighth of 8 points, is not named.
+    assert (told.rows, told.points) == (("1",), 1.0)
+    wrong = [replace(big[1], verdict=Verdict.INCORRECT)]
+    assert little_worth(wrong, 8) is None
+
+
+def test_an_answer_has_earned_a_share_of_what_needs_knowledge(table: PartSpec) -> None:
+    # Two units of 1.75 are lost: 4.5 of 8 are left, whatever the marking of the part.
+    for part in (table, table.model_copy(update={"marking": "whole"})):
+        assert has_earned(part, judged(TWO), 4.5 / 8)
+        assert not has_earned(part, judged(TWO), 4.6 / 8)
+        assert has_earned(part, judged(RIGHT), 1)
+    # A rotation with a position must have earned more than the share.
+    equal = Content(KNOWN[:2], ((0,) * 4, (1,) * 4), equal=True)
+    assert part_report(table, judged("++++ ----", equal)).points == 4
+    assert not has_earned(table, judged("++++ ----", equal), 0.5)
+    assert has_earned(table, judged("++++ ----", equal), 0.49)
+
+
+def test_a_wrong_row_loses_its_units_and_a_fifth_at_least(table: PartSpec) -> None:
+    assert [least_lost(table, judged(ONE), cells) for cells in (0, 1, 2)] == [1, 8, 15]
+
+
+def test_a_bottom_row_and_a_group_have_limits(table: PartSpec) -> None:
+    # Each of six entries of a pose is worth a point. All entries of the bottom row, which is the
+    # same in every pose, cost a fifth together.
+    known = tuple(tuple(cell == "x" for cell in row) for row in ("xx.x", ".x..", "..xx", "...."))
+    pose = Content(known, ((0,) * 4,) * 4, bottom=(3,))
+    part = table.model_copy(update={"points": 6})
+    for verdicts, points in (
+        ("++++ ++++ ++++ +++-", 6 - 0.2),
+        ("++++ ++++ ++++ ----", 6 - 0.2),
+        ("++++ -+++ ++++ ++++", 6 - 1),
+        # Rows that are worth less than their cells cost: other rows of the group lose the rest.
+        ("++++ ---- ++++ ++++", 6 - 4),
+        ("---- ---- ++++ ++++", 0),
+    ):
+        report = part_report(part, judged(verdicts, pose))
+        assert report.points == pytest.approx(points), verdicts
+        assert sum(row.points for row in report.rows) == pytest.approx(points)
+
+
+def test_additional_cells_of_own_frames_cost_what_the_usual_ones_do(table: PartSpec) -> None:
+    # Only three of the four cells count: a unit is 2 points, and each row has another 0.5.
+    fixed = replace(TABLE, most=3)
+    assert part_report(table, judged(RIGHT, fixed)).points == 8
+    assert part_report(table, judged(ONE, fixed)).points == 6
+    assert part_report(table, judged("+-++ ++++ ++++ ++++", fixed)).points == 6
+    assert part_report(table, judged("--++ ++++ ++++ ++++", fixed)).points == 8 - 2.5
+    lost = part_report(table, judged("--++ ++++ ++++ ++++", fixed))
+    # The row has only 2 points.
+    assert lost.rows[0].points == 0
+    assert sum(row.points for row in lost.rows) == 5.5
+
+
+def test_an_answer_that_was_not_judged_loses_all(table: PartSpec) -> None:
+    for verdict, code in ((Verdict.MISSING, "no_answer"), (Verdict.UNREADABLE, "not_read")):
+        report = unjudged_report(table, verdict)
+        assert (report.verdict, report.points, report.max_points) == (verdict, 0, 8)
+        assert [(each.code, each.points) for each in report.lost] == [(code, 8)]
+        assert (report.rows, report.feedback, report.part) == ((), (), "table")
+
+
+def test_a_student_who_sees_only_points_sees_one_sum(table: PartSpec) -> None:
+    [told] = without_places(part_report(table, judged(TWO, slips=1)).lost)
+    assert (told.code, told.row, told.cells, told.points) == ("part", None, None, 5.25)
+    assert without_places(()) == ()
+
+
+def test_a_loss_names_its_cells() -> None:
+    def message(labels: str, verdicts: str) -> str:
+        each = [VERDICTS[sign] for sign in verdicts]
+        cells = tuple(map(CellReport, labels.split(), each))
+        return str(lost_in_row(RowReport("2", combined(each), 0.0, 1.0, cells), 1.0).message)
+
+    assert message("a alpha d theta", "+-+?") == "α and θ in row 2"
+    assert message("a alpha d theta", "----") == "row 2"
+    assert message("1 2 3 4", "-+++") == "column 1 in row 2"
+    assert message("1 2 3 4", "--+-") == "columns 1, 2 and 4 in row 2"
