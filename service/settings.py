@@ -350,9 +350,9 @@ def _checked_public_url(address: str) -> str:
     # Return the address without a trailing slash. Raises ValueError.
     try:
         parts = urlsplit(address)
-        host, _ = parts.hostname, parts.port
+        host = parts.hostname if parts.port != 0 else None
     except ValueError:
-        host = None
+        parts, host = urlsplit(""), None
     if not host or not _PUBLIC_URL.fullmatch(address) or {".", ".."} & {*parts.path.split("/")}:
         raise ValueError(
             say(
