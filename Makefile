@@ -144,8 +144,8 @@ slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip
 robots: $(dev) ## draw SEEDS= practice robots of each level: statement, marks, links, labels, forms
 	for level in 1 2 3 4; do $(python) -m tests.variants.robots --level $$level --seeds "$(SEEDS)" || exit; done
 
-durability: $(dev) ## kill the service while it records attempts and hand-ins, and migrations, 20 times on each database
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
+durability: $(dev) ## kill the service while it records, and restores, backups, regrades, deletions and migrations, 20 times each
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_kills.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
 	$(python) -m tests.attempts.campaign --count "$(COUNT)"
