@@ -152,8 +152,8 @@ robots: $(dev) ## draw SEEDS= practice robots of each level: statement, marks, l
 mutants: $(dev) ## change rights, marks and comparisons in small ways: does a test notice? (SAMPLE=, SEED=, PACKAGES=, RESUME=)
 	$(python) -m tests.mutants $(PACKAGES) --sample "$(SAMPLE)" --seed "$(SEED)" $(if $(RESUME),--resume "$(RESUME)")
 
-durability: $(dev) ## kill the service while it records attempts and hand-ins, and migrations, 20 times on each database
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
+durability: $(dev) ## kill the service while it records, and restores, backups, regrades, deletions and migrations, 20 times each
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_kills.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
 	$(python) -m tests.attempts.campaign --count "$(COUNT)"

@@ -11,9 +11,13 @@ from sqlalchemy import (
     Table,
     and_,
     bindparam,
+    delete,
     exists,
+    false,
     func,
+    insert,
     select,
+    update,
 )
 from sqlalchemy.dialects import postgresql, sqlite
 
@@ -84,6 +88,10 @@ _OF_OUTCOME: Final = select(
     outcomes.c.exercise == bindparam("exercise"), outcomes.c.digest == bindparam("outcome_digest")
 )
 _NEW_OUTCOME: Final = insert_or_ignore(outcomes)
+# Changes no row, but fails if the tables are missing or not writable.
+_ALIVE: Final = update(attempts).values(number=attempts.c.number).where(false())
+# What a rehearsal writes (bytes): an attempt takes 12 pages of 4 KiB, and more for long answers.
+_REHEARSED: Final = 64 * 1024
 _NEW_ATTEMPT: Final = {
     kind: statement.from_select((*_WRITTEN, "id", "outcome"), _OF_OUTCOME).returning(
         attempts.c.number,
@@ -131,6 +139,24 @@ def record(connection: Connection, new: NewAttempt, outcome: Outcome) -> Recorde
     if new.ordinal is not None and written.is_sent:
         queue_score(connection, new.assignment, new.learner, Priority.HAND_IN)
     return RecordedAttempt(**values, number=written.number)
+
+
+def fail_if_read_only(connection: Connection) -> None:
+    """Raise SQLAlchemyError if the tables are missing or cannot be written; write nothing."""
+    connection.execute(_ALIVE)
+
+
+def rehearse(connection: Connection) -> None:
+    """Write as much as an attempt needs, and delete it again.
+
+    Raises SQLAlchemyError if attempts cannot be recorded, for example because the disk is full.
+    """
+    fail_if_read_only(connection)
+    # SQLite overwrites what it deletes (``secure_delete``), so the commit writes all pages.
+    row = {"exercise": "", "digest": secrets.token_hex(32), "content": "0" * _REHEARSED}
+    connection.execute(insert(outcomes), row)
+    written = and_(outcomes.c.exercise == "", outcomes.c.digest == row["digest"])
+    connection.execute(delete(outcomes).where(written))
 
 
 # Returns the next attempt after a standing, or None if none is allowed or prepared.

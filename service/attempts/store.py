@@ -6,9 +6,11 @@ from collections.abc import Awaitable, Callable, Iterable
 from concurrent.futures import ThreadPoolExecutor, wait
 from contextlib import AbstractContextManager, nullcontext
 from datetime import UTC, datetime
+from math import inf
+from time import monotonic
 from typing import IO, Final, TypeVar
 
-from sqlalchemy import Connection, Engine, false, update
+from sqlalchemy import Connection, Engine
 from sqlalchemy.exc import SQLAlchemyError
 
 from service.attempts.attempt import (
@@ -19,13 +21,18 @@ from service.attempts.attempt import (
     Standing,
 )
 from service.attempts.errors import StoreDownError, UnusableDatabaseError
-from service.attempts.recording import AttemptAfter, record_next, standing
+from service.attempts.recording import (
+    AttemptAfter,
+    fail_if_read_only,
+    record_next,
+    rehearse,
+    standing,
+)
 from service.attempts.results.grades import Counting, graded_attempts, written
 from service.attempts.results.listing import AttemptHistory, history, page
 from service.attempts.results.statistics import exercise_statistics
 from service.attempts.storage.database import open_database, reason, safe_url
-from service.attempts.storage.erasure import finish_overwriting, overwrite_deleted
-from service.attempts.storage.tables import attempts
+from service.attempts.storage.erasure import LogCutter, overwrite_deleted
 from service.attempts.storage.writer import AttemptWriter
 from service.attempts.tutoring import (
     LearnerData,
@@ -38,8 +45,8 @@ from service.translations import say
 
 R = TypeVar("R")
 
-# Changes no row, but fails if the tables are missing or not writable.
-_ALIVE: Final = update(attempts).values(number=attempts.c.number).where(false())
+# How long a successful check counts, unless a job fails meanwhile (seconds).
+_CHECKED: Final = 1.0
 # The most queries of tutors at once; others wait.
 _READERS: Final = 2
 # The time limit of a tutor's query, including its wait for others (seconds): longer than the
@@ -61,6 +68,8 @@ class AttemptStore:
         self.engine = engine
         self._writer: AttemptWriter | None = None
         self._readers: ThreadPoolExecutor | None = None
+        # The beginning of the last check that succeeded.
+        self._checked_at = -inf
         # Returns a context for the operation of this name, for example to measure it.
         self.measure: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext()
 
@@ -70,7 +79,7 @@ class AttemptStore:
         engine = open_database(url)
         try:
             with engine.begin() as connection:
-                connection.execute(_ALIVE)
+                fail_if_read_only(connection)
         except SQLAlchemyError as error:
             problem = say(
                 "{url}: attempts cannot be recorded there: {reason}",
@@ -88,7 +97,7 @@ class AttemptStore:
 
         Call this method in the process that serves requests.
         """
-        self._writer = AttemptWriter(self.engine, lambda: finish_overwriting(self.engine))
+        self._writer = AttemptWriter(self.engine, LogCutter(self.engine).next)
         self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
 
     def close(self) -> None:
@@ -130,9 +139,16 @@ class AttemptStore:
             )
 
     async def check(self) -> None:
-        """Raise StoreDownError unless the database responds."""
+        """Raise StoreDownError unless attempts can be recorded.
+
+        A check writes to the disk, but not more often than once in a second.
+        """
+        writer, now = self._running, monotonic()
+        if writer.failed_at < self._checked_at and now - self._checked_at < _CHECKED:
+            return
         with self.measure("check"):
-            await self._running.run(lambda connection: connection.execute(_ALIVE))
+            await writer.run(rehearse)
+        self._checked_at = now
 
     async def page(
         self, wanted: AttemptFilter, cursor: str | None, most: int

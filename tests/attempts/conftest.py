@@ -16,7 +16,15 @@ def killable() -> Any:
     # A class of processes that start quickly, because a fork server has imported the service.
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(
-        ["service.attempts.regrades.outdated", "service.attempts.store", "service.server.start"]
+        [
+            "service.attempts.regrades.outdated",
+            "service.attempts.store",
+            "service.authoring",
+            "service.cli.commands.regrade",
+            "service.cli.operations.restore",
+            "service.cli.program",
+            "service.server.start",
+        ]
     )
     return context.Process
 

@@ -153,7 +153,7 @@ def test_a_dump_made_while_recording_is_complete(
     postgresql: Any, postgresql_url: str, tmp_path: Path, catalogue: Mapping[str, Exercise]
 ) -> None:
     restored = new_database(postgresql, "restored")
-    back = command("pg_restore").replace('"$SERVER/attempts"', '"$RESTORED"')
+    back = command("pg_restore").replace('"$SERVER/attempts_new"', '"$RESTORED"')
 
     def back_up() -> None:
         run(command("pg_dump"), tmp_path, DH_GRADER_DATABASE=postgresql_url)

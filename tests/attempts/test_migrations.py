@@ -20,6 +20,7 @@ from sqlalchemy import Engine, event, inspect, select, text
 from service.attempts.errors import UnusableDatabaseError
 from service.attempts.storage import database
 from service.attempts.storage.database import open_database
+from service.attempts.storage.database_file import DatabaseFile
 from service.attempts.storage.tables import attempts, metadata
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
@@ -159,9 +160,10 @@ def test_a_start_waits_for_another_process_that_migrates_sqlite(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     path = tmp_path / "attempts.db"
-    open_database(str(path)).dispose()
+    make_old(str(path), "0010")
     monkeypatch.setattr(database, "_LOCK_WAIT", 0.05)
     other = sqlite3.connect(path, isolation_level=None, check_same_thread=False)
+    other.execute("PRAGMA journal_mode = WAL")
     other.execute("BEGIN IMMEDIATE")
     ending = threading.Timer(0.5, lambda: other.execute("COMMIT"))
     ending.start()
@@ -180,7 +182,7 @@ def test_a_start_waits_for_another_process_that_opens_the_same_new_file(tmp_path
         mine.execute("PRAGMA journal_mode = WAL")
     ending = threading.Timer(0.3, lambda: other.execute("COMMIT"))
     ending.start()
-    database._set_up_sqlite(mine, None)
+    DatabaseFile(database._engine(str(path)), ANSWER)._set_up(mine, None)
     ending.join()
     other.close()
     assert mine.execute("PRAGMA journal_mode").fetchone() == ("wal",)

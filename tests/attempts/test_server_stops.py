@@ -65,7 +65,9 @@ class Course:
         assert graded.status_code == 200
         await asyncio.to_thread(start, server, how)
         await self.more()
-        assert (await self._client.get("/readyz")).status_code == 200
+        # A check may take longer than the time limit of this test on a busy machine.
+        while (await self._client.get("/readyz")).status_code != 200:
+            await asyncio.sleep(0.01)
 
 
 @pytest.mark.long

@@ -1,25 +1,32 @@
 """Open the database of attempts by its URL, and migrate its tables."""
 
-import sqlite3
-import time
+import logging
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Final, TypeVar
+from typing import Final, TypeVar
 
 from alembic import command
 from alembic.config import Config
 from alembic.migration import MigrationContext
 from alembic.script import ScriptDirectory
-from alembic.util import CommandError
 from sqlalchemy import Connection, Engine, create_engine, event, make_url, text
 from sqlalchemy.exc import ArgumentError, SQLAlchemyError
 
 from service.attempts.errors import UnusableDatabaseError
-from service.attempts.storage.database_file import DatabaseFile, make_private
-from service.translations import joined, say
+from service.attempts.storage.database_file import (
+    DatabaseFile,
+    before,
+    is_plain,
+    make_private,
+    unfinished,
+)
+from service.translations import Sentence, joined, say
 
 R = TypeVar("R")
+
+_log = logging.getLogger(__name__)
 
 _MIGRATIONS: Final = Path(__file__).parent / "migrations"
 # How long a statement waits for another process that is writing (seconds).
@@ -41,43 +48,128 @@ _WHEN_SILENT: Final = {
 }
 
 
-def open_database(url: str, *, create: bool = True) -> Engine:
-    """Open the database at the URL and migrate it to the newest tables.
+@dataclass(frozen=True, slots=True)
+class Revisions:
+    """The revision of a database's tables (None without tables), and that of this program."""
 
-    ``url`` is an SQLAlchemy URL or the path of an SQLite file. With ``create``, a missing file is
-    created. Raises UnusableDatabaseError.
+    found: str | None
+    known: str
+    # True if the tables are those of a newer version of the program.
+    is_newer: bool = False
+
+
+def open_database(url: str, *, create: bool = True, migrate: bool = True) -> Engine:
+    """Open the database at the URL, with the tables of this version of the program.
+
+    ``url`` is an SQLAlchemy URL or the path of an SQLite file. With ``create``, a missing file and
+    missing tables are created. With ``migrate``, older tables are updated. Raises
+    UnusableDatabaseError.
     """
+    engine, _ = _opened(url, create=create, migrate=migrate)
+    return engine
+
+
+def migrate_database(url: str) -> Revisions:
+    """Create or update the tables at the URL; return the revision before and that of this program.
+
+    Raises UnusableDatabaseError.
+    """
+    engine, revisions = _opened(url, create=True, migrate=True)
+    engine.dispose()
+    return revisions
+
+
+def _opened(url: str, *, create: bool, migrate: bool) -> tuple[Engine, Revisions]:
     engine = unmigrated_database(url)
-    is_sqlite = engine.dialect.name == "sqlite"
-    if is_sqlite and not _is_there(path := engine.url.database or ""):
-        if not create:
-            raise UnusableDatabaseError(_at(engine, say("there is no such file")))
-        make_private(path)
+    if (path := file_of(engine)) is not None and not path.exists():
+        _check_missing(engine, path, create=create)
+        make_private(str(path))
     try:
-        file = DatabaseFile(engine) if is_sqlite else None
         with engine.connect() as connection:
-            if file is not None and not file.note(connection):
+            if _is_in_memory(connection):
                 raise UnusableDatabaseError(say("would be kept in memory and lost; name a file"))
             connection.rollback()
-            _migrate(connection)
+            revisions = revisions_of(connection)
+            connection.rollback()
+            if revisions.found != revisions.known:
+                if not (migrate or (create and revisions.found is None)):
+                    raise UnusableDatabaseError(_at(engine, unfit(revisions)))
+                revisions = _migrate(connection)
     except ValueError as error:
         raise UnusableDatabaseError(say("has parts that the database does not know")) from error
     except SQLAlchemyError as error:
         raise UnusableDatabaseError(_at(engine, reason(error))) from error
-    except CommandError as error:
-        newer = say("its tables are those of a newer version of the program")
-        raise UnusableDatabaseError(_at(engine, newer)) from error
     finally:
         engine.dispose()
-    return engine
+    return engine, revisions
 
 
-def migration_state(connection: Connection) -> tuple[str | None, str | None]:
-    """Return the version of the tables (None without tables) and the newest version."""
-    config = Config()
-    config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
-    newest = ScriptDirectory.from_config(config).get_current_head()
-    return MigrationContext.configure(connection).get_current_revision(), newest
+def _check_missing(engine: Engine, path: Path, *, create: bool) -> None:
+    # Where a restore was killed, nobody may begin with an empty database.
+    kept = before(path)
+    if kept.exists():
+        problem = say(
+            "there is no such file, but {kept} is there, the database from before a restore. Run "
+            "dh-grader restore again, or move {kept} back to {file}, or away",
+            kept=str(kept),
+            file=str(path),
+        )
+        raise UnusableDatabaseError(_at(engine, problem))
+    for left in unfinished(path):
+        problem = say(
+            "there is no such file, but {left} is there: a restore was interrupted. Run dh-grader "
+            "restore again, or delete {left}",
+            left=str(left),
+        )
+        raise UnusableDatabaseError(_at(engine, problem))
+    if not create:
+        raise UnusableDatabaseError(_at(engine, say("there is no such file")))
+
+
+def _is_in_memory(connection: Connection) -> bool:
+    if connection.dialect.name != "sqlite":
+        return False
+    return not connection.exec_driver_sql("PRAGMA database_list").one()[2]
+
+
+def file_of(engine: Engine) -> Path | None:
+    """Return the file of an SQLite database; None for PostgreSQL, and for an URI of SQLite."""
+    path = engine.url.database or ""
+    return Path(path) if engine.dialect.name == "sqlite" and is_plain(path) else None
+
+
+def revisions_of(connection: Connection) -> Revisions:
+    """Return the revision of the tables, and that of this version of the program."""
+    return compared(MigrationContext.configure(connection).get_current_revision())
+
+
+def compared(found: str | None) -> Revisions:
+    """Compare the revision of a database's tables with that of this version of the program."""
+    scripts = ScriptDirectory.from_config(_config())
+    known = scripts.get_current_head()
+    assert known is not None
+    all_known = {script.revision for script in scripts.walk_revisions()}
+    return Revisions(found, known, found is not None and found not in all_known)
+
+
+def unfit(revisions: Revisions) -> Sentence:
+    """Say why this version of the program cannot use tables of another revision, and what to do."""
+    if revisions.is_newer:
+        return say(
+            "its tables ({found}) are those of a newer version of the program; this version knows "
+            "tables up to {known}",
+            found=str(revisions.found),
+            known=revisions.known,
+        )
+    if revisions.found is None:
+        return say("it has no tables. Create them: dh-grader attempts migrate")
+    return say(
+        "its tables ({found}) are those of an older version of the program; this version needs "
+        "{known}. Back up the database, stop services of the older version, and run: dh-grader "
+        "attempts migrate",
+        found=revisions.found,
+        known=revisions.known,
+    )
 
 
 def unmigrated_database(url: str) -> Engine:
@@ -94,11 +186,6 @@ def _at(engine: Engine, problem: str) -> str:
     return joined(": ", [safe_url(engine), problem])
 
 
-def _is_there(path: str) -> bool:
-    # Leave other spellings to SQLite: file:attempts.db?mode=ro, :memory:.
-    return path.startswith((":", "file:")) or not path or Path(path).exists()
-
-
 def _engine(url: str) -> Engine:
     parsed = make_url(url if "://" in url else f"sqlite:///{url}")
     match parsed.get_backend_name():
@@ -106,7 +193,7 @@ def _engine(url: str) -> Engine:
             engine = create_engine(
                 parsed, connect_args={"timeout": _LOCK_WAIT}, hide_parameters=True
             )
-            event.listen(engine, "connect", _set_up_sqlite)
+            DatabaseFile(engine, _LOCK_WAIT)
             event.listen(engine, "begin", _begin_sqlite)
             return engine
         case "postgresql":
@@ -128,49 +215,39 @@ def _engine(url: str) -> Engine:
             )
 
 
-def _set_up_sqlite(connection: Any, _: object) -> None:
-    # SQLAlchemy begins transactions (below); Python's driver must not do so on its own.
-    connection.isolation_level = None
-    cursor = connection.cursor()
-    _use_write_ahead_log(cursor)
-    # Overwrite deleted and replaced rows, so that no data of a deleted learner stays in the file.
-    for setting in ("synchronous = FULL", "foreign_keys = ON", "secure_delete = ON"):
-        cursor.execute(f"PRAGMA {setting}")
-    cursor.close()
-
-
-def _use_write_ahead_log(cursor: sqlite3.Cursor) -> None:
-    # SQLite does not wait for its lock here, so try again if another process has the file.
-    until = time.monotonic() + _LOCK_WAIT
-    while True:
-        try:
-            cursor.execute("PRAGMA journal_mode = WAL")
-        except sqlite3.OperationalError as error:
-            busy = error.sqlite_errorcode & 0xFF == sqlite3.SQLITE_BUSY
-            if not busy or time.monotonic() > until:
-                raise
-            time.sleep(0.01)
-        else:
-            return
-
-
 def _begin_sqlite(connection: Connection) -> None:
     # A deferred transaction that reads first would fail at its first write beside another writer.
     writes = connection.get_execution_options().get("writes", False)
     connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
 
 
-def _migrate(connection: Connection) -> None:
+def _migrate(connection: Connection) -> Revisions:
+    # Return the revision before. Raises UnusableDatabaseError for tables of a newer version.
     connection = connection.execution_options(writes=True)
     with _patient(connection), connection.begin():
         without_time_limit(connection)
         if connection.dialect.name == "postgresql":
             lock = text("SELECT pg_advisory_xact_lock(:key)")
             connection.execute(lock, {"key": _MIGRATION_LOCK})
-        config = Config()
-        config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+        # Another process may have migrated meanwhile.
+        revisions = revisions_of(connection)
+        if revisions.is_newer:
+            raise UnusableDatabaseError(_at(connection.engine, unfit(revisions)))
+        if revisions.found == revisions.known:
+            return revisions
+        config = _config()
         config.attributes["connection"] = connection
         command.upgrade(config, "head")
+    if revisions.found is not None:
+        # At its start, the service has not set up its log yet: only warnings are written.
+        _log.warning("The tables were migrated from %s to %s", revisions.found, revisions.known)
+    return revisions
+
+
+def _config() -> Config:
+    config = Config()
+    config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+    return config
 
 
 @contextmanager

@@ -8,6 +8,7 @@ from collections import defaultdict
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
+from math import inf
 from time import monotonic, sleep
 from typing import Any, Final, TypeVar
 
@@ -26,8 +27,8 @@ _SILENT: Final = "the database does not react"
 # The most jobs in one transaction, and in the queue before further jobs are refused.
 _MAX_TOGETHER: Final = 64
 _MAX_WAITING: Final = 4096
-# The interval between two calls of ``tidy`` (seconds).
-_TIDY_INTERVAL: Final = 60.0
+# The time until the next call of ``tidy`` after one that failed (seconds).
+_TIDY_AGAIN: Final = 60.0
 # How long a job waits for the database in all (seconds). A paused server raises no error, and
 # waiting for a lock takes up to five seconds.
 _TIMEOUT: Final = 15.0
@@ -53,14 +54,16 @@ class AttemptWriter:
     A job gets its result only after the commit. A failing job does not affect others.
     """
 
-    def __init__(self, engine: Engine, tidy: Callable[[], None] = lambda: None) -> None:
-        """Start the thread, which calls ``tidy`` at once and then every minute."""
+    def __init__(self, engine: Engine, tidy: Callable[[], float] = lambda: 3600.0) -> None:
+        """Start the thread, which calls ``tidy``, and again after the seconds that it returns."""
         self._engine = engine
         self._tidy = tidy
         self._tidy_at = monotonic()
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         # The start of the current transaction; None while the thread is idle.
         self._begun_at: float | None = None
+        # The time of the last failure of the database.
+        self.failed_at = -inf
         self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
         self._thread.start()
 
@@ -97,11 +100,12 @@ class AttemptWriter:
                 self._begun_at = None
                 is_busy = len(jobs) > 1
             if monotonic() >= self._tidy_at and not ended:
+                pause = _TIDY_AGAIN
                 try:
-                    self._tidy()
+                    pause = self._tidy()
                 except Exception:  # noqa: BLE001 - recording must go on
                     _log.exception("The database could not be tidied up")
-                self._tidy_at = monotonic() + _TIDY_INTERVAL
+                self._tidy_at = monotonic() + pause
 
     def _waiting(self, gather: float) -> tuple[list[_Job], bool]:
         jobs: list[_Job] = []
@@ -131,6 +135,8 @@ class AttemptWriter:
                     self._process([job])
                 return
             failure = _as_store_error(error)
+            if isinstance(failure, StoreDownError):
+                self.failed_at = monotonic()
             _deliver([(job, None, failure) for job in jobs])
             return
         _deliver([(job, result, None) for job, result in zip(jobs, results, strict=True)])

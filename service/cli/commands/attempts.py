@@ -21,7 +21,12 @@ from service.attempts.learner_data import delete_older, is_older, months_before
 from service.attempts.results.grades import counting_rules, graded_attempts, written
 from service.attempts.results.listing import page
 from service.attempts.results.statistics import exercise_statistics
-from service.attempts.storage.database import in_transaction, open_database, reason
+from service.attempts.storage.database import (
+    in_transaction,
+    migrate_database,
+    open_database,
+    reason,
+)
 from service.attempts.storage.erasure import overwrite_deleted
 from service.attempts.storage.tables import attempts
 from service.attempts.tutoring import (
@@ -74,15 +79,10 @@ ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", 
 def database(*, create: bool = False) -> Iterator[Engine]:
     """Open the database of this installation; exit if it cannot be used.
 
-    With ``create``, a missing database is created.
+    With ``create``, a missing database is created. Older tables are not updated.
     """
-    url = load_settings().database
-    if url is None:
-        give_up(say("No attempts are recorded here: DH_GRADER_DATABASE names no database."))
-    try:
-        engine = open_database(url.get_secret_value(), create=create)
-    except UnusableDatabaseError as error:
-        give_up(joined(": ", ["DH_GRADER_DATABASE", error.args[0]]))
+    with usable_database():
+        engine = open_database(database_url(), create=create, migrate=False)
     try:
         yield engine
     except SQLAlchemyError as error:
@@ -91,11 +91,40 @@ def database(*, create: bool = False) -> Iterator[Engine]:
         engine.dispose()
 
 
+def database_url() -> str:
+    """Return the URL of the database of this installation; exit if there is none."""
+    url = load_settings().database
+    if url is None:
+        give_up(say("No attempts are recorded here: DH_GRADER_DATABASE names no database."))
+    return url.get_secret_value()
+
+
+@contextmanager
+def usable_database() -> Iterator[None]:
+    """Exit if the database cannot be used."""
+    try:
+        yield
+    except UnusableDatabaseError as error:
+        give_up(joined(": ", ["DH_GRADER_DATABASE", error.args[0]]))
+
+
 @commands.command("migrate")
 def migrate() -> None:
     """Create or update the tables. The service does so, too, when it starts."""
-    with database(create=True):
-        tell(say("The tables are those of this version."))
+    with usable_database():
+        revisions = migrate_database(database_url())
+    if revisions.found is None:
+        tell(say("The tables were created: {known}.", known=revisions.known))
+    elif revisions.found == revisions.known:
+        tell(say("The tables are those of this version: {known}.", known=revisions.known))
+    else:
+        tell(
+            say(
+                "The tables were migrated from {found} to {known}.",
+                found=revisions.found,
+                known=revisions.known,
+            )
+        )
 
 
 @commands.command("list")

@@ -119,7 +119,7 @@ def work(exercise_id: str, course: str | None) -> None:
     settings = load_settings()
     assert settings.database is not None
     try:
-        engine = open_database(settings.database.get_secret_value(), create=False)
+        engine = open_database(settings.database.get_secret_value(), create=False, migrate=False)
         regrading = Regrading(installed_exercise(exercise_id), settings.feedback, course)
         while regrading.next_batch(engine):
             pass

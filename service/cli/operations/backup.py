@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
-from service.attempts.storage.database_file import copy_into
-from service.cli.commands.attempts import database
+from service.attempts.storage.database import file_of, unmigrated_database
+from service.attempts.storage.database_file import copy_of, move_to_free_place
+from service.cli.commands.attempts import database_url, usable_database
 from service.cli.terminal import give_up, tell
 from service.translations import say
 
@@ -24,16 +25,20 @@ def command(
     file: Annotated[Path, typer.Argument(help="The file to write. It must not exist yet.")],
 ) -> None:
     """Copy the database to a file, also while the service runs."""
-    with database() as engine:
-        if engine.dialect.name != "sqlite":
-            give_up(USE_POSTGRESQL)
-        if file.exists():
-            give_up(say("{file} is there already. Choose another name.", file=str(file)))
-        try:
-            copy_into(Path(engine.url.database or ""), file)
-        except (OSError, sqlite3.Error) as error:
-            file.unlink(missing_ok=True)
-            give_up(say("{file}: cannot be written: {reason}", file=str(file), reason=str(error)))
+    source = sqlite_file()
+    if not source.is_file():
+        give_up(say("{file}: there is no such file.", file=str(source)))
+    if file.exists():
+        give_up(_is_there(file))
+    try:
+        # The tables may be those of any version: this command only copies them.
+        with copy_of(source, file) as copy:
+            move_to_free_place(copy, file)
+    except FileExistsError:
+        # Another backup was faster.
+        give_up(_is_there(file))
+    except (OSError, sqlite3.Error) as error:
+        give_up(say("{file}: cannot be written: {reason}", file=str(file), reason=str(error)))
     tell(
         say(
             "{file}: {size} bytes. Only you can read it. Keep it safe.",
@@ -41,3 +46,19 @@ def command(
             size=file.stat().st_size,
         )
     )
+
+
+def sqlite_file() -> Path:
+    """Return the path of this installation's SQLite database; exit if there is none."""
+    with usable_database():
+        engine = unmigrated_database(database_url())
+    if engine.dialect.name != "sqlite":
+        give_up(USE_POSTGRESQL)
+    path = file_of(engine)
+    if path is None:
+        give_up(say("Name the database by the path of its file: DH_GRADER_DATABASE."))
+    return path
+
+
+def _is_there(file: Path) -> str:
+    return say("{file} is there already. Choose another name.", file=str(file))

@@ -16,11 +16,14 @@ from service.access.keys import WRONG_SECRET
 from service.api.permissions.access import is_loopback
 from service.attempts.errors import UnusableDatabaseError
 from service.attempts.storage.database import (
-    migration_state,
+    file_of,
     reason,
+    revisions_of,
     safe_url,
+    unfit,
     unmigrated_database,
 )
+from service.attempts.storage.database_file import before, unfinished
 from service.attempts.storage.tables import courses
 from service.catalogue import CatalogueError, load_catalogue
 from service.cli.terminal import tell, tell_verdict
@@ -102,10 +105,10 @@ def _database(settings: Settings) -> Iterator[str]:
 
 
 def _state_of_database(connection: Connection, _: Settings) -> Iterator[str]:
-    current, newest = migration_state(connection)
+    revisions = revisions_of(connection)
     name = safe_url(connection.engine)
-    if connection.dialect.name == "sqlite":
-        _check_file(Path(connection.engine.url.database or ""))
+    if (path := file_of(connection.engine)) is not None:
+        _check_file(path)
         found = connection.exec_driver_sql("PRAGMA quick_check(1)").scalar()
         if found != "ok":
             raise AilmentError(
@@ -115,14 +118,16 @@ def _state_of_database(connection: Connection, _: Settings) -> Iterator[str]:
                     found=str(found),
                 )
             )
-    if current is None:
+    if revisions.is_newer:
+        raise AilmentError(joined(": ", [name, unfit(revisions)]))
+    if revisions.found is None:
         yield say("{database} is empty; the service makes its tables when it starts", database=name)
-    elif current != newest:
+    elif revisions.found != revisions.known:
         yield say(
             "{database} has tables {current}; the service migrates them to {newest} at its start",
             database=name,
-            current=current,
-            newest=str(newest),
+            current=revisions.found,
+            newest=revisions.known,
         )
     else:
         yield say("{database} answers; its tables are those of this version", database=name)
@@ -134,6 +139,14 @@ def _check_file(file: Path) -> None:
             say(
                 "{file} and its folder must be writable for the user that runs the service.",
                 file=str(file),
+            )
+        )
+    if left := unfinished(file):
+        raise AilmentError(
+            say(
+                "{left} is left of a command that was killed, and contains answers of learners. "
+                "Delete it, unless dh-grader restore is running.",
+                left=str(left[0]),
             )
         )
     if os.name == "posix" and file.stat().st_mode & _OWNERS_ONLY:
@@ -153,9 +166,11 @@ def _keys(settings: Settings) -> Iterator[str]:
 
 
 def _state_of_keys(connection: Connection, settings: Settings) -> Iterator[str]:
-    if migration_state(connection)[0] is None:
+    revisions = revisions_of(connection)
+    if revisions.found is None:
         _check_openness(settings, has_keys=False)
         yield say("none yet")
+    if revisions.found != revisions.known:
         return
     now, secret = datetime.now(UTC), settings.known_secret()
     found = all_keys(connection)
@@ -196,8 +211,8 @@ def _courses(settings: Settings) -> Iterator[str]:
 
 
 def _state_of_courses(connection: Connection, _: Settings) -> Iterator[str]:
-    current, newest = migration_state(connection)
-    if current != newest:
+    revisions = revisions_of(connection)
+    if revisions.found != revisions.known:
         return
     zones = connection.execute(select(courses.c.id, courses.c.zone)).all()
     for course, zone in zones:
@@ -227,6 +242,15 @@ def _asked(
                 )
             )
         if not path.exists():
+            if left := [each for each in (before(path), *unfinished(path)) if each.exists()]:
+                raise AilmentError(
+                    say(
+                        "{file} is not there, but {left} is: a restore was interrupted. Run "
+                        "dh-grader restore again, or move {left} away.",
+                        file=str(path),
+                        left=str(left[0]),
+                    )
+                )
             yield say(
                 "{file} is not there yet; the service creates it when it starts", file=str(path)
             )

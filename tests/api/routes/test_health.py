@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any
@@ -44,6 +45,25 @@ def test_readiness_asks_the_database_once_for_all_and_liveness_never(
     assert statements == []
     assert {answer.status_code for answer in asked(app, "/readyz", 20)} == {200}
     assert 1 <= len(statements) < 5
+
+
+def test_readiness_writes_at_most_once_in_a_second(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    app = application(catalogue, store=store)
+    writes: list[str] = []
+
+    def note(_: Any, __: Any, statement: str, *___: Any) -> None:
+        if statement.startswith("INSERT"):
+            writes.append(statement)
+
+    event.listen(store.engine, "before_cursor_execute", note)
+    begun = time.monotonic()
+    for _ in range(30):
+        assert asked(app, "/readyz")[0].status_code == 200
+    assert 1 <= len(writes) <= 1 + (time.monotonic() - begun)
+    with store.engine.connect() as connection:
+        assert connection.scalar(text("SELECT count(*) FROM outcomes")) == 0
 
 
 def test_a_database_without_its_tables_is_not_ready_and_the_log_says_why(

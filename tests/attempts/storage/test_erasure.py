@@ -1,21 +1,28 @@
 """Deleted data is in no file of an SQLite database any more."""
 
 import random
+import sqlite3
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
+from itertools import count
+from multiprocessing import Pipe
+from pathlib import Path
+from typing import Any
 
 import pytest
 from sqlalchemy import Engine
 
 from service.attempts.regrades.outdated import Regrading
 from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.erasure import finish_overwriting, overwrite_deleted
+from service.attempts.storage.database_file import LARGE_LOG
+from service.attempts.storage.erasure import LogCutter, overwrite_deleted
 from service.attempts.store import AttemptStore
 from service.attempts.tutoring import forget, override
 from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.erasure import files_with, reader
-from tests.attempts.recorded import NOON, recorded
+from tests.attempts.recorded import NOON, new_attempt, recorded, recorded_all
 from tests.guards import ANSWER
 
 WRITTEN = "q7777777"
@@ -44,11 +51,11 @@ def test_deleted_data_stays_until_the_last_reader_ends(
         assert forgotten(store.engine, "ada-4711") is False
         # The data is still in the file, as False says.
         assert files_with(WRITTEN, sqlite_url)
-        finish_overwriting(store.engine)
+        LogCutter(store.engine).next()
         assert files_with(WRITTEN, sqlite_url)
         # Writers do not wait for the reader.
         recorded(store, catalogue["scara"], "grace", TABLE.format("θ2"))
-    finish_overwriting(store.engine)
+    LogCutter(store.engine).next()
     assert files_with(WRITTEN, sqlite_url) == files_with("ada-4711", sqlite_url) == []
     assert files_with("grace", sqlite_url)
     store.close()
@@ -58,7 +65,8 @@ def test_deleted_data_stays_until_the_last_reader_ends(
 def test_a_running_store_finishes_the_erasure_of_another_program(
     sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.attempts.storage.writer._TIDY_INTERVAL", 0.05)
+    for name in ("_INTERVAL", "_LOOK"):
+        monkeypatch.setattr(f"service.attempts.storage.erasure.{name}", 0.05)
     store = AttemptStore.open(sqlite_url)
     store.start()
     recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))
@@ -71,6 +79,79 @@ def test_a_running_store_finishes_the_erasure_of_another_program(
     assert files_with("ada-4711", sqlite_url) == []
     store.close()
     command.dispose()
+
+
+def _read_until(path: str, over: Any) -> None:
+    with reader(path):
+        over.recv()
+
+
+def log_size(path: str) -> int:
+    log = Path(f"{path}-wal")
+    return log.stat().st_size if log.exists() else 0
+
+
+@contextmanager
+def long_reader(path: str, killable: Any) -> Iterator[None]:
+    """Let another process read the database until the end of the context."""
+    over, telling = Pipe(duplex=False)
+    process = killable(target=_read_until, args=(path, over))
+    process.start()
+    while (idle := sqlite3.connect(path)) and not is_read(idle):
+        idle.close()
+        time.sleep(0.01)
+    idle.close()
+    yield
+    telling.send("over")
+    process.join(ANSWER)
+    assert process.exitcode == 0
+
+
+def is_read(connection: sqlite3.Connection) -> bool:
+    return bool(connection.execute("PRAGMA wal_checkpoint(TRUNCATE)").fetchone()[0])
+
+
+@pytest.mark.long
+def test_a_service_cuts_a_large_log_within_seconds_after_a_long_reader(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], killable: Any
+) -> None:
+    store = AttemptStore.open(sqlite_url)
+    store.start()
+    scara = catalogue["scara"]
+    with long_reader(sqlite_url, killable):
+        for number in range(20):
+            new = [new_attempt(scara, f"{number}.{i}", TABLE.format("θ2")) for i in range(50)]
+            recorded_all(store, new)
+        assert log_size(sqlite_url) > LARGE_LOG
+    begun = time.monotonic()
+    while log_size(sqlite_url):
+        time.sleep(0.05)
+    # It looks each second; the next regular truncation may be a minute away.
+    assert time.monotonic() - begun < 40
+    store.close()
+
+
+@pytest.mark.long
+def test_a_command_without_a_service_leaves_no_large_log_after_a_long_reader(
+    sqlite_url: str, catalogue: Mapping[str, Exercise], killable: Any
+) -> None:
+    store = AttemptStore.open(sqlite_url)
+    scara, numbers = catalogue["scara"], count()
+
+    def record_more() -> None:
+        learner = str(next(numbers))
+        new = [new_attempt(scara, f"{learner}.{i}", TABLE.format("θ2")) for i in range(50)]
+        recorded_all(store, new)
+
+    with long_reader(sqlite_url, killable), store.engine.connect():
+        while log_size(sqlite_url) <= 2 * LARGE_LOG:
+            record_more()
+    with store.engine.connect():
+        # The first commit writes the log into the database, the second begins the log anew.
+        for _ in range(3):
+            record_more()
+        assert log_size(sqlite_url) <= LARGE_LOG
+    store.close()
 
 
 def test_a_store_finishes_an_erasure_when_it_starts(
@@ -126,6 +207,6 @@ def test_no_data_is_left_of_learners_whose_rows_were_rewritten(
 
 def test_postgresql_overwrites_in_its_own_time(postgresql_url: str) -> None:
     store = AttemptStore.open(postgresql_url)
-    finish_overwriting(store.engine)
+    LogCutter(store.engine).next()
     assert overwrite_deleted(store.engine) is None
     store.close()

@@ -1,5 +1,7 @@
 import json
+import sqlite3
 from collections.abc import Mapping
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -8,6 +10,7 @@ from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, shipped_folder
 from tests.attempts.erasure import files_with, reader
 from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded_all
+from tests.attempts.test_upgrade import MIGRATIONS, make_old
 from tests.cli.conftest import Run
 
 
@@ -53,6 +56,77 @@ def test_migrate_creates_the_tables(
     for _ in range(2):
         assert run("attempts", "migrate").exit_code == 0
     assert run("attempts", "list").stdout.strip() == "No attempts are recorded."
+
+
+def test_migrate_says_from_what_to_what(
+    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    file = str(tmp_path / "old.db")
+    monkeypatch.setenv("DH_GRADER_DATABASE", file)
+    newest = max(path.name[:4] for path in (MIGRATIONS / "versions").glob("0*.py"))
+    make_old(file, "0009")
+    assert run("attempts", "migrate").output == f"The tables were migrated from 0009 to {newest}.\n"
+    assert newest in run("attempts", "migrate").output
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(tmp_path / "new.db"))
+    assert run("attempts", "migrate").output == f"The tables were created: {newest}.\n"
+
+
+# One command of each group that works on the database, and those that only read in full.
+COMMANDS = (
+    ("attempts", "list"),
+    ("attempts", "statistics", "scara"),
+    ("attempts", "export"),
+    ("attempts", "regrade", "scara"),
+    ("attempts", "regrade", "scara", "--apply"),
+    ("attempts", "override", "0" * 32, "1", "--reason", "r"),
+    ("attempts", "expire", "--months", "1"),
+    ("attempts", "forget", "ada", "--yes"),
+    ("learners", "export", "ada"),
+    ("courses", "list"),
+    ("courses", "new", "robots", "--title", "Robots", "--zone", "UTC"),
+    ("courses", "gradebook", "robots"),
+    ("keys", "list"),
+    ("keys", "create", "Ada", "--scope", "tutor"),
+    ("lti", "list"),
+    ("lti", "invite", "Moodle", "--address", "https://grader.example.edu"),
+)
+
+
+@pytest.mark.parametrize("revision", ["0010", "9999"])
+def test_no_command_but_migrate_changes_tables_of_another_version(
+    run: Run, monkeypatch: pytest.MonkeyPatch, tmp_path: Path, revision: str
+) -> None:
+    file = tmp_path / "other.db"
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(file))
+    monkeypatch.setenv("DH_GRADER_SECRET", "0123456789abcdef" * 4)
+    make_old(str(file), "0010")
+    with closing(sqlite3.connect(file)) as connection:
+        connection.execute("PRAGMA journal_mode = WAL")
+        connection.execute("UPDATE alembic_version SET version_num = ?", (revision,))
+        connection.commit()
+    before = file.read_bytes()
+    for arguments in COMMANDS:
+        result = run(*arguments)
+        assert (result.exit_code, revision in result.output) == (2, True), (
+            arguments,
+            result.output,
+        )
+        advice = "dh-grader attempts migrate" if revision == "0010" else "newer version"
+        assert advice in " ".join(result.output.split()), result.output
+        assert file.read_bytes() == before, arguments
+    doctor = " ".join(run("doctor").output.split())
+    assert ("those of a newer version" in doctor) is (revision == "9999")
+    # Before an update, a new program makes a backup of the old tables.
+    copy = tmp_path / "copy.db"
+    assert run("backup", copy).exit_code == 0
+    with closing(sqlite3.connect(copy)) as connection:
+        found = connection.execute("SELECT version_num FROM alembic_version").fetchall()
+    assert found == [(revision,)]
+    restored = run("restore", copy, "--replace")
+    assert restored.exit_code == (0 if revision == "0010" else 2), restored.output
+    assert file.read_bytes()[100:] == before[100:] or revision == "0010"
+    migrated = run("attempts", "migrate")
+    assert migrated.exit_code == (0 if revision == "0010" else 2), migrated.output
 
 
 def test_no_other_command_creates_a_database(

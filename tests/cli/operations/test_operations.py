@@ -20,7 +20,7 @@ from service.contract.courses import NewAssignment, NewCourse, NewLearner
 from service.courses import roll
 from service.courses.assignments import add_assignment
 from service.server.installed import installed_app
-from service.settings import load_settings
+from service.settings import SettingsError, load_settings
 
 NOW = datetime.now(UTC)
 SECRET = "0123456789abcdef" * 4
@@ -129,6 +129,60 @@ def test_a_backup_comes_back(database: Path, tmp_path: Path) -> None:
     (tmp_path / "attempts.db.before").unlink()
     assert run("restore", tmp_path / "broken.db", "--replace").exit_code == 2
     assert learners(database) == ["ada", "grace"]
+
+
+def test_nobody_begins_with_an_empty_database_after_an_interrupted_restore(
+    database: Path, tmp_path: Path
+) -> None:
+    copy = tmp_path / "copy.db"
+    assert run("backup", copy).exit_code == 0
+    kept = database.rename(database.with_name("attempts.db.before"))
+    for words in (("keys", "create", "Ada"), ("attempts", "migrate"), ("attempts", "list")):
+        told = run(*words)
+        assert (told.exit_code, "restore again" in spaced_out(told)) == (2, True), told.output
+    with pytest.raises(SettingsError, match="restore again"):
+        installed_app(load_settings())
+    assert "a restore was interrupted" in run("doctor").output
+    assert not database.exists()
+    assert run("restore", copy).exit_code == 0
+    assert learners(database) == learners(kept) == ["ada", "grace"]
+    database.unlink()
+    kept.rename(database.with_name("attempts.db.0123abcd.part"))
+    assert "delete" in run("keys", "create", "Ada").output
+    assert run("restore", copy).exit_code == 0
+    assert sorted(each.name for each in tmp_path.iterdir()) == ["attempts.db", "copy.db"]
+
+
+def spaced_out(result: Result) -> str:
+    return " ".join(result.output.split())
+
+
+@pytest.mark.parametrize("damaged", [True, False])
+def test_a_restore_without_hard_links_keeps_the_old_database(
+    database: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, damaged: bool
+) -> None:
+    copy = tmp_path / "copy.db"
+    assert run("backup", copy).exit_code == 0
+    assert run("attempts", "forget", "ada", "--yes").exit_code == 0
+    if damaged:
+        database.write_bytes(b"no database" * 1000)
+
+    def link(*_: object) -> None:
+        raise PermissionError("no links here")
+
+    monkeypatch.setattr("os.link", link)
+    assert run("restore", copy, "--replace").exit_code == 0
+    assert learners(database) == ["ada", "grace"]
+    kept = database.with_name("attempts.db.before")
+    if damaged:
+        assert kept.read_bytes() == b"no database" * 1000
+    else:
+        assert learners(kept) == ["grace"]
+    assert kept.stat().st_mode & 0o777 == 0o600
+    assert run("backup", tmp_path / "second.db").exit_code == 0
+    assert run("backup", tmp_path / "second.db").exit_code == 2
+    assert learners(tmp_path / "second.db") == ["ada", "grace"]
+    assert not list(tmp_path.glob("*.part*"))
 
 
 def test_old_attempts_are_deleted_and_no_others(
