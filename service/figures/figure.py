@@ -16,7 +16,12 @@ from service.figures.drawing.names import Label, frame_label, name_label, sum_la
 from service.figures.drawing.sheet import LARGE_ROOM, PHONE_ROOM, Caption, Sheet, camera_for
 from service.figures.drawing.solids import Camera
 from service.figures.drawing.style import Theme
-from service.figures.geometry.given_frames import GivenFrames, given_frames, table_frames_of
+from service.figures.geometry.given_frames import (
+    GivenFrames,
+    given_frames,
+    table_frames_of,
+    with_named_base,
+)
 from service.figures.geometry.lengths import NamedLength, named_lengths
 from service.figures.geometry.mechanism import (
     JOINT_LENGTH,
@@ -69,7 +74,8 @@ def exercise_figure(exercise: Exercise, theme: Theme = Theme.AUTO) -> str:
 
     Raises LookupError if the exercise has no robot.
     """
-    subject, given = subject_of(exercise), given_frames(exercise)
+    subject = subject_of(exercise)
+    given = with_named_base(given_frames(exercise), exercise.statement)
     # The statement speaks of the base frame's y axis; those of other frames follow from x and z.
     axes = ["xyz" if number == 0 else "xz" for number in given.numbers]
     return figure(replace(subject, frames=_at_home_of(exercise, given, axes)), theme)

@@ -22,10 +22,10 @@ from service.web.script_words import dictionary, sentences_in, with_dictionaries
 
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
-# A file names another one by its path in quotes. A module may also import one later (``import(``).
+# A file names another one by its path in quotes. A module may also import one later.
 # A pattern that begins with plain characters is ten times as fast.
 _NAMED: Final = re.compile(r'"(\.\.?/[\w./-]+\.(?:js|css|svg))"')
-_LATER: Final = "import("
+_LATER: Final = ("import(", "import.meta.resolve(")
 # The script that loads the dictionaries.
 _WORDS: Final = "words.js"
 

@@ -1,6 +1,6 @@
 """The frames that an exercise gives, such as the base and tool frames."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -60,6 +60,15 @@ def given_frames(exercise: Exercise) -> GivenFrames:
     if len(conventions) != 1 or conventions != {table.convention}:
         free |= {"frames"}
     return _chosen(table, frame_labels(table), free)
+
+
+def with_named_base(given: GivenFrames, statement: str) -> GivenFrames:
+    """Return the frames together with the base frame if the statement names it."""
+    # The base frame may be free, but the statement's coordinates are those of one choice of it.
+    label = "s" if isinstance(given.source, ScrewRobot) else frame_labels(given.source)[0]
+    if 0 in given.numbers or f"{{{label}}}" not in statement:
+        return given
+    return replace(given, numbers=(0, *given.numbers), labels=(label, *given.labels))
 
 
 def table_frames_of(robot: Robot, convention: Convention | None = None) -> GivenFrames:

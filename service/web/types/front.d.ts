@@ -123,6 +123,8 @@ declare namespace Front {
   // A place of a message, and the message as it is shown.
   type Topic = { row?: string; cell?: string };
   type Told = { element: HTMLElement; feedback: Api.Feedback; place: Topic };
+  // A wrong cell or mark that has the focus after Check, its name, and its first message.
+  type Slip = { field: HTMLElement; name: string; message: Element | null };
 
   // What the hints at the report of an attempt cost: shares of the points of the exercise.
   type HintPrices = { attempt: string; prices: number[]; taken: Api.TakenHint[]; points: number };

@@ -365,7 +365,8 @@ export class DhPlay extends HTMLElement {
 
 function kept() {
   try {
-    return robotOf(JSON.parse(localStorage.getItem(KEPT) ?? "null"));
+    // A tab keeps its own table; a new tab begins with the table that was changed last.
+    return robotOf(JSON.parse(sessionStorage.getItem(KEPT) ?? localStorage.getItem(KEPT) ?? "null"));
   } catch {
     return null;
   }
@@ -374,6 +375,7 @@ function kept() {
 /** @param {Front.Robot} state */
 function keep(state) {
   try {
+    sessionStorage.setItem(KEPT, JSON.stringify(state));
     localStorage.setItem(KEPT, JSON.stringify(state));
   } catch {
     // Without storage, the table is lost when the page is closed.

@@ -48,7 +48,7 @@ export class RobotView {
   constructor(host) {
     this.host = host;
     this.words = new ViewWords((text) => this.rows.isOpen || host.announce?.(text), host.unit ?? "m"); // rows have their own words
-    this.stage = new Stage((theme) => this.#drawing(theme), this.words.text.id);
+    this.stage = new Stage((theme) => this.#drawing(theme), this.words.text.id, () => this.#stageChanged());
     this.told = h("p", { class: "told" });
     const [draw, build] = [
       () => this.#draw(),
@@ -93,6 +93,12 @@ export class RobotView {
     this.rows.open();
     this.placing.open();
     await this.#refresh();
+  }
+
+  /** Show the picture in the 3D scene, which has replaced a drawing. */
+  #stageChanged() {
+    this.placing.open();
+    this.#show(this.#answer);
   }
 
   close() {

@@ -2,10 +2,14 @@
 // as a drawing by the service.
 
 import { h } from "../shared/dom.js";
+import { later } from "../shared/later.js";
 import { worded } from "../shared/words/words.js";
 
 const TURN = Math.PI / 12;
 const NEARER = 1.25;
+const WITHOUT_WEBGL = worded(
+  "This browser has no WebGL, which the 3D view needs. The service draws the robot instead.",
+);
 const IN_SOFTWARE = /swiftshader|llvmpipe|softpipe|software|basic render/i;
 
 /** Return how the browser draws in 3D: "hardware", "software", or null if the browser cannot. */
@@ -29,14 +33,16 @@ export class Stage {
 
   /**
    * `draw(theme)` returns the SVG of the current picture, for a browser without WebGL. `textId` is the id of the
-   * picture's text alternative.
+   * picture's text alternative. `changed` is called if the 3D view replaces the drawing.
    *
    * @param {Front.DrawSvg} draw
    * @param {string} textId
+   * @param {() => void} changed
    */
-  constructor(draw, textId) {
+  constructor(draw, textId, changed) {
     this.draw = draw;
     this.textId = textId;
+    this.changed = changed;
     this.room = h("div", { class: "stage" });
     this.element = h("div", { class: "stage-frame" }, this.room);
     this.isFlat = false;
@@ -45,33 +51,61 @@ export class Stage {
   /** Load the 3D view, or the drawing if that fails. */
   async open() {
     const drawnBy = webGl();
+    if (drawnBy && await this.#openScene(drawnBy)) return;
+    if (this.#closed) return;
+    this.isFlat = true;
+    this.room.classList.add("flat");
+    this.room.replaceChildren(...(drawnBy ? this.#notLoaded() : [h("p", { class: "no-webgl" }, WITHOUT_WEBGL)]));
     try {
-      if (!drawnBy) throw new Error("no WebGL");
-      const { RobotScene } = await import("./scene.js");
-      if (this.#closed) return;
-      const scene = new RobotScene(this.room, drawnBy === "software");
+      const { FlatScene } = await later(import.meta.resolve("./flat_scene.js"), () => import("./flat_scene.js"));
+      if (!this.#closed && this.isFlat) this.#scene = new FlatScene(this.room, this.draw);
+    } catch {
+      // Above the empty stage are the reason and the button.
+    }
+  }
+
+  /** Load and open the 3D view. Return false if that fails. @param {"hardware" | "software"} drawnBy */
+  async #openScene(drawnBy) {
+    try {
+      const { RobotScene } = await later(import.meta.resolve("./scene.js"), () => import("./scene.js"));
+      if (this.#closed) return false;
+      const drawing = this.isFlat ? this.#scene : null;
+      const room = h("div", { class: "stage" });
+      const scene = new RobotScene(room, drawnBy === "software");
+      drawing?.dispose();
+      this.room.replaceWith(room);
+      this.room = room;
+      this.isFlat = false;
       this.#scene = scene;
       this.#controls(scene);
+      return true;
     } catch {
-      const reason = drawnBy
-        ? worded("The 3D view could not be loaded. The service draws the robot instead.")
-        : worded("This browser has no WebGL, which the 3D view needs. The service draws the robot instead.");
-      await this.#openFlat(reason);
+      return false;
     }
+  }
+
+  /** Return why there is only a drawing, and a button that tries to load the 3D view again. */
+  #notLoaded() {
+    const reason = h(
+      "p",
+      { class: "no-webgl", role: "status" },
+      worded("The 3D view could not be loaded. The service draws the robot instead."),
+    );
+    const again = h("button", { type: "button", class: "quiet-button" }, worded("Try 3D again"));
+    again.onclick = async () => {
+      again.setAttribute("aria-busy", "true");
+      const isOpen = await this.#openScene(webGl() ?? "software");
+      again.removeAttribute("aria-busy");
+      if (!isOpen) return;
+      this.changed();
+      this.element.querySelector("canvas")?.focus();
+    };
+    return [reason, h("p", {}, again)];
   }
 
   /** The 3D scene if it is open, or else null. */
   get scene() {
     return this.isFlat ? null : /** @type {Front.RobotScene | null} */ (this.#scene);
-  }
-
-  /** @param {string} reason */
-  async #openFlat(reason) {
-    this.isFlat = true;
-    this.room.classList.add("flat");
-    this.room.replaceChildren(h("p", { class: "no-webgl" }, reason));
-    const { FlatScene } = await import("./flat_scene.js");
-    if (!this.#closed) this.#scene = new FlatScene(this.room, this.draw);
   }
 
   /** @param {Front.Subject} subject @param {Front.Picture} picture */

@@ -7,37 +7,104 @@ const PREFIX = "dh-grader";
 const NAME = "#answers=";
 const LONGEST = 60_000;
 
-/** The saved answers to one exercise of one service. */
+const UNSAVED = worded("This browser cannot save your answers: a reload loses them");
+const UNDECIDED = worded("Not saved yet: choose above which answers to keep");
+
+/**
+ * The saved answers to one exercise of one service. All tabs share them: `save` never overwrites what another tab has
+ * saved since this one loaded or saved the answers.
+ */
 export class Store {
-  // The sentence for the student if the answers cannot be saved.
-  unsaved = worded("This browser cannot save your answers: a reload loses them");
+  /** The sentence for the student if the answers were not saved. */
+  unsaved = UNSAVED;
+  /** The ids of the parts that this element shows; null for all. @type {string[] | null} */
+  parts = null;
+  // The saved answers as this tab knows them.
+  #seen = "";
+  #stop = new AbortController();
 
   /** @param {string} base @param {string} exercise */
   constructor(base, exercise) {
     this.name = `${PREFIX}:${base}:${exercise}`;
   }
 
-  load() {
-    try {
-      return checked(JSON.parse(localStorage.getItem(this.name) ?? "null"));
-    } catch {
-      return null;
+  /** Call `changed` whenever another tab has changed the answers. @param {() => void} changed */
+  listen(changed) {
+    const { signal } = this.#stop;
+    addEventListener("storage", ({ key }) => key === this.name && this.isChanged && changed(), { signal });
+    // A page that slept has missed the events. If nothing is saved at all, the browser has cleared its storage.
+    for (const name of ["pageshow", "focus"]) {
+      addEventListener(name, () => this.#saved && this.isChanged && changed(), { signal });
     }
   }
 
+  close() {
+    this.#stop.abort();
+  }
+
+  load() {
+    const saved = this.#saved;
+    this.#seen = this.#own(saved);
+    return saved;
+  }
+
+  /** True if another tab has changed the answers since this one loaded or saved them. */
+  get isChanged() {
+    return this.#own(this.#saved) !== this.#seen;
+  }
+
+  /** @returns {Front.Answers | null} */
+  get #saved() {
+    return saved(this.name);
+  }
+
+  /** Return the answers to the parts of this element as a text; empty if there are none. @param {Front.Answers | null} answers */
+  #own(answers) {
+    const ids = (this.parts ?? Object.keys(answers?.parts ?? {})).filter((id) =>
+      Object.hasOwn(answers?.parts ?? {}, id)
+    );
+    return answers && ids.length ? JSON.stringify([answers.unit, ids.map((id) => [id, answers.parts[id]])]) : "";
+  }
+
   /**
-   * Save the answers; null deletes them. Return false if the browser does not allow it.
+   * Save the answers; null deletes them. Return false if the browser does not allow it, or if another tab has changed
+   * the answers: then these answers are set aside.
    *
    * @param {Front.Answers | null} answers
    */
   save(answers) {
-    try {
-      if (answers === null) localStorage.removeItem(this.name);
-      else localStorage.setItem(this.name, JSON.stringify(answers));
-      return true;
-    } catch {
+    const before = this.#saved;
+    const theirs = this.#own(before);
+    // Nothing is lost if the other tab has emptied all cells.
+    if (theirs && theirs !== this.#seen && theirs !== this.#own(answers)) {
+      if (answers) this.setAside(answers);
+      this.unsaved = UNDECIDED;
       return false;
     }
+    this.unsaved = UNSAVED;
+    // Other elements may show other parts of the exercise.
+    const others = Object.entries(before?.parts ?? {}).filter(([id]) => this.parts && !this.parts.includes(id));
+    const parts = Object.fromEntries([...others, ...Object.entries(answers?.parts ?? {})]);
+    const unit = answers?.unit ?? before?.unit ?? "radians";
+    if (!put(this.name, others.length || answers ? { unit, parts } : null)) return false;
+    this.#seen = this.#own(answers);
+    return true;
+  }
+
+  /** Let the next `save` replace the answers of another tab, and set these aside. */
+  keepMine() {
+    const theirs = this.load();
+    this.setAside(theirs);
+  }
+
+  /** Keep answers beside those that are saved; null forgets them. @param {Front.Answers | null} answers */
+  setAside(answers) {
+    put(`${this.name}:set-aside`, answers);
+  }
+
+  /** The answers that were set aside, because two tabs had changed them. */
+  get aside() {
+    return saved(`${this.name}:set-aside`);
   }
 
   /** The ids of the folded parts. @returns {unknown[]} */
@@ -57,6 +124,26 @@ export class Store {
     } catch {
       // Without storage, the parts are unfolded on the next visit.
     }
+  }
+}
+
+/** Return saved answers, or null. @param {string} name */
+function saved(name) {
+  try {
+    return checked(JSON.parse(localStorage.getItem(name) ?? "null"));
+  } catch {
+    return null;
+  }
+}
+
+/** Save or delete answers. Return false if the browser does not allow it. @param {string} name @param {Front.Answers | null} answers */
+function put(name, answers) {
+  try {
+    if (answers === null) localStorage.removeItem(name);
+    else localStorage.setItem(name, JSON.stringify(answers));
+    return true;
+  } catch {
+    return false;
   }
 }
 

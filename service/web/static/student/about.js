@@ -52,7 +52,7 @@ export function about(exercise, shown, level, robot) {
     { class: "about", part: "about", tabindex: 0, "aria-labelledby": "title" },
     header,
     // The button comes before the view that it opens, so that it stays visible and Tab leads into the view.
-    h("div", { class: "statement", part: "statement" }, robot?.button, robot?.figure, ...text),
+    h("div", { class: "statement", part: "statement" }, robot?.button, robot?.told, robot?.figure, ...text),
     terms.length ? h("section", { class: "symbols", part: "symbols" }, head, h("dl", {}, ...terms)) : null,
   );
 }

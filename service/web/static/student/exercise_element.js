@@ -20,6 +20,7 @@ import { Previewer } from "./previewer.js";
 import { ATTRIBUTES } from "./embedding/attributes.js";
 import { lock } from "./embedding/readonly.js";
 import { answersToDraw, RobotFigure, tableWords } from "./robot_figure.js";
+import { later } from "../shared/later.js";
 import { Service } from "../shared/service.js";
 import { answersIn, Store } from "../shared/storage.js";
 import { resultInWords } from "../shared/words/phrases.js";
@@ -40,7 +41,10 @@ export class DhExercise extends HTMLElement {
   #speaking = 0;
   #saving = 0;
   #loading = 0;
+  #isUnsaved = false;
   #onOnline = () => this.#online();
+  // Save the last texts when the student leaves or reloads the page.
+  #onLeaving = () => this.#isUnsaved && this.save();
 
   // The following fields are set whenever an exercise has been loaded.
   /** @type {Service} */
@@ -85,13 +89,17 @@ export class DhExercise extends HTMLElement {
     this.colours.start();
     this.#begin();
     addEventListener("online", this.#onOnline);
+    addEventListener("pagehide", this.#onLeaving);
   }
 
   disconnectedCallback() {
     this.colours.stop();
     removeEventListener("online", this.#onOnline);
+    removeEventListener("pagehide", this.#onLeaving);
+    this.#onLeaving();
     this.robot?.close();
     this.handIn?.close();
+    this.store?.close();
     this.#loading += 1;
   }
 
@@ -189,6 +197,7 @@ export class DhExercise extends HTMLElement {
   /** Save the changed answers after a pause. */
   edited() {
     this.robot?.changed();
+    this.#isUnsaved = true;
     clearTimeout(this.#saving);
     this.#saving = setTimeout(() => this.save(), SAVED_AFTER);
     this.#outdated();
@@ -197,12 +206,15 @@ export class DhExercise extends HTMLElement {
   #outdated() {
     this.bar.outdated();
     this.form.rail.update();
+    this.form.leaveSlip();
   }
 
   save() {
     clearTimeout(this.#saving);
     const empty = this.#parts.every((part) => part.isEmpty);
     const kept = this.store.save(empty ? null : this.texts);
+    this.#isUnsaved = !kept;
+    if (!kept && this.store.isChanged) this.#askWhich();
     this.saved.textContent = !kept ? this.store.unsaved : empty ? "" : worded("Saved in this browser");
     this.dispatchEvent(new CustomEvent("changed", { bubbles: true, composed: true }));
   }
@@ -259,8 +271,11 @@ export class DhExercise extends HTMLElement {
 
   /** @param {Api.Exercise} exercise @param {HandIn | null} handIn */
   #show(exercise, handIn) {
+    this.#onLeaving();
+    this.#isUnsaved = false;
     this.robot?.close();
     this.handIn?.close();
+    this.store?.close();
     this.handIn = handIn;
     this.exercise = exercise;
     this.robot = this.#robotFigure();
@@ -281,9 +296,9 @@ export class DhExercise extends HTMLElement {
     this.bar.total.after(this.form.rail.element);
     for (const { element } of this.#parts) element.part.add("part");
     const task = about(exercise, this.#parts.map(({ part }) => part), isOwn ? "h1" : "h2", this.robot);
-    new ResizeObserver(() => task.style.setProperty("--about-height", `${task.offsetHeight}px`)).observe(task);
+    this.#measure({ "--about-height": task, "--bar-height": this.bar.element });
     this.main.replaceChildren(
-      task,
+      h("div", { class: "task" }, task),
       h(
         "div",
         { class: "parts" },
@@ -302,13 +317,27 @@ export class DhExercise extends HTMLElement {
     this.received.hidden = true;
     this.state.replaceChildren();
     const shared = isOwn ? answersIn(location.hash) : null;
+    this.store.parts = this.#parts.map(({ part }) => part.id);
+    this.store.listen(() => this.#changedElsewhere());
     const own = this.store.load();
     if (own) this.#restore(own);
+    this.#offerSetAside();
     if (shared) this.#takeShared(shared, own);
     this.#outdated();
     this.practice.show();
     handIn?.begin();
     this.dispatchEvent(new CustomEvent("ready", { bubbles: true, composed: true }));
+  }
+
+  /** Tell the style sheet the heights of elements. @param {Record<string, HTMLElement>} elements by name */
+  #measure(elements) {
+    for (const [name, element] of Object.entries(elements)) {
+      const measured = () => {
+        this.main.style.setProperty(name, `${element.offsetHeight}px`);
+        this.form.keepSlipInView();
+      };
+      new ResizeObserver(measured).observe(element);
+    }
   }
 
   // The robot: its drawing and its 3D view.
@@ -324,8 +353,53 @@ export class DhExercise extends HTMLElement {
       ...tableWords(symbols, () => this.#parts),
       announce: (/** @type {string} */ text) => this.announce(text),
     };
-    const failed = () => this.announce(this.saved.textContent = worded("The 3D view could not be loaded"));
-    return new RobotFigure(address, title, host, (isOpen) => this.main.classList.toggle("with-view", isOpen), failed);
+    return new RobotFigure(address, title, host, (isOpen) => this.main.classList.toggle("with-view", isOpen));
+  }
+
+  // The same answers in several tabs.
+
+  /** Show the answers of another tab. If this tab has changes of its own, ask. */
+  #changedElsewhere() {
+    if (this.#isUnsaved) return this.save();
+    const before = this.texts;
+    this.#take(this.store.load());
+    const told = worded("You changed these answers in another tab. This tab now shows them, too.");
+    offer(this.received, told, { [worded("Restore the earlier answers")]: () => (this.texts = before) });
+    return this.announce(told);
+  }
+
+  /** Let the student choose between these answers and those that another tab has saved. */
+  #askWhich() {
+    const told = worded("These answers were changed in another tab.");
+    offer(this.received, told, {
+      [worded("Show those answers")]: () => this.#take(this.store.load()),
+      [worded("Keep these answers")]: () => {
+        this.store.keepMine();
+        this.save();
+      },
+    });
+    this.announce(told);
+  }
+
+  /** Offer the answers that were set aside because two tabs had changes, unless they are shown already. */
+  #offerSetAside() {
+    const { aside } = this.store;
+    if (!aside || JSON.stringify(aside.parts) === JSON.stringify(this.texts.parts)) return;
+    offer(this.received, worded("You changed these answers in two tabs. Those of one tab were set aside."), {
+      [worded("Show the other answers")]: () => {
+        this.store.setAside(this.texts);
+        this.texts = aside;
+      },
+      [worded("Delete the other answers")]: () => this.store.setAside(null),
+    });
+  }
+
+  /** Show saved answers as one step that the student can undo. @param {Front.Answers | null} saved */
+  #take(saved) {
+    this.history.note(this.#restore(saved ?? { unit: this.angleUnit, parts: {} }));
+    for (const part of this.#parts) part.clearReport();
+    this.saved.textContent = saved ? worded("Saved in this browser") : "";
+    this.#outdated();
   }
 
   /**
@@ -393,8 +467,18 @@ export class DhExercise extends HTMLElement {
     const titles = new Map(filled.map(({ part: { id, title } }) => [id, title]));
     const told = report.parts.filter(({ part }) => titles.has(part));
     this.form.rail.update();
-    import("./hints/hints.js").then(({ offerHints }) => offerHints(this, filled, report, attempt)).catch(() => {});
     const results = told.map((each) => resultInWords(titles.get(each.part) ?? "", each));
     this.announce([...results, this.form.leadToSlip(filled)].join(" "));
+    this.#offerHints(filled, report, attempt);
+  }
+
+  /** @param {Front.PartView[]} filled @param {Api.Report} report @param {string} [attempt] */
+  async #offerHints(filled, report, attempt) {
+    try {
+      const { offerHints } = await later(import.meta.resolve("./hints/hints.js"), () => import("./hints/hints.js"));
+      offerHints(this, filled, report, attempt);
+    } catch {
+      this.failed(new Error(worded("Hints could not be loaded. The next check tries again.")));
+    }
   }
 }

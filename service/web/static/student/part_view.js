@@ -346,11 +346,25 @@ export class PartView {
     return this.cells.filter(isAt);
   }
 
-  /** Return the first wrong cell, or, if `isMissing`, the first missing cell. @returns {Front.PartCell | null} */
+  /**
+   * Show the first wrong cell or mark, or, if `isMissing`, the first missing cell. Return it with its first message.
+   *
+   * @returns {Front.Slip | null}
+   */
   firstSlip(isMissing = false) {
     const verdicts = isMissing ? ["missing"] : ["incorrect", "partial", "unreadable"];
+    const first = /** @type {HTMLElement | null} */ (this.list.firstElementChild);
+    const mark = isMissing ? null : this.marks?.wrong;
+    if (mark) {
+      this.#fold(false);
+      return { field: mark, name: mark.textContent ?? "", message: first };
+    }
     const isSlip = (/** @type {Front.PartCell} */ cell) => verdicts.includes(cell.element.dataset.verdict ?? "");
-    return this.cells.find((cell) => isSlip(cell) && this.grids.isBegun(cell)) ?? null;
+    const cell = this.cells.find((each) => isSlip(each) && this.grids.isBegun(each));
+    if (!cell) return null;
+    this.reveal(cell);
+    const message = cell.messages[0] ?? cell.place.row.list.firstElementChild ?? first;
+    return { field: cell.input, name: cell.input.ariaLabel ?? "", message };
   }
 
   /** @param {Api.RowReport} row @param {Front.RowView} view */

@@ -1,7 +1,9 @@
 // The drawing of an exercise's robot, and the button that replaces it by the 3D view.
 
 import { h, visible } from "../shared/dom.js";
+import { loadRobotView, NOT_LOADED } from "../robot/view_loader.js";
 import { worded } from "../shared/words/words.js";
+import { pauseAfter } from "./handin/pending.js";
 
 const CLOSED = worded("Move it in 3D");
 const OPEN = worded("Back to the drawing");
@@ -12,26 +14,28 @@ export class RobotFigure {
   #turn = 0;
   /** The address of the drawing. */
   #drawn = "";
+  #failures = 0;
+  #timer = 0;
 
   /**
-   * The 3D view gets `host`. `shown` is called when the view opens or closes, `failed` if the view cannot be loaded.
+   * The 3D view gets `host`. `shown` is called when the view opens or closes.
    *
    * @param {() => string} address of the drawing
    * @param {string} title
    * @param {Front.ViewHost} host
    * @param {(isOpen: boolean) => void} shown
-   * @param {() => void} failed
    */
-  constructor(address, title, host, shown, failed) {
+  constructor(address, title, host, shown) {
     this.address = address;
     this.host = host;
     this.shown = shown;
-    this.failed = failed;
     this.button = h(
       "button",
       { type: "button", class: "quiet-button", "aria-expanded": "false", onclick: () => this.#toggle() },
       CLOSED,
     );
+    // Says below the button why the view is not there.
+    this.told = h("p", { class: "quiet", role: "status" });
     const drawing = this.drawing = h("img", {
       alt: worded("Drawing of the robot: {title}", { title: visible(title) }),
       class: "loading",
@@ -39,6 +43,8 @@ export class RobotFigure {
     this.recolour();
     // Reserves space, so that the text below does not jump when the drawing arrives.
     for (const name of ["load", "error"]) drawing.addEventListener(name, () => drawing.classList.remove("loading"));
+    drawing.addEventListener("load", () => (this.#failures = 0));
+    drawing.addEventListener("error", () => this.#drawLater());
     this.figure = h("figure", { part: "figure" }, drawing);
   }
 
@@ -51,12 +57,23 @@ export class RobotFigure {
     else this.drawing.src = address;
   }
 
+  /** Request the drawing again after a pause, because it did not arrive. */
+  #drawLater() {
+    clearTimeout(this.#timer);
+    this.#timer = setTimeout(() => {
+      if (!this.drawing.isConnected) return;
+      this.#drawn = "";
+      this.recolour();
+    }, 1000 * pauseAfter(++this.#failures));
+  }
+
   /** Show the drawing of the learner's variant, which needs the token. @param {string} address */
   async #drawOwn(address) {
     const picture = await this.host.service.picture(address).catch(() => "");
     this.drawing.addEventListener("load", () => URL.revokeObjectURL(picture), { once: true });
     if (picture && this.#drawn === address) this.drawing.src = picture;
     else this.drawing.classList.remove("loading");
+    if (!picture) this.#drawLater();
   }
 
   /** Update the 3D view after the answers have changed. */
@@ -74,10 +91,11 @@ export class RobotFigure {
     const turn = this.#turn;
     this.button.setAttribute("aria-busy", "true");
     try {
-      const { RobotView } = await import("../robot/robot_view.js");
+      const RobotView = await loadRobotView();
+      this.told.textContent = "";
       if (turn === this.#turn && !this.#view) this.#open(new RobotView(this.host));
     } catch {
-      this.failed();
+      if (turn === this.#turn) this.told.textContent = NOT_LOADED;
     }
     return this.button.removeAttribute("aria-busy");
   }

@@ -23,7 +23,9 @@ export function keptProgress() {
 /** @param {Kept} progress */
 export function keepProgress(progress) {
   try {
-    localStorage.setItem(NAME, JSON.stringify(progress));
+    // Another tab may have solved others.
+    const solved = [...new Set([...keptProgress().solved, ...progress.solved])];
+    localStorage.setItem(NAME, JSON.stringify({ ...progress, solved }));
   } catch {
     // The progress is lost when the page is closed.
   }

@@ -2,6 +2,7 @@
 
 import { h } from "../shared/dom.js";
 import { ARM } from "./tour_robot.js";
+import { loadRobotView, NOT_LOADED } from "../robot/view_loader.js";
 import { worded } from "../shared/words/words.js";
 
 const CELLS = ["a", "alpha", "d", "theta"];
@@ -43,8 +44,9 @@ export class SpaceView {
   async #toggle() {
     if (this.#view) return this.close();
     this.button.setAttribute("aria-busy", "true");
+    this.announce("");
     try {
-      const { RobotView } = await import("../robot/robot_view.js");
+      const RobotView = await loadRobotView();
       this.#view = new RobotView({
         service: this.service,
         body: () => this.#body(),
@@ -54,7 +56,7 @@ export class SpaceView {
       this.element.append(this.#view.element);
       this.#view.open();
     } catch {
-      this.announce(worded("The 3D view could not be loaded"));
+      this.announce(NOT_LOADED);
     }
     this.button.removeAttribute("aria-busy");
     return this.#write();

@@ -1,6 +1,7 @@
 // The editor of exercise files: it runs the checks of the command line while the author types.
 
 import { byId, h, message, visible } from "../shared/dom.js";
+import { later } from "../shared/later.js";
 import { html } from "../shared/markup.js";
 import { worded } from "../shared/words/words.js";
 import { importForm } from "./import_form.js";
@@ -129,7 +130,7 @@ async function tryOut() {
   try {
     const answer = await post("../tutor/drafts", JSON.stringify({ ...body(), draft }));
     ({ draft } = await answer.json());
-    await import("../student/embed.js");
+    await later(import.meta.resolve("../student/embed.js"), () => import("../student/embed.js"));
     const element = document.createElement("dh-exercise");
     element.setAttribute("exercise", draft);
     form.replaceChildren(element);

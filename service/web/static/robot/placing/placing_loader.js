@@ -1,5 +1,7 @@
 // Loads the script for clicks that place frames, if the exercise asks for frames and the browser draws in 3D.
 
+import { h } from "../../shared/dom.js";
+import { later } from "../../shared/later.js";
 import { worded } from "../../shared/words/words.js";
 
 export class PlacingLoader {
@@ -19,12 +21,13 @@ export class PlacingLoader {
     const [part, { scene }] = [this.host.placing?.(), this.stage];
     if (!part || !scene) return;
     try {
-      const { FrameClicks } = await import("./frame_clicks.js");
+      const { FrameClicks } = await later(import.meta.resolve("./frame_clicks.js"), () => import("./frame_clicks.js"));
       if (this.#closed) return;
       this.#clicks = new FrameClicks(this.host, part, scene, this.shown);
       this.stage.element.after(this.#clicks.hint);
     } catch {
-      this.host.announce(worded("Clicks on joint axes could not be loaded"));
+      const told = worded("Clicks on joint axes could not be loaded. Close the 3D view and open it again.");
+      this.stage.element.after(h("p", { class: "no-webgl", role: "status" }, told));
     }
   }
 

@@ -1,6 +1,7 @@
 // The button worded("Play a row"). It loads the other scripts of this folder at first use, and so does a focused cell.
 
 import { h } from "../../shared/dom.js";
+import { later } from "../../shared/later.js";
 import { worded } from "../../shared/words/words.js";
 
 export class RowLoader {
@@ -26,7 +27,8 @@ export class RowLoader {
       worded("Play a row"),
     );
     this.panel = h("div", { class: "row-player", hidden: true });
-    this.element = h("div", {}, this.button, this.panel);
+    this.told = h("p", { class: "no-webgl", role: "status" });
+    this.element = h("div", {}, this.button, this.told, this.panel);
   }
 
   /** True if the player is open. */
@@ -59,7 +61,7 @@ export class RowLoader {
   }
 
   async #made() {
-    const { RowPlayer } = await import("./row_player.js");
+    const { RowPlayer } = await later(import.meta.resolve("./row_player.js"), () => import("./row_player.js"));
     const player = new RowPlayer(this.view, this.panel);
     await player.open();
     if (this.#stop.signal.aborted) throw new Error(worded("The view is closed."));
@@ -73,9 +75,12 @@ export class RowLoader {
     this.button.setAttribute("aria-busy", "true");
     try {
       const isOpen = (await this.#load()).toggle();
+      this.told.textContent = "";
       this.button.setAttribute("aria-expanded", String(isOpen));
     } catch {
-      this.view.host.announce(worded("The player of rows could not be loaded"));
+      this.told.textContent = worded(
+        "The player of rows could not be loaded. Check your connection, then try again.",
+      );
     }
     this.button.removeAttribute("aria-busy");
   }

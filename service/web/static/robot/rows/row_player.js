@@ -7,6 +7,7 @@ import { axisGap, jointAfter } from "./axis_gap.js";
 import { Playback } from "./playback.js";
 import { frameAt, movesOf } from "./row_moves.js";
 import { amountText, axisText, captionText, moveText, placeText } from "./row_words.js";
+import { later } from "../../shared/later.js";
 import { worded } from "../../shared/words/words.js";
 import { typeset } from "../../typeset/names.js";
 
@@ -79,7 +80,8 @@ export class RowPlayer {
 
   /** Load the parts of the scene, unless the view is a drawing. */
   async open() {
-    if (!this.view.isFlat()) this.#Shape = (await import("./row_shape.js")).RowShape;
+    if (this.view.isFlat()) return;
+    this.#Shape = (await later(import.meta.resolve("./row_shape.js"), () => import("./row_shape.js"))).RowShape;
   }
 
   /** Open or close the panel, and return true if it is open. */

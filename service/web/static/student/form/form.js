@@ -11,6 +11,10 @@ export class Form {
   parts = [];
   /** @type {Rail} */
   rail;
+  /** @type {Front.Slip | null} */
+  #slip = null;
+  // Typeset formulas, hints and their style sheet may arrive after the report, and move the slip and its message.
+  #sizes = new ResizeObserver(() => this.keepSlipInView());
 
   /** @param {Front.FormHost} host the exercise @param {() => void} clear */
   constructor(host, clear) {
@@ -67,18 +71,48 @@ export class Form {
   }
 
   /**
-   * Focus the first wrong cell, or else the first missing one. Return the text for screen readers about this cell.
+   * Focus the first wrong cell, or else the first missing one, and bring the cell and its first message into view.
+   * Return the text for screen readers about this cell.
    *
    * @param {Front.PartView[]} parts
    */
   leadToSlip(parts) {
-    const [cell] = [false, true].flatMap((isMissing) => parts.flatMap((part) => part.firstSlip(isMissing) ?? []));
-    if (!cell) return "";
-    this.showCell(cell);
-    const [first] = cell.messages;
+    this.leaveSlip();
+    const slip = this.#slip = firstSlip(parts);
+    if (!slip) return "";
+    slip.field.focus({ preventScroll: true });
+    this.keepSlipInView();
+    for (const around of [slip.field.closest("table"), slip.field.closest(".part")]) {
+      if (around) this.#sizes.observe(around);
+    }
     return worded("First slip: {cell}. {message}", {
-      cell: cell.input.ariaLabel ?? "",
-      message: first?.querySelector("p")?.textContent ?? "",
+      cell: slip.name,
+      message: slip.message?.querySelector("p")?.textContent ?? "",
     });
   }
+
+  /** Keep the first slip in view no longer, because the student writes. */
+  leaveSlip() {
+    this.#slip = null;
+    this.#sizes.disconnect();
+  }
+
+  /** Bring the first slip and its message into view, unless the student has gone on to another cell. */
+  keepSlipInView() {
+    if (!this.#slip?.field.matches(":focus")) return;
+    const { field, message } = this.#slip;
+    // The cell first, so that its table is scrolled sideways; and last, in case that both do not fit.
+    for (const each of [field, message, field]) each?.scrollIntoView({ block: "nearest", inline: "nearest" });
+  }
+}
+
+/** Show and return the first wrong place, or else the first missing cell. @param {Front.PartView[]} parts */
+function firstSlip(parts) {
+  for (const isMissing of [false, true]) {
+    for (const part of parts) {
+      const slip = part.firstSlip(isMissing);
+      if (slip) return slip;
+    }
+  }
+  return null;
 }

@@ -14,9 +14,8 @@ import {
   STATES,
   whyClosed,
 } from "./own_state.js";
-import { offer } from "./notice.js";
 import { newKey, pauseAfter, PendingHandIn } from "./pending.js";
-import { DraftStore } from "./draft_store.js";
+import { Store } from "../../shared/storage.js";
 import { worded } from "../../shared/words/words.js";
 
 const TRYING = worded("Not confirmed yet, trying again. Your answers are saved in this browser.");
@@ -24,7 +23,6 @@ const TOKEN_NEEDED = worded("Please open this exercise from your course page.");
 // Milliseconds that a site has to set a token, and until the element asks the site for another token.
 const PATIENCE = 10_000;
 const ASKED_AGAIN = 60_000;
-const ELSEWHERE = worded("These answers were changed in another tab.");
 
 export class HandIn {
   #isSending = false;
@@ -34,8 +32,6 @@ export class HandIn {
   #wake = () => {};
   #onVisible = () => document.visibilityState === "visible" && this.refresh();
   #onOnline = () => this.#wake();
-  // Save the last texts when the student leaves or reloads the page.
-  #onLeaving = () => this.host.save();
 
   /**
    * `host` is the element, whose attribute `assignment` is `path`; `own` is the state from the service.
@@ -49,14 +45,13 @@ export class HandIn {
     this.path = path;
     this.own = own;
     const name = `${path}/${own.exercise.exercise}:${own.learner}`;
-    this.store = new DraftStore(host.service.base, name, () => this.#changedElsewhere());
+    this.store = new Store(host.service.base, name);
     this.pending = new PendingHandIn(this.store.name);
     // Other tabs get a message on each hand-in, because a hand-in uses up an attempt.
     this.channel = new BroadcastChannel(this.store.name);
     this.channel.onmessage = () => this.refresh();
     document.addEventListener("visibilitychange", this.#onVisible);
     addEventListener("online", this.#onOnline);
-    addEventListener("pagehide", this.#onLeaving);
     this.status = h("section", { class: "card hand-in-state", "aria-label": worded("Assignment") });
     this.told = h("p", { class: "hand-in-line", role: "status" });
     this.button = h(
@@ -101,11 +96,9 @@ export class HandIn {
   close() {
     this.#isClosed = true;
     this.#wake();
-    this.store.close();
     this.channel.close();
     document.removeEventListener("visibilitychange", this.#onVisible);
     removeEventListener("online", this.#onOnline);
-    removeEventListener("pagehide", this.#onLeaving);
   }
 
   get mayPractise() {
@@ -252,22 +245,6 @@ export class HandIn {
   /** @param {string} text */
   #tell(text) {
     this.told.textContent = visible(text);
-  }
-
-  /** Let the student choose between these answers and those that another tab has saved. */
-  #changedElsewhere() {
-    const take = () => {
-      this.host.texts = this.store.load() ?? { unit: this.host.angleUnit, parts: {} };
-    };
-    const keep = () => {
-      this.store.keepMine();
-      this.host.edited();
-    };
-    offer(this.host.received, ELSEWHERE, {
-      [worded("Show those answers")]: take,
-      [worded("Keep these answers")]: keep,
-    });
-    this.host.announce(ELSEWHERE);
   }
 }
 

@@ -4,6 +4,7 @@ import { h, visible } from "../../shared/dom.js";
 import { typesetMessage } from "../../typeset/names.js";
 import { tableWords } from "../robot_figure.js";
 import { withScrollSign } from "../form/scroll_sign.js";
+import { loadRobotView, NOT_LOADED } from "../../robot/view_loader.js";
 import { worded } from "../../shared/words/words.js";
 
 const COLUMNS = /** @type {const} */ (["a", "alpha", "d", "theta"]);
@@ -124,7 +125,7 @@ class ChoicesBox {
     this.#shown = button;
     const { service, exercise, angleUnit } = this.host;
     try {
-      const { RobotView } = await import("../../robot/robot_view.js");
+      const RobotView = await loadRobotView();
       if (this.#shown !== button || !this.element.isConnected) return;
       const table = { rows, convention: this.convention };
       this.#view = new RobotView({
@@ -137,7 +138,8 @@ class ChoicesBox {
       button.setAttribute("aria-expanded", "true");
       this.#view.open();
     } catch {
-      this.note.textContent = worded("The 3D view could not be loaded.");
+      this.#shown = null;
+      this.note.textContent = NOT_LOADED;
     }
   }
 

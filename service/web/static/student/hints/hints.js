@@ -29,7 +29,9 @@ const ALL = new WeakMap();
  */
 export function offerHints(host, parts, report, attempt = "") {
   if (!host.shadowRoot?.querySelector(`link[href="${STYLE}"]`)) {
-    host.shadowRoot?.append(h("link", { rel: "stylesheet", href: STYLE }));
+    /** @type {HTMLLinkElement} */
+    const link = h("link", { rel: "stylesheet", href: STYLE, onerror: () => link.remove() });
+    host.shadowRoot?.append(link);
   }
   const prices = pricesOf(host.handIn, attempt);
   const isFree = !host.handIn || (host.handIn.mayPractise && !host.handIn.own.exercise.hint_prices);

@@ -2,6 +2,7 @@
 
 import { h } from "../../shared/dom.js";
 import { answersToDraw, tableWords } from "../robot_figure.js";
+import { loadRobotView, NOT_LOADED } from "../../robot/view_loader.js";
 import { worded } from "../../shared/words/words.js";
 
 /**
@@ -29,7 +30,8 @@ export function playedTable(exercise, part, host) {
       view.element.remove();
       view = null;
     } else {
-      const { RobotView } = await import("../../robot/robot_view.js");
+      const RobotView = await loadRobotView();
+      say("");
       view = new RobotView({
         service: /** @type {Front.Service} */ (/** @type {unknown} */ (host.service)),
         body: () => ({ ...host.context(), ...answersToDraw([part]) }),
@@ -41,7 +43,7 @@ export function playedTable(exercise, part, host) {
     }
     button.setAttribute("aria-expanded", String(view !== null));
   };
-  button.onclick = () => toggle().catch(() => say(worded("The 3D view could not be loaded.")));
+  button.onclick = () => toggle().catch(() => say(NOT_LOADED));
   const place = h("div", { class: "played-table" }, button, told);
   return place;
 }

@@ -109,6 +109,13 @@ export class SlipMarks {
     this.#sign.replaceChildren(...signs);
   }
 
+  /** The first marked cell if the marks are wrong, or else null. */
+  get wrong() {
+    const { verdict } = this.element.dataset;
+    const isWrong = verdict === "incorrect" || verdict === "partial" || verdict === "unreadable";
+    return isWrong ? [...this.#buttons.values()].find(isPressed) ?? null : null;
+  }
+
   /** Prevent changes of the marks. */
   lock() {
     for (const button of this.element.querySelectorAll("button")) button.disabled = true;
