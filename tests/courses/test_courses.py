@@ -12,6 +12,7 @@ from typing import Any
 
 import httpx
 import pytest
+from pydantic import SecretStr
 from sqlalchemy import Connection
 
 from service.access.caller import Scope
@@ -471,7 +472,9 @@ def test_links_begin_with_the_public_address(
     tmp_path: Path, public_url: str | None, begin: str
 ) -> None:
     settings = Settings(
-        database=str(tmp_path / "a.db"), secret="s" * 40, public_url=public_url, port=0
+        database=SecretStr(str(tmp_path / "a.db")),
+        secret=SecretStr("s" * 40),
+        public_url=public_url,
     )
     engine = open_database(str(tmp_path / "a.db"))
     text, until = new_key_text(), NOW + timedelta(days=1)

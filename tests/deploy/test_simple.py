@@ -26,7 +26,7 @@ def test_the_two_values_are_those_that_are_filled_in() -> None:
     text = (SIMPLE / "compose.yaml").read_text(encoding="utf-8")
     # With `:?`, compose does not start without a value.
     assert values == set(re.findall(r"\$\{(\w+):\?", text)) == {"HOST_NAME", "SECRET"}
-    assert text.count("${") == 2
+    assert text.count("${") == 3
 
 
 def test_containers_have_no_rights_that_they_do_not_need() -> None:
