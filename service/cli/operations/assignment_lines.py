@@ -57,7 +57,9 @@ def assignment_lines(
         told = [*ends(with_own_dates(assignment, extension))]
         if extension.limit:
             told.append(say("at most {limit} attempts", limit=extension.limit))
-        yield joined(": ", [visible(extension.learner), joined("; ", told)])
+        # Without a due date, an extension of the closing date alone has no effect.
+        if told:
+            yield joined(": ", [visible(extension.learner), joined("; ", told)])
 
 
 def ends(dates: CourseAssignment | Extension | MissingLearner) -> Iterator[Sentence]:

@@ -9,7 +9,7 @@ import argparse
 import json
 import os
 import sys
-from collections import Counter
+from collections import defaultdict
 from collections.abc import Iterator, Mapping
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from multiprocessing import get_context
@@ -108,10 +108,10 @@ def faults(part: PartReport) -> Iterator[str]:
 def rows_with_other_losses(part: PartReport) -> Iterator[str]:
     """Yield a description of each row that is told to lose more than it lost."""
     # The rows of two links may have the same label.
-    lost = Counter[str]()
+    lost: defaultdict[str, float] = defaultdict(float)
     for each_row in part.rows:
         lost[each_row.label] += each_row.max_points - each_row.points
-    told = Counter[str]()
+    told: defaultdict[str, float] = defaultdict(float)
     for each in part.lost:
         if each.row is not None:
             told[each.row] += each.points
