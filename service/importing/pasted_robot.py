@@ -28,7 +28,7 @@ from service.grading.work_budget import WorkBudget
 from service.grids import GridError
 from service.importing.snapping import Snaps, decimals_of, is_multiple
 from service.importing.table_rows import (
-    Cell,
+    CellSum,
     FirstAxisError,
     FirstDirectionError,
     FixedRowError,
@@ -156,7 +156,7 @@ class PastedRobot:
     made: TableRobot
     table: TextTable
     typed: Sequence[Row[str]]
-    remarks: Sequence[Sentence]
+    remarks: Sequence[str]
 
 
 def pasted_robot(text: str, choices: TableChoices) -> PastedRobot:
@@ -173,6 +173,8 @@ def pasted_robot(text: str, choices: TableChoices) -> PastedRobot:
             )
         )
     reading = _Reading.of(text, choices)
+    _formulas(reading)
+    _own_variables(reading)
     convention = _convention(reading, choices)
     angles = _angle_unit(reading, choices)
     asked = (convention, _unit(reading), angles)
@@ -437,9 +439,6 @@ def _formulas(reading: _Reading) -> list[list[Expression]]:
             if entry.expression is None:
                 reason = say("nothing is written here")
                 raise _unusable(i, j, entry.findings[0].hint if entry.findings else reason)
-            if j in (ALPHA, THETA) and abs(_value(entry.expression, {})) > _LARGEST_ANGLE:
-                reason = say("the angle is more than two turns; is it in degrees?")
-                raise _unusable(i, j, reason)
             formulas[i].append(entry.expression)
     return formulas
 
@@ -461,7 +460,8 @@ def _own_variables(reading: _Reading) -> list[frozenset[str]]:
         skipped = any(name.startswith("theta") for name in symbols) or (
             f"d{i + 1}" in symbols and joint <= i
         )
-        turns = row[THETA].expression is not None and names & row[THETA].expression.symbols
+        theta = row[THETA].expression
+        turns = theta is not None and names & theta.symbols
         fixed = [k for k, each in enumerate(found) if not each]
         if skipped and not names:
             raise _without_variable(fixed[-1], joint) if fixed else _misnumbered(i, joint)
@@ -523,9 +523,11 @@ def _variable(
 
 def _cell(
     i: int, j: int, formula: Expression, own: frozenset[str], variables: frozenset[str]
-) -> Cell:
+) -> CellSum:
     """Return the sum of a number, letters and the joint variable ``own`` that the formula is."""
     number = _value(formula, {})
+    if j in (ALPHA, THETA) and abs(number) > _LARGEST_ANGLE:
+        raise _unusable(i, j, say("the angle is more than two turns; is it in degrees?"))
     factors = {name: _value(formula, {name: 1.0}) - number for name in sorted(formula.symbols)}
     at = {name: 0.3 + 0.17 * k for k, name in enumerate(factors)}
     expected = number + sum(factors[name] * at[name] for name in factors)
@@ -541,10 +543,10 @@ def _cell(
     if not is_place or abs(abs(motion) - round(abs(motion))) > 1e-9 or abs(motion) > 1.5:
         raise _unusable(i, j, say("write the joint variable once, in theta or d"))
     letters = {name: float(f"{factor:.12g}") for name, factor in factors.items() if factor}
-    return Cell(number, letters, round(motion))
+    return CellSum(number, letters, round(motion))
 
 
-def _made(rows: Sequence[Row[Cell]], convention: Convention) -> TableRobot:
+def _made(rows: Sequence[Row[CellSum]], convention: Convention) -> TableRobot:
     try:
         return robot_of_rows(rows, convention)
     except FixedRowError as error:
@@ -565,7 +567,7 @@ def _made(rows: Sequence[Row[Cell]], convention: Convention) -> TableRobot:
     raise UnusableTableError(reason)
 
 
-def _notes(reading: _Reading) -> Iterator[Sentence]:
+def _notes(reading: _Reading) -> Iterator[str]:
     """Yield the notes of the reader, as in grading."""
     notes = [finding.hint for finding in reading.table.findings]
     for j in (A, D):

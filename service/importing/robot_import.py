@@ -1,9 +1,9 @@
 """Make the text of an exercise file from a URDF file or a pasted DH table."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Final, Literal
+from typing import Any, Final, Literal, Self
 
 import numpy as np
 
@@ -65,6 +65,13 @@ class ImportOptions:
     unit: str = ""
     angles: Literal["", AngleUnit] = ""
 
+    def with_answers(self, answers: Mapping[str, str]) -> Self:
+        """Return the choices with answers to questions, by the names of the questions."""
+        values: dict[str, Any] = dict(answers)
+        if "convention" in values:
+            values["convention"] = Convention(values["convention"])
+        return replace(self, **values)
+
 
 @dataclass(frozen=True, slots=True)
 class ImportedRobot:
@@ -93,7 +100,7 @@ def imported_urdf(data: bytes, options: ImportOptions) -> ImportedRobot:
                 )
             [tip] = ends
         snaps = Snaps()
-        arm, exact = read_urdf(data, tip, options.base or None, snaps)
+        arm, exact = read_urdf(data, tip, options.base or None, snaps=snaps)
         frames = placed(*home_axes(arm), snaps)
     except (UnusableUrdfError, UnclearAxesError) as error:
         raise RefusedRobotError(error.args[0]) from error

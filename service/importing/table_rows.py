@@ -18,7 +18,7 @@ _MEAN_LENGTHS = {A: 0.5, D: 0.3}
 
 
 @dataclass(frozen=True, slots=True)
-class Cell:
+class CellSum:
     """The sum of a number, of letters with their factors, and of the joint variable.
 
     ``motion`` is the factor of the joint variable: 1, -1, or 0.
@@ -28,20 +28,20 @@ class Cell:
     letters: Mapping[str, float] = field(default_factory=dict)
     motion: int = 0
 
-    def __add__(self, other: "Cell") -> "Cell":
+    def __add__(self, other: "CellSum") -> "CellSum":
         names = [*self.letters, *(name for name in other.letters if name not in self.letters)]
         sums = {name: self.letters.get(name, 0) + other.letters.get(name, 0) for name in names}
         letters = {name: factor for name, factor in sums.items() if factor}
-        return Cell(self.number + other.number, letters, self.motion + other.motion)
+        return CellSum(self.number + other.number, letters, self.motion + other.motion)
 
-    def __neg__(self) -> "Cell":
+    def __neg__(self) -> "CellSum":
         letters = {name: -factor for name, factor in self.letters.items()}
-        return Cell(-self.number, letters, -self.motion)
+        return CellSum(-self.number, letters, -self.motion)
 
     def __bool__(self) -> bool:
         return bool(self.number or self.letters or self.motion)
 
-    def turned(self) -> "Cell":
+    def turned(self) -> "CellSum":
         """Return the cell of a constant angle plus half a turn, at most half a turn."""
         angle = self.number + math.pi
         return replace(self, number=angle - math.tau if angle > math.pi + 1e-9 else angle)
@@ -51,8 +51,8 @@ class Cell:
 class _Factor:
     # Z has d and θ of a row, X has a and α. ``row`` is the index of the row.
     is_z: bool
-    length: Cell
-    angle: Cell
+    length: CellSum
+    angle: CellSum
     row: int
 
     @property
@@ -96,7 +96,7 @@ class TableRobot:
     joined: tuple[int, ...]
 
 
-def robot_of_rows(rows: Sequence[Row[Cell]], convention: Convention) -> TableRobot:
+def robot_of_rows(rows: Sequence[Row[CellSum]], convention: Convention) -> TableRobot:
     """Return the robot of the rows of a table in this convention.
 
     Raises UnusableRowError.
@@ -121,7 +121,7 @@ def robot_of_rows(rows: Sequence[Row[Cell]], convention: Convention) -> TableRob
     return TableRobot(_home_robot(table, xs[0]), tuple(i + 1 for i in turned), joined)
 
 
-def typed_rows(rows: Sequence[Row[Cell]], variables: Sequence[str]) -> list[Row[str]]:
+def typed_rows(rows: Sequence[Row[CellSum]], variables: Sequence[str]) -> list[Row[str]]:
     """Return the texts of the cells; the joint variables of the moving rows are ``variables``."""
     names = iter(variables)
     typed = []
@@ -138,7 +138,7 @@ def typed_rows(rows: Sequence[Row[Cell]], variables: Sequence[str]) -> list[Row[
     return typed
 
 
-def _factors(rows: Sequence[Row[Cell]], convention: Convention) -> Iterator[_Factor]:
+def _factors(rows: Sequence[Row[CellSum]], convention: Convention) -> Iterator[_Factor]:
     for i, (a, alpha, d, theta) in enumerate(rows):
         z, x = _Factor(True, d, theta, i), _Factor(False, a, alpha, i)
         yield from (z, x) if convention is Convention.STANDARD else (x, z)
@@ -166,18 +166,18 @@ def _alternating(factors: Sequence[_Factor], end: int) -> tuple[list[_Factor], l
     for factor in factors:
         if factor.is_z:
             if len(xs) == len(zs):
-                xs.append(_Factor(False, Cell(), Cell(), factor.row))
+                xs.append(_Factor(False, CellSum(), CellSum(), factor.row))
             zs.append(factor)
         elif len(xs) > len(zs):
             xs[-1] = xs[-1].joined(factor)
         else:
             xs.append(factor)
     if len(xs) == len(zs):
-        xs.append(_Factor(False, Cell(), Cell(), end - 1))
+        xs.append(_Factor(False, CellSum(), CellSum(), end - 1))
     return xs, zs
 
 
-def _home_robot(rows: Sequence[Row[Cell]], start: _Factor) -> HomeRobot:
+def _home_robot(rows: Sequence[Row[CellSum]], start: _Factor) -> HomeRobot:
     table = np.array([[cell.number for cell in row] for row in rows])
     letters = {
         (i, j): cell.letters

@@ -179,7 +179,7 @@ def _ends(collected: _Collector) -> list[str]:
 
 
 def read_urdf(
-    data: bytes, tip: str, base: str | None = None, snaps: Snaps | None = None
+    data: bytes, tip: str, base: str | None = None, *, snaps: Snaps | None = None
 ) -> tuple[Arm, Arm]:
     """Return the arm from ``base`` to ``tip`` twice: with rounded numbers repaired, and unchanged.
 

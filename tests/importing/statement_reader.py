@@ -1,6 +1,7 @@
 """Build a robot from the words of its statement, without the tested code."""
 
 import re
+from collections.abc import Mapping
 
 import numpy as np
 
@@ -29,7 +30,7 @@ def way(words: str) -> np.ndarray:
     return np.array(WAYS[name]) * (-1 if prefix == "opposite to" else 1)
 
 
-def point(words: str, lengths: dict[str, float]) -> np.ndarray:
+def point(words: str, lengths: Mapping[str, float]) -> np.ndarray:
     """Return the point that the words describe."""
     coordinates = []
     for text in words.split(", "):
@@ -43,7 +44,7 @@ def point(words: str, lengths: dict[str, float]) -> np.ndarray:
     return np.array(coordinates)
 
 
-def pose(statement: str, lengths: dict[str, float], values: np.ndarray) -> list[np.ndarray]:
+def pose(statement: str, lengths: Mapping[str, float], values: np.ndarray) -> list[np.ndarray]:
     tool = TOOL.search(statement.replace("\n", " "))
     assert tool
     place, x, z = point(tool["point"], lengths), way(tool["x"]), way(tool["z"])

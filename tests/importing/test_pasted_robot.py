@@ -32,7 +32,7 @@ OPTIONS = ImportOptions(title="A robot", source="A table")
 
 
 def imported(text: str, **choices: str) -> ImportedRobot:
-    return imported_table(text, replace(OPTIONS, **choices))
+    return imported_table(text, OPTIONS.with_answers(choices))
 
 
 def rows(text: str, **choices: str) -> list[list[str]]:
@@ -211,7 +211,7 @@ def test_only_what_is_open_is_asked(text: str, names: list[str]) -> None:
 def test_an_answer_is_used() -> None:
     text = HEAD + "0 | 90 | 131.2 | q1\n"
     assert rows(text, unit="mm", angles="degrees") == [["0", "90deg", "0.1312", "theta1"]]
-    swapped = "0 90° h q1\nr 0 0 q2\n"
+    swapped = "0 90° h q1\n0 0 0 q2\n"
     with pytest.raises(RefusedRobotError, match="row 1, column a: this is an angle"):
         rows(swapped, order="alpha a d theta")
     assert rows("0 0.2 h q1\n90° 0 0 q2\n", order="α a d θ", unit="cm")[0][0] == "0.002"

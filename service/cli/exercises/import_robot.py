@@ -1,7 +1,6 @@
 """`dh-grader exercises import`: a robot from a URDF file or a pasted table -> an exercise file."""
 
 import sys
-from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -139,7 +138,7 @@ def _imported_table(file: Path, text: str, options: ImportOptions) -> ImportedRo
                 for question in found.questions
             ]
             give_up(joined("\n", asked))
-        options = replace(options, **{each.name: _answer(each) for each in found.questions})
+        options = options.with_answers({each.name: _answer(each) for each in found.questions})
         found = imported_table(text, options)
     return found
 

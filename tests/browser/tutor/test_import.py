@@ -1,5 +1,6 @@
 """A lecturer imports the URDF file of a UR5e in the editor."""
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from time import monotonic
@@ -64,3 +65,34 @@ def test_a_urdf_becomes_a_checked_exercise_in_the_browser(
     exercise = load_exercise(folder / "our-ur5e.toml")
     assert exercise.structure == "RRRRRR"
     assert not [remark for remark in examine(exercise) if remark.level is Level.FAILED]
+
+
+@pytest.mark.long
+def test_the_page_asks_for_what_a_table_leaves_open(
+    visit: Callable[..., Visit], axe: str, tmp_path: Path
+) -> None:
+    with served(tmp_path) as server:
+        page = visit(bypass_csp=True, viewport=NARROW).page
+        page.add_init_script(axe)
+        page.goto(f"{server.address}/tutor/editor")
+        page.get_by_text("New exercise from a URDF file or a DH table …").click()
+        page.locator("#kind").select_option("table")
+        page.get_by_label("or paste it").fill("131.2 90 0 q1\n100 0 0 q2\n")
+        make = page.get_by_role("button", name="Make the exercise")
+        make.click()
+        page.get_by_label("The columns have no headers. What is their order?").select_option(
+            "a alpha d theta"
+        )
+        make.click()
+        # An open question keeps the form from being sent.
+        unit = page.get_by_label("The table has no unit of length.")
+        expect(unit).to_have_value("")
+        make.click()
+        assert unit.evaluate("field => !field.validity.valid")
+        unit.select_option("mm")
+        page.get_by_label("The table has no unit of angles.").select_option("degrees")
+        assert "\n".join(violations(page, "")) == ""
+        assert wide(page) <= NARROW["width"]
+        make.click()
+        expect(page.locator("#imported")).to_contain_text("The numbers of column a are in mm.")
+        expect(page.locator("#text")).to_have_value(re.compile(r'"0\.1312",\s+"90deg"'))

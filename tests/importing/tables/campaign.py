@@ -4,7 +4,6 @@ import re
 import tomllib
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -40,13 +39,14 @@ def outcome(drawn: Drawn, typed: Typed) -> Outcome:
         title="A robot", source="A table", convention=Convention(drawn.convention)
     )
     asked: list[str] = []
+    made = ImportedRobot()
     try:
         for _ in range(3):
             made = imported_table(typed.text, options)
             if not made.questions:
                 break
             asked += [question.name for question in made.questions]
-            options = replace(options, **{name: typed.answers[name] for name in asked})
+            options = options.with_answers({name: typed.answers[name] for name in asked})
     except RefusedRobotError as error:
         return Outcome("refused", str(error), tuple(asked))
     if made.questions:

@@ -273,8 +273,8 @@ def _columns_by_headers(
             parameters=reduce(_either, missing),
         )
         raise GridError("missing_header", message, place_of(row))
-    columns = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
-    columns = _with_units_of_offsets(row, found, columns)
+    named = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
+    columns = _with_units_of_offsets(row, found, named)
     for (place, header), column in zip(columns, COLUMNS, strict=True):
         _check_unit(header, column, row[place or 0])
     labels = next((i for i, h in enumerate(found) if h and h.column == column_headers.LABEL), None)
@@ -330,7 +330,7 @@ def _check_unit(header: Header, column: str, cell: GridCell) -> None:
 
 
 def _with_units_of_offsets(
-    row: Sequence[GridCell], found: Sequence[Header | None], columns: tuple[ColumnOrder, ...]
+    row: Sequence[GridCell], found: Sequence[Header | None], columns: Sequence[ColumnOrder]
 ) -> tuple[ColumnOrder, ...]:
     """Return the columns with the unit of an offset, if the column of the variable has none."""
     changed = list(columns)
