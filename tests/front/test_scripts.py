@@ -9,7 +9,7 @@ from service.app import app
 from tests.front import deno
 from tests.front.api_types import api_types
 
-LINES = 400
+LINES = 1000
 FILES = 12
 # A script may import from its own room and from these.
 ROOMS = {

@@ -46,3 +46,13 @@ def test_an_address_of_the_service_is_not_taken_for_a_file(tmp_path: Path) -> No
     text = 'post("../tutor/check"); new URL("../", import.meta.url);\n'
     (tmp_path / "entry.js").write_text(text, encoding="utf-8")
     assert load_assets(tmp_path).by_plain_name["entry.js"].content == text.encode()
+
+
+def test_a_page_does_not_preload_what_a_script_loads_later(tmp_path: Path) -> None:
+    text = 'later(import.meta.resolve("./scene.js"), () => import("./scene.js"));\n'
+    (tmp_path / "entry.js").write_text(text, encoding="utf-8")
+    (tmp_path / "scene.js").write_text("", encoding="utf-8")
+    assets = load_assets(tmp_path)
+    assert assets.modules("entry.js") == [assets.name("entry.js")]
+    content = assets.by_plain_name["entry.js"].content.decode()
+    assert content.count(f'"./{assets.name("scene.js")}"') == 2

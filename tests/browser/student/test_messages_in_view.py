@@ -123,9 +123,7 @@ def spoiled(
     width = WIDTHS.get(part.kind, len(right))
     if not right:
         return
-    rows = [
-        row for row in range(len(right) // width) if str(row + 1) not in getattr(part, "given", {})
-    ]
+    rows = [row for row in range(len(right) // width) if row + 1 not in getattr(part, "given", ())]
     if part.kind in ("transform", "link_transforms"):
         # The form has filled in the last row.
         rows.pop()

@@ -78,3 +78,37 @@ test("a value that another program stored is ignored", () => {
   keep().set("dh-grader:https://a.example/:scara", "{");
   assert.equal(new Store("https://a.example/", "scara").load(), null);
 });
+
+test("a tab does not overwrite what another tab has saved, and sets its own answers aside", () => {
+  keep();
+  const [one, other] = ["a1", "a2"].map((text) => ({
+    unit: "radians",
+    parts: { table: { cells: [text], choice: "" } },
+  }));
+  const [first, second] = [new Store("https://a.example/", "scara"), new Store("https://a.example/", "scara")];
+  for (const store of [first, second]) store.load();
+  assert.equal(first.save(one), true);
+  assert.equal(second.isChanged, true);
+  assert.equal(second.save(other), false);
+  assert.deepEqual(first.load(), one);
+  assert.deepEqual(first.aside, other);
+  second.keepMine();
+  assert.equal(second.save(other), true);
+  assert.deepEqual(first.load(), other);
+  assert.deepEqual(first.aside, one);
+});
+
+test("elements with other parts of an exercise keep each other's answers", () => {
+  keep();
+  const [table, pose] = ["table", "pose"].map((id) => {
+    const store = new Store("https://a.example/", "scara");
+    store.parts = [id];
+    store.load();
+    assert.equal(store.save({ unit: "radians", parts: { [id]: { cells: [id], choice: "" } } }), true);
+    return store;
+  });
+  assert.equal(table.isChanged || pose.isChanged, false);
+  assert.deepEqual(Object.keys(table.load()?.parts ?? {}), ["table", "pose"]);
+  assert.equal(table.save(null), true);
+  assert.deepEqual(Object.keys(pose.load()?.parts ?? {}), ["pose"]);
+});
