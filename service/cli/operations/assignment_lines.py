@@ -53,11 +53,17 @@ def assignment_lines(
         same = [name for name in names if name in catalogue and catalogue[name].vary is None]
         if same:
             yield say("but not in {exercises}: no variants there", exercises=", ".join(same))
+    yield from _extension_lines(assignment)
+
+
+def _extension_lines(assignment: CourseAssignment) -> Iterator[Sentence]:
     for extension in assignment.extensions:
         told = [*ends(with_own_dates(assignment, extension))]
         if extension.limit:
             told.append(say("at most {limit} attempts", limit=extension.limit))
-        yield joined(": ", [visible(extension.learner), joined("; ", told)])
+        # Without a due date, an extension of the closing date alone has no effect.
+        if told:
+            yield joined(": ", [visible(extension.learner), joined("; ", told)])
 
 
 def ends(dates: CourseAssignment | Extension | MissingLearner) -> Iterator[Sentence]:

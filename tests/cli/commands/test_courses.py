@@ -131,6 +131,9 @@ def test_an_extension_is_told_with_the_dates_that_hold(course: str, tmp_path: Pa
     assert "u1: due 2026-12-20 23:59 UTC; closes 2026-12-20 23:59 UTC" in later.stdout
     more = run("assignments", "extend", course, "hw", "u2", "--limit", "3")
     assert "u2: due 2026-12-08 23:59 UTC; closes 2026-12-09 23:59 UTC; at most 3" in more.stdout
+    run("assignments", "extend", course, "hw", "u1", "--closes", "2026-12-20")
+    none = run("assignments", "change", course, "hw", "--due", "none", "--closes", "none")
+    assert "u1" not in none.stdout
 
 
 def test_the_learners_of_a_course_are_listed(course: str, tmp_path: Path) -> None:
