@@ -53,6 +53,10 @@ def assignment_lines(
         same = [name for name in names if name in catalogue and catalogue[name].vary is None]
         if same:
             yield say("but not in {exercises}: no variants there", exercises=", ".join(same))
+    yield from _extension_lines(assignment)
+
+
+def _extension_lines(assignment: CourseAssignment) -> Iterator[Sentence]:
     for extension in assignment.extensions:
         told = [*ends(with_own_dates(assignment, extension))]
         if extension.limit:
