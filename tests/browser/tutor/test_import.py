@@ -96,3 +96,5 @@ def test_the_page_asks_for_what_a_table_leaves_open(
         make.click()
         expect(page.locator("#imported")).to_contain_text("The numbers of column a are in mm.")
         expect(page.locator("#text")).to_have_value(re.compile(r'"0\.1312",\s+"90deg"'))
+        # The server must not end before the check of the new text.
+        expect(page.locator("#findings")).to_contain_text("1 right, 1 equivalent, 0 wrong")

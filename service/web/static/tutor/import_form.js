@@ -52,7 +52,12 @@ export function importForm({ id, named, written }) {
     };
     for (const { name, text, choices } of asked) {
       const options = choices.map((each) => h("option", { value: each }, shown[each] ?? each));
-      const field = h("select", { id: `question-${name}`, required: true }, h("option", { value: "" }, "…"), ...options);
+      const field = h(
+        "select",
+        { id: `question-${name}`, required: true },
+        h("option", { value: "" }, "…"),
+        ...options,
+      );
       answers.set(name, field);
       questions.append(h("label", { for: field.id }, visible(text)), field);
     }
