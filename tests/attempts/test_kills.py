@@ -80,7 +80,9 @@ class Databases:
     def like(self, url: str) -> str:
         name = f"killed{next(_number)}"
         if self.kind == "postgresql":
-            return new_database(self.server, name, database.unmigrated_database(url).url.database)
+            source = database.unmigrated_database(url).url.database
+            assert source is not None
+            return new_database(self.server, name, source)
         (self._folder / name).mkdir()
         copy = self._folder / name / "attempts.db"
         with closing(sqlite3.connect(url)) as connection:
@@ -209,9 +211,9 @@ def test_a_killed_restore_leaves_the_old_or_the_new_database(
         url = databases.like(first)
         whole = command(killable, url, "restore", second, "--replace")
         assert whole.code == 0
-        for moment in kills(times, whole, "restore"):
+        for step in kills(times, whole, "restore"):
             url = databases.like(first)
-            command(killable, url, "restore", second, "--replace", **moment)
+            command(killable, url, "restore", second, "--replace", **step)
             states[check_restored(killable, url, second, old, new)] += 1
     figure(f"{times} kills of restores on {databases.kind}: {dict(states)}")
 
@@ -419,7 +421,7 @@ def check_forgotten(url: str) -> int:
     left = found.pop("ada", 0)
     assert (left, given) in ((MANY, 2 * (MANY // 10)), (0, MANY // 10))
     assert found == {}
-    return left
+    return int(left)
 
 
 @pytest.mark.parametrize("times", SAMPLE_AND_CAMPAIGN)

@@ -74,7 +74,7 @@ class DatabaseFile:
         if self._identity is None:
             path = cursor.execute("PRAGMA database_list").fetchone()[2]
             self._path = Path(path) if path else None
-            self._identity = self._path and _identity(self._path)
+            self._identity = _identity(self._path) if self._path else None
         self._use_write_ahead_log(cursor)
         for setting in _SETTINGS:
             cursor.execute(f"PRAGMA {setting}")

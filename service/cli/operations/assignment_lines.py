@@ -23,15 +23,7 @@ def assignment_lines(
     if assignment.opens is not None:
         yield say("opens {time}", time=_time(assignment.opens))
     yield from ends(assignment)
-    late = say("no due date")
-    if assignment.due:
-        takes_late = assignment.closes or any(each.closes for each in assignment.extensions)
-        worth = f"{assignment.late_worth:.0%}"
-        late = (
-            say("late attempts earn {share}", share=worth)
-            if takes_late
-            else say("no late attempts")
-        )
+    late = _late(assignment)
     limit = say("attempts not limited")
     if assignment.limit is not None:
         limit = say("attempts at most {limit}", limit=assignment.limit)
@@ -54,6 +46,14 @@ def assignment_lines(
         if same:
             yield say("but not in {exercises}: no variants there", exercises=", ".join(same))
     yield from _extension_lines(assignment)
+
+
+def _late(assignment: CourseAssignment) -> Sentence:
+    if not assignment.due:
+        return say("no due date")
+    if assignment.closes or any(each.closes for each in assignment.extensions):
+        return say("late attempts earn {share}", share=f"{assignment.late_worth:.0%}")
+    return say("no late attempts")
 
 
 def _extension_lines(assignment: CourseAssignment) -> Iterator[Sentence]:

@@ -97,9 +97,11 @@ def long_reader(path: str, killable: Any) -> Iterator[None]:
     over, telling = Pipe(duplex=False)
     process = killable(target=_read_until, args=(path, over))
     process.start()
-    while (idle := sqlite3.connect(path)) and not is_read(idle):
+    idle = sqlite3.connect(path)
+    while not is_read(idle):
         idle.close()
         time.sleep(0.01)
+        idle = sqlite3.connect(path)
     idle.close()
     yield
     telling.send("over")

@@ -354,9 +354,9 @@ def test_rows_of_zeros_are_named_if_points_are_lost(table: PartSpec) -> None:
 
 def test_an_answer_has_earned_a_share_of_what_needs_knowledge(table: PartSpec) -> None:
     # Two units of 1.75 are lost: 4.5 of 8 are left, whatever the marking of the part.
-    for part in (table, table.model_copy(update={"marking": "whole"})):
-        assert has_earned(part, judged(TWO), 4.5 / 8)
-        assert not has_earned(part, judged(TWO), 4.6 / 8)
+    for spec in (table, table.model_copy(update={"marking": "whole"})):
+        assert has_earned(spec, judged(TWO), 4.5 / 8)
+        assert not has_earned(spec, judged(TWO), 4.6 / 8)
         assert has_earned(part, judged(RIGHT), 1)
     # A rotation with a position must have earned more than the share.
     equal = Content(KNOWN[:2], ((0,) * 4, (1,) * 4), equal=True)
