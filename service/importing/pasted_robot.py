@@ -270,8 +270,9 @@ class _Reading:
             # The reader knows the names of sliding joints that a robot does not have.
             for name in entry.expression.symbols - self.lengths.keys():
                 if _SLIDE_NAME.fullmatch(name):
-                    starred = rf"d\W*_?\W*{name[1:]}{_STAR.pattern}"
-                    yield name, re.search(starred, entry.expression.source) is not None
+                    typed = rf"(d_?(?:\{{\s*{name[1:]}\s*\}}|{name[1:]}))({_STAR.pattern})?"
+                    found = re.search(typed, entry.expression.source)
+                    yield (found[1], bool(found[2])) if found else (name, False)
 
 
 def _ascii(name: str) -> str | None:
