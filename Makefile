@@ -153,7 +153,7 @@ mutants: $(dev) ## change rights, marks and comparisons in small ways: does a te
 	$(python) -m tests.mutants $(PACKAGES) --sample "$(SAMPLE)" --seed "$(SEED)" $(if $(RESUME),--resume "$(RESUME)")
 
 durability: $(dev) ## kill the service while it records, and restores, backups, regrades, deletions and migrations, 20 times each
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_kills.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
+	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_kills.py tests/attempts/test_two_versions.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
 	$(python) -m tests.attempts.campaign --count "$(COUNT)"
