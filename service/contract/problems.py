@@ -80,6 +80,9 @@ PROBLEM_TYPES: Final[Mapping[str, ProblemType]] = {
     "origin-refused": ProblemType(403, "a page of this origin may not record attempts"),
     "metrics-off": ProblemType(403, "the service does not show you metrics"),
     "tokens-not-made": ProblemType(404, "the service needs no keys, so nobody can make a token"),
+    "batch-too-large": ProblemType(
+        422, "the batch has more submissions than the limit allows at once"
+    ),
     "too-often": ProblemType(429, "too many requests; try again after `Retry-After` seconds"),
     "unknown-exercise": ProblemType(404, "there is no exercise with this id"),
     "unknown-part": ProblemType(422, "the exercise has no part with this id"),

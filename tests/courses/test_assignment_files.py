@@ -72,8 +72,8 @@ def test_an_assignment_file_may_set_variants(
     ("options", "said"),
     [
         (
-            ["--exercise", "scara=10", "--due", "2026-10-15"],
-            'time, too, such as "2026-10-15 23:59"',
+            ["--exercise", "scara=10", "--due", "15.10.2026"],
+            "This must be a date, such as 2026-12-01",
         ),
         (["--exercise", "skara=10"], "There is no exercise skara. Did you mean scara?"),
     ],

@@ -130,7 +130,8 @@ def test_unusable_settings_are_named(monkeypatch: pytest.MonkeyPatch, tmp_path: 
         ("key_rate", "often"),
         ("address_rate", "1 per fortnight"),
     ):
-        assert f"DH_GRADER_{name.upper()}: " in refused(**{name: value})
+        given = refused(**{name: value})
+        assert f"--{name}: " in given or f"DH_GRADER_{name.upper()}: " in given
     told = refused(key_rate="1/day", rates_store="redis+nonsense://user:hidden@host")
     assert told.startswith("DH_GRADER_RATES_STORE: ")
     assert "hidden" not in told

@@ -257,8 +257,7 @@ def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
 
 
 def _as_lost_by_rows(marks: _Marks) -> list[_Loss]:
-    # No row is told to lose more than it really lost. The rest, which other rows lose, is told once
-    # for the whole answer.
+    # No row is told to lose more than it really lost. The rest, which other rows lose, is told once.
     whole = [loss for loss in marks.losses if loss.row is None]
     rows, rest = [], 0
     for loss in marks.losses:
@@ -267,9 +266,7 @@ def _as_lost_by_rows(marks: _Marks) -> list[_Loss]:
             rest += loss.steps - steps
             if steps:
                 rows.append(replace(loss, steps=steps))
-    if rest and whole and whole[0].code == WHOLE:
-        whole[0] = replace(whole[0], steps=whole[0].steps + rest)
-    elif rest:
+    if rest:
         rows.append(_Loss(SHARED, rest))
     # A slip of the whole answer comes first, an extra row last.
     return [*whole, *rows] if whole and whole[0].code == WHOLE else [*rows, *whole]

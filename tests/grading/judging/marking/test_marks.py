@@ -276,7 +276,8 @@ def test_a_lazy_answer_keeps_only_the_fifths_of_its_rows(table: PartSpec) -> Non
         (judged(TWO, whole_cost=0.25), [("whole", None, 2)]),
         (
             judged("---- ---- ++++ ++++", whole_cost=0.25, beside=judged(ONE)),
-            [("whole", None, 2), ("cells", "1", 1.75)],
+            # The first row loses 1.25 of its 2 points, and the other rows the rest.
+            [("whole", None, 2), ("cells", "1", 1.25), ("shared_by_rows", None, 0.5)],
         ),
         (judged("---- ++++ ++++ ++++", whole_cost=0.25), [("cells", "1", 2)]),
         (judged(TWO, whole_cost=0.001), [("whole", None, 0.25)]),
@@ -357,7 +358,7 @@ def test_an_answer_has_earned_a_share_of_what_needs_knowledge(table: PartSpec) -
     for spec in (table, table.model_copy(update={"marking": "whole"})):
         assert has_earned(spec, judged(TWO), 4.5 / 8)
         assert not has_earned(spec, judged(TWO), 4.6 / 8)
-        assert has_earned(part, judged(RIGHT), 1)
+        assert has_earned(spec, judged(RIGHT), 1)
     # A rotation with a position must have earned more than the share.
     equal = Content(KNOWN[:2], ((0,) * 4, (1,) * 4), equal=True)
     assert part_report(table, judged("++++ ----", equal)).points == 4
