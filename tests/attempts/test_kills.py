@@ -80,7 +80,9 @@ class Databases:
     def like(self, url: str) -> str:
         name = f"killed{next(_number)}"
         if self.kind == "postgresql":
-            return new_database(self.server, name, database.unmigrated_database(url).url.database)
+            template = database.unmigrated_database(url).url.database
+            assert template
+            return new_database(self.server, name, template)
         (self._folder / name).mkdir()
         copy = self._folder / name / "attempts.db"
         with closing(sqlite3.connect(url)) as connection:
@@ -209,9 +211,9 @@ def test_a_killed_restore_leaves_the_old_or_the_new_database(
         url = databases.like(first)
         whole = command(killable, url, "restore", second, "--replace")
         assert whole.code == 0
-        for moment in kills(times, whole, "restore"):
+        for kill in kills(times, whole, "restore"):
             url = databases.like(first)
-            command(killable, url, "restore", second, "--replace", **moment)
+            command(killable, url, "restore", second, "--replace", **kill)
             states[check_restored(killable, url, second, old, new)] += 1
     figure(f"{times} kills of restores on {databases.kind}: {dict(states)}")
 
@@ -412,7 +414,7 @@ def check_forgotten(url: str) -> int:
     engine = open_database(url)
     with engine.connect() as connection:
         rows = select(attempts.c.learner, func.count()).group_by(attempts.c.learner)
-        found = {row.learner: row[1] for row in connection.execute(rows)}
+        found: dict[str, int] = {row.learner: row[1] for row in connection.execute(rows)}
         given = connection.scalar(select(func.count()).select_from(overrides))
     engine.dispose()
     assert found.pop("grace") == MANY
