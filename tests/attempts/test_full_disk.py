@@ -83,7 +83,7 @@ def disk(request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[SmallDisk]:
     is_real = request.param and _mounted(tmp_path, "-t", "tmpfs", "-o", "size=4m", "tmpfs")
     yield SmallDisk(tmp_path, is_real=is_real)
     if is_real:
-        subprocess.run(["umount", str(tmp_path)], check=True)
+        subprocess.run(["umount", "--lazy", str(tmp_path)], check=True)
 
 
 def test_a_service_on_a_full_disk_is_not_ready_until_there_is_room(
@@ -142,7 +142,7 @@ def read_only(tmp_path: Path, catalogue: Mapping[str, Exercise]) -> Iterator[Pat
     folder.chmod(0o755)
     assert len(ids(str(file))) == 1
     if is_real:
-        subprocess.run(["umount", str(folder)], check=True)
+        subprocess.run(["umount", "--lazy", str(folder)], check=True)
     shutil.rmtree(folder)
 
 

@@ -80,9 +80,9 @@ class Databases:
     def like(self, url: str) -> str:
         name = f"killed{next(_number)}"
         if self.kind == "postgresql":
-            source = database.unmigrated_database(url).url.database
-            assert source is not None
-            return new_database(self.server, name, source)
+            template = database.unmigrated_database(url).url.database
+            assert template
+            return new_database(self.server, name, template)
         (self._folder / name).mkdir()
         copy = self._folder / name / "attempts.db"
         with closing(sqlite3.connect(url)) as connection:
@@ -211,9 +211,9 @@ def test_a_killed_restore_leaves_the_old_or_the_new_database(
         url = databases.like(first)
         whole = command(killable, url, "restore", second, "--replace")
         assert whole.code == 0
-        for step in kills(times, whole, "restore"):
+        for kill in kills(times, whole, "restore"):
             url = databases.like(first)
-            command(killable, url, "restore", second, "--replace", **step)
+            command(killable, url, "restore", second, "--replace", **kill)
             states[check_restored(killable, url, second, old, new)] += 1
     figure(f"{times} kills of restores on {databases.kind}: {dict(states)}")
 
@@ -414,14 +414,14 @@ def check_forgotten(url: str) -> int:
     engine = open_database(url)
     with engine.connect() as connection:
         rows = select(attempts.c.learner, func.count()).group_by(attempts.c.learner)
-        found = {row.learner: row[1] for row in connection.execute(rows)}
+        found: dict[str, int] = {row.learner: row[1] for row in connection.execute(rows)}
         given = connection.scalar(select(func.count()).select_from(overrides))
     engine.dispose()
     assert found.pop("grace") == MANY
     left = found.pop("ada", 0)
     assert (left, given) in ((MANY, 2 * (MANY // 10)), (0, MANY // 10))
     assert found == {}
-    return int(left)
+    return left
 
 
 @pytest.mark.parametrize("times", SAMPLE_AND_CAMPAIGN)

@@ -73,8 +73,8 @@ class DatabaseFile:
         cursor = connection.cursor()
         if self._identity is None:
             path = cursor.execute("PRAGMA database_list").fetchone()[2]
-            self._path = Path(path) if path else None
-            self._identity = _identity(self._path) if self._path else None
+            if path:
+                self._path, self._identity = Path(path), _identity(Path(path))
         self._use_write_ahead_log(cursor)
         for setting in _SETTINGS:
             cursor.execute(f"PRAGMA {setting}")

@@ -16,7 +16,9 @@ from service.catalogue.attempts import AttemptsSpec
 from service.translations import LANGUAGES, Sentence, SentenceValue, told
 
 GERMAN = {"Accept-Language": "de-AT, en;q=0.5"}
-VALUES: dict[str, SentenceValue] = {"reason": "?", "allowed": "?", "scope": "?", "seconds": 3, "number": 64, "most": 20}
+VALUES: dict[str, SentenceValue] = {
+    "reason": "?", "allowed": "?", "scope": "?", "seconds": 3, "number": 64, "most": 20,
+}  # fmt: skip
 
 
 def test_a_problem_is_in_the_language_of_the_reader(client: httpx.Client) -> None:

@@ -100,6 +100,7 @@ def test_no_command_but_migrate_changes_tables_of_another_version(
     monkeypatch.setenv("DH_GRADER_DATABASE", str(file))
     monkeypatch.setenv("DH_GRADER_SECRET", "0123456789abcdef" * 4)
     make_old(str(file), "0010")
+    file.chmod(0o600)
     with closing(sqlite3.connect(file)) as connection:
         connection.execute("PRAGMA journal_mode = WAL")
         connection.execute("UPDATE alembic_version SET version_num = ?", (revision,))

@@ -257,7 +257,7 @@ def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
 
 
 def _as_lost_by_rows(marks: _Marks) -> list[_Loss]:
-    # No row is told to lose more than it really lost. The rest, which other rows lose, is told once.
+    # No row is told to lose more than it really lost. Other rows lose the rest, which is told once.
     whole = [loss for loss in marks.losses if loss.row is None]
     rows, rest = [], 0
     for loss in marks.losses:
