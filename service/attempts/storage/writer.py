@@ -62,7 +62,7 @@ class AttemptWriter:
         self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
         # The start of the current transaction; None while the thread is idle.
         self._begun_at: float | None = None
-        # The time of the last failure of the database.
+        # The time of the last job that the database failed or refused, or that waited too long.
         self.failed_at = -inf
         self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
         self._thread.start()
@@ -71,9 +71,9 @@ class AttemptWriter:
         """Return the result of ``work`` after its commit. Raises StoreDownError."""
         begun_at = self._begun_at
         if begun_at is not None and monotonic() - begun_at > _TIMEOUT:
-            raise StoreDownError(_SILENT)
+            raise self._failed(_SILENT)
         if self._jobs.qsize() >= _MAX_WAITING:
-            raise StoreDownError("too many attempts wait to be written")
+            raise self._failed("too many attempts wait to be written")
         loop = asyncio.get_running_loop()
         job = _Job(work, loop, loop.create_future())
         self._jobs.put(job)
@@ -81,8 +81,12 @@ class AttemptWriter:
             async with asyncio.timeout(_TIMEOUT):
                 result: R = await job.done
         except TimeoutError as error:
-            raise StoreDownError(_SILENT) from error
+            raise self._failed(_SILENT) from error
         return result
+
+    def _failed(self, why: str) -> StoreDownError:
+        self.failed_at = monotonic()
+        return StoreDownError(why)
 
     def close(self) -> None:
         """Flush pending jobs and stop the writer thread."""

@@ -2,6 +2,7 @@
 
 import asyncio
 import logging
+import threading
 import time
 from collections.abc import Iterator, Mapping
 from pathlib import Path
@@ -13,6 +14,7 @@ from fastapi import FastAPI
 from sqlalchemy import event, text
 
 from service.api.application import application
+from service.attempts.errors import StoreDownError
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from tests.attempts.databases import new_file
@@ -64,6 +66,27 @@ def test_readiness_writes_at_most_once_in_a_second(
     assert 1 <= len(writes) <= 1 + (time.monotonic() - begun)
     with store.engine.connect() as connection:
         assert connection.scalar(text("SELECT count(*) FROM outcomes")) == 0
+
+
+def test_a_check_of_a_moment_ago_does_not_count_after_an_attempt_waited_in_vain(
+    store: AttemptStore, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Here a success counts for long; normally it counts for a second.
+    monkeypatch.setattr("service.attempts.store._CHECKED", 3600.0)
+    reacts = threading.Event()
+
+    async def wait_in_vain() -> None:
+        await store.check()
+        monkeypatch.setattr("service.attempts.storage.writer._TIMEOUT", 0.2)
+        with pytest.raises(StoreDownError):
+            await store.write(lambda _: reacts.wait())
+        with pytest.raises(StoreDownError):
+            await store.check()
+
+    try:
+        asyncio.run(wait_in_vain())
+    finally:
+        reacts.set()
 
 
 def test_a_database_without_its_tables_is_not_ready_and_the_log_says_why(
