@@ -1,8 +1,10 @@
 """Grade the submission of one student on this machine."""
 
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
+from itertools import groupby
 
 from service.catalogue import Exercise, in_language
 from service.formats.shared.graded import (
@@ -12,12 +14,13 @@ from service.formats.shared.graded import (
     answered,
 )
 from service.formats.told_report import report_in
-from service.grading import FeedbackLevel, Report, Submission, grade
-from service.submissions.answers import ExerciseAnswers, answers_in
+from service.grading import FeedbackLevel, PartReport, Report, Submission, Verdict, grade
+from service.submissions.answers import ExerciseAnswers, answers_in, of_file
 from service.submissions.assignment import AssignedExercise, Assignment
 from service.submissions.body import GradeRequest
 from service.submissions.handed_in import HandedIn
 from service.submissions.lookup import nearest
+from service.submissions.office_files import Excerpt, UnusableFileError
 from service.submissions.outline import SetExercise
 from service.translations import ENGLISH, Language, joined, say, told
 
@@ -114,7 +117,7 @@ def graded(
     handed: HandedIn, terms: GradingTerms, report_on: ReportOn = report_here
 ) -> GradedSubmission:
     """Grade a submission; return a report or an error message for each exercise."""
-    answers = answers_in(handed, terms.assignment)
+    answers = answers_in(handed, terms.assignment, partial(_readable_excerpt, terms, report_on))
     files = tuple(
         _graded_file(each, assigned, shown, terms, report_on)
         for each, assigned, shown in zip(
@@ -122,6 +125,46 @@ def graded(
         )
     )
     return GradedSubmission(handed.name, handed.learner, files, terms.pass_mark)
+
+
+def _readable_excerpt(
+    terms: GradingTerms,
+    report_on: ReportOn,
+    assigned: AssignedExercise,
+    part: str,
+    excerpts: Sequence[Excerpt],
+) -> str:
+    """Return the text of the excerpt that can be graded as this part.
+
+    Raises UnusableFileError if several excerpts of one level can be graded and earn different
+    points: no program knows which one the student means.
+    """
+    for _, group in groupby(sorted(excerpts, key=lambda it: it.level), key=lambda it: it.level):
+        graded = [
+            (report.points, excerpt.text)
+            for excerpt in group
+            if (report := _part_report(excerpt.text, part, assigned, terms, report_on))
+        ]
+        if len({points for points, _ in graded}) > 1:
+            raise UnusableFileError(
+                say(
+                    "has several answers to {part}, which differ; leave only one of them",
+                    part=part,
+                )
+            )
+        if graded:
+            return graded[0][1]
+    return excerpts[0].text
+
+
+def _part_report(
+    text: str, part: str, assigned: AssignedExercise, terms: GradingTerms, report_on: ReportOn
+) -> PartReport | None:
+    # The report on a text as the answer to a part, if the text can be read.
+    report, _ = report_on(GradeRequest(answers={part: text}), assigned, terms)
+    found = next((each for each in report.parts if each.part == part), None) if report else None
+    is_read = found is not None and found.verdict not in (Verdict.UNREADABLE, Verdict.MISSING)
+    return found if is_read else None
 
 
 def _graded_file(
@@ -134,7 +177,11 @@ def _graded_file(
     report, problem = None, ""
     if answers.body is not None:
         report, problem = report_on(answers.body, assigned, terms)
+        if problem:
+            problem = of_file(answers.names[0] if answers.names else assigned.exercise.id, problem)
     problems = joined("; ", list(filter(None, (answers.problem, problem))))
+    translation = terms.language.translation
+    unread = {name: told(each, translation) for name, each in answers.unread.items()}
     return GradedFile(
-        answers.file, shown, report, told(problems, terms.language.translation), answers.names
+        answers.file, shown, report, told(problems, translation), answers.names, unread
     )

@@ -6,9 +6,9 @@ the file names the exercise.
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from os.path import commonpath
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any, Final
@@ -19,15 +19,16 @@ from service.catalogue.files.refusals import alternatives
 from service.submissions.assignment import AssignedExercise, Assignment
 from service.submissions.body import GradeRequest
 from service.submissions.file_content import (
+    BY_HAND_ENDINGS,
     DATA_ENDINGS,
     PASTED_ENDINGS,
     FileContent,
-    UnusableFileError,
     ending,
     read_content,
 )
 from service.submissions.handed_in import HandedFile, HandedIn
 from service.submissions.lookup import nearest
+from service.submissions.office_files import Excerpt, UnusableFileError
 from service.submissions.platform_names import student_and_part, without_copy_number
 from service.translations import Sentence, joined, say
 
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
 # The most file names in a message.
 _MOST_LISTED: Final = 5
 _LONGEST_NAME: Final = 60
+# The most files that are tried as the answer to one part.
+_MOST_TRIED: Final = 5
 # The names of files that are not answers, unless the assignment asks for them.
 _NOT_ANSWERS: Final = frozenset({"readme", "license", "licence", "changelog"})
 
@@ -53,26 +56,77 @@ class ExerciseAnswers:
     problem: str = ""
     # The files as the student named them.
     names: tuple[str, ...] = ()
+    # A sentence about each file that was not read, by the name of the file.
+    unread: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, slots=True)
 class _Claim:
     file: HandedFile
     part: str | None = None
+    # True if the student may have meant this file or another one.
+    is_one_of: bool = False
 
 
-def answers_in(handed: HandedIn, assignment: Assignment) -> tuple[ExerciseAnswers, ...]:
-    """Return the answers to each exercise of the assignment, in order."""
+# A function that returns the text of the excerpt that answers a part. May raise UnusableFileError.
+Choose = Callable[[AssignedExercise, str, Sequence[Excerpt]], str]
+
+
+def first_excerpt(_: AssignedExercise, __: str, excerpts: Sequence[Excerpt]) -> str:
+    """Return the text of the first excerpt, without grading any."""
+    return excerpts[0].text
+
+
+def answers_in(
+    handed: HandedIn, assignment: Assignment, choose: Choose = first_excerpt
+) -> tuple[ExerciseAnswers, ...]:
+    """Return the answers to each exercise of the assignment, in order.
+
+    If a file has several excerpts, such as the sheets of a workbook, ``choose`` chooses one.
+    """
     try:
-        claims = _claims(handed.files(), assignment)
+        files = handed.files()
+        claims, left = _claims(files, assignment)
     except UnusableFileError as error:
-        is_file = len(handed.entries) == 1
-        file = str(handed.entries[0].path) if is_file else handed.name
-        return (ExerciseAnswers(file, None, error.args[0]),) * len(assignment.exercises)
-    return tuple(map(_combined, claims, assignment.exercises))
+        entries = handed.entries
+        file = str(entries[0].path) if len(entries) == 1 else handed.name
+        name = entries[0].own_name if len(entries) == 1 else ""
+        problem = of_file(name or PurePosixPath(handed.name).name, error.args[0])
+        return (ExerciseAnswers(file, None, problem),) * len(assignment.exercises)
+    found = [_combined(*each, choose) for each in zip(claims, assignment.exercises, strict=True)]
+    unread = [file for file in left if ending(file.name) in BY_HAND_ENDINGS]
+    # A photo beside all answers is no answer; where an answer is missing, it may be the answer.
+    return tuple(
+        _with_unread(answers, unread, assigned)
+        for answers, assigned in zip(found, assignment.exercises, strict=True)
+    )
 
 
-def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_Claim]]:
+def _with_unread(
+    answers: ExerciseAnswers, unread: Sequence[HandedFile], assigned: AssignedExercise
+) -> ExerciseAnswers:
+    answered = answers.body.answers if answers.body else {}
+    if not unread or all(part.id in answered for part in assigned.exercise.parts):
+        return answers
+    problems = dict(answers.unread)
+    for file in unread:
+        try:
+            read_content(b"", file.name)
+        except UnusableFileError as error:
+            problems[file.own_name] = of_file(file.own_name, error.args[0])
+    return replace(
+        answers,
+        file=answers.file or str(unread[0].path),
+        problem=joined("; ", list(problems.values())),
+        names=(*answers.names, *(file.own_name for file in unread)),
+        unread=problems,
+    )
+
+
+def _claims(
+    files: Sequence[HandedFile], assignment: Assignment
+) -> tuple[list[list[_Claim]], list[HandedFile]]:
+    # The files that answer each exercise, and the files that answer none.
     claims: list[list[_Claim]] = [[] for _ in assignment.exercises]
     unnamed = []
     for file in files:
@@ -91,10 +145,11 @@ def _claims(files: Sequence[HandedFile], assignment: Assignment) -> list[list[_C
             if found := student_and_part(file.name, assignment.part_names):
                 claims[0].append(_Claim(file, found[1]))
     if not any(claims):
-        only = _only_file(files, assignment)
-        i = 0 if len(assignment.exercises) == 1 else _stated(only, assignment)
-        claims[i].append(_Claim(only))
-    return claims
+        candidates = _candidates(files, assignment)
+        i = 0 if len(assignment.exercises) == 1 else _stated(candidates[0], assignment)
+        claims[i] += [_Claim(file, is_one_of=len(candidates) > 1) for file in candidates]
+    claimed = {id(claim.file) for each in claims for claim in each}
+    return claims, [file for file in files if id(file) not in claimed]
 
 
 def _places(name: str, assignment: Assignment) -> list[tuple[int, str]]:
@@ -176,21 +231,33 @@ def _stated(file: HandedFile, assignment: Assignment) -> int:
     return known.index(stated)
 
 
-def _only_file(files: Sequence[HandedFile], assignment: Assignment) -> HandedFile:
+def _candidates(files: Sequence[HandedFile], assignment: Assignment) -> Sequence[HandedFile]:
+    """Return the files that may hold the answers: one, or several pasted answers to one part.
+
+    Raises UnusableFileError.
+    """
     if not files:
         raise UnusableFileError(say("holds no file"))
     others = [file for file in files if _stem(file) not in _NOT_ANSWERS] or files
     data = [file for file in others if ending(file.name) in DATA_ENDINGS]
     pasted = [file for file in others if ending(file.name) in PASTED_ENDINGS]
-    candidates = data or pasted or others
-    if len(candidates) == 1:
-        return candidates[0]
+    found = data or pasted or others
+    asks_one_part = len(assignment.exercises) == 1 and assignment.exercises[0].only_part
+    if len(found) == 1 or (found == pasted and asks_one_part and len(found) <= _MOST_TRIED):
+        return found
+    if all(ending(file.name) in BY_HAND_ENDINGS for file in found):
+        raise UnusableFileError(
+            say(
+                "can only be graded by hand: a program cannot read {files}",
+                files=_listed([file.own_name for file in found]),
+            )
+        )
     raise UnusableFileError(
         say(
             "holds no file whose name says what it answers: there are {files}; name it as "
             "{example}",
             files=_listed([file.own_name for file in files]),
-            example=_example(assignment.exercises[0], ending(candidates[0].name)),
+            example=_example(assignment.exercises[0], ending(found[0].name)),
         )
     )
 
@@ -207,27 +274,36 @@ def _example(assigned: AssignedExercise, suffix: str) -> str:
     return f"{assigned.exercise.id}.json"
 
 
-def _combined(claims: Sequence[_Claim], assigned: AssignedExercise) -> ExerciseAnswers:
+def _combined(
+    claims: Sequence[_Claim], assigned: AssignedExercise, choose: Choose
+) -> ExerciseAnswers:
     if not claims:
         return ExerciseAnswers("", GradeRequest(answers={}))
     paths = [str(claim.file.path) for claim in claims]
     names = tuple(claim.file.own_name for claim in claims)
     shown = paths[0] if len(paths) == 1 else commonpath(paths)
     bodies: list[tuple[str, GradeRequest]] = []
-    problems = []
+    problems: dict[str, str] = {}
+    if all(claim.is_one_of for claim in claims):
+        try:
+            claims = _readable_claim(claims, assigned, choose)
+        except UnusableFileError as error:
+            problem = of_file(PurePosixPath(shown).name, error.args[0])
+            return ExerciseAnswers(shown, None, problem, names, dict.fromkeys(names, problem))
     for claim in claims:
         name = claim.file.own_name
         try:
-            bodies.append((name, _body(claim, assigned)))
+            bodies.append((name, _body(claim, assigned, choose)))
         except UnusableFileError as error:
-            problem = error.args[0]
-            several = len(claims) > 1
-            problems.append(of_file(name, problem) if several else problem)
+            problems[name] = of_file(name, error.args[0])
     try:
         body = _merged(bodies)
     except UnusableFileError as error:
-        return ExerciseAnswers(shown, None, error.args[0], names)
-    return ExerciseAnswers(shown, body, joined("; ", problems), names)
+        # The name of a folder: the student has two answers to a part.
+        problem = of_file(PurePosixPath(shown).name, error.args[0])
+        return ExerciseAnswers(shown, None, problem, names)
+    told = joined("; ", list(problems.values()))
+    return ExerciseAnswers(shown, body, told, names, problems)
 
 
 def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
@@ -259,9 +335,44 @@ def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
     return GradeRequest(answers=answers, **options) if bodies else None
 
 
-def _body(claim: _Claim, assigned: AssignedExercise) -> GradeRequest:
+def _readable_claim(
+    claims: Sequence[_Claim], assigned: AssignedExercise, choose: Choose
+) -> Sequence[_Claim]:
+    # Of several files that may be the answer to one part, the one that can be graded.
+    pieces: list[tuple[_Claim, Excerpt]] = []
+    for claim in claims:
+        with suppress(UnusableFileError):
+            content = read_content(claim.file.read(), claim.file.name)
+            if content.is_pasted:
+                own = content.excerpts or (Excerpt(str(content.value)),)
+                pieces += [(claim, excerpt) for excerpt in own]
+    part = assigned.only_part
+    if not pieces or part is None:
+        return claims[:1]
+    chosen = choose(assigned, part, [excerpt for _, excerpt in pieces])
+    return [next(claim for claim, excerpt in pieces if excerpt.text == chosen)]
+
+
+def _body(claim: _Claim, assigned: AssignedExercise, choose: Choose) -> GradeRequest:
     content = read_content(claim.file.read(), claim.file.name)
-    return read_body(content, assigned, claim.part)
+    part = claim.part or assigned.only_part
+    if len(content.excerpts) > 1:
+        if part is not None:
+            chosen = choose(assigned, part, content.excerpts)
+            content = FileContent(chosen, is_pasted=True)
+        elif named := _by_sheet(content.excerpts, assigned):
+            content = FileContent({"answers": named})
+    return read_body(content, assigned, part)
+
+
+def _by_sheet(excerpts: Sequence[Excerpt], assigned: AssignedExercise) -> dict[str, str]:
+    # The sheets of a workbook that have the names of parts.
+    answers: dict[str, str] = {}
+    for excerpt in excerpts:
+        part = _part_in(excerpt.name.strip(), assigned) if excerpt.name else None
+        if part is not None:
+            answers.setdefault(part, excerpt.text)
+    return answers
 
 
 def read_body(

@@ -1,8 +1,12 @@
-"""Read the content of a submitted file: JSON, TOML, or the pasted answer to one part."""
+"""Read the content of a submitted file: JSON, TOML, or the answer to one part.
 
-import codecs
+The answer to one part is a pasted text, or an excerpt of a file of an office program, a notebook or
+a web editor (`office_files.py`).
+"""
+
 import datetime
 import errno
+import re
 import tomllib
 from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
@@ -10,6 +14,14 @@ from typing import Any, Final
 
 from service.catalogue import read_regular
 from service.submissions.documents import pasted_from
+from service.submissions.office_files import (
+    OFFICE_ENDINGS,
+    Excerpt,
+    UnusableFileError,
+    decoded,
+    excerpts,
+    typed_text,
+)
 from service.submissions.strict_json import (
     MAX_BODY_SIZE,
     MAX_DEPTH,
@@ -26,20 +38,51 @@ MAX_TOML_DOTS: Final = 2_000
 
 STANDARD_INPUT: Final = "-"
 DATA_ENDINGS: Final = (".json", ".toml")
-# Moodle exports online texts as web pages.
-PASTED_ENDINGS: Final = (".csv", ".tsv", ".md", ".tex", ".m", ".py", ".txt", ".html", ".htm")
-
-
-class UnusableFileError(Exception):
-    """The file has no usable submission; the message says why."""
+_TEXT_ENDINGS: Final = (".csv", ".tsv", ".md", ".tex", ".m", ".py", ".txt")
+PASTED_ENDINGS: Final = (*_TEXT_ENDINGS, *OFFICE_ENDINGS)
+# Files that only a person can read.
+BY_HAND_ENDINGS: Final = frozenset(
+    [
+        ".pdf",
+        ".png",
+        ".jpg",
+        ".jpeg",
+        ".heic",
+        ".heif",
+        ".gif",
+        ".webp",
+        ".bmp",
+        ".tif",
+        ".tiff",
+        ".svg",
+        ".doc",
+        ".odt",
+        ".pages",
+        ".numbers",
+        ".ppt",
+        ".pptx",
+        ".mlx",
+        ".nb",
+        ".url",
+        ".webloc",
+        ".mp4",
+        ".mov",
+    ]
+)
+# Bytes of a file of an office program, which may hold pictures besides the answer.
+MAX_OFFICE_SIZE: Final = 10 * 1024 * 1024
 
 
 @dataclass(frozen=True, slots=True)
 class FileContent:
-    """The value of a JSON or TOML file, or the pasted text."""
+    """The value of a JSON or TOML file, or the pasted text.
+
+    If ``excerpts`` has several pieces, the answer may be any of them; ``value`` is the first.
+    """
 
     value: object
     is_pasted: bool = False
+    excerpts: tuple[Excerpt, ...] = ()
 
 
 def ending(name: str) -> str:
@@ -48,23 +91,31 @@ def ending(name: str) -> str:
 
 
 def read_file(path: Path) -> bytes:
-    """Read a file up to the size limit of a request. Raises UnusableFileError."""
+    """Read a file up to the size limit of its kind. Raises UnusableFileError."""
     try:
-        return read_regular(path, MAX_BODY_SIZE)
+        return read_regular(path, most_bytes(path.name))
     except OSError as error:
-        raise UnusableFileError(_unread(error)) from error
+        raise UnusableFileError(_unread(error, path.name)) from error
     except ValueError as error:  # a zero byte in the name
         raise UnusableFileError(say("cannot be read: {reason}", reason=str(error))) from error
 
 
-def _unread(error: OSError) -> str:
+def most_bytes(name: str) -> int:
+    """Return the size limit of a file with this name."""
+    return MAX_OFFICE_SIZE if ending(name) in _LARGE_ENDINGS else MAX_BODY_SIZE
+
+
+_LARGE_ENDINGS: Final = frozenset({*OFFICE_ENDINGS, ".zip"})
+
+
+def _too_large(name: str) -> str:
+    return say("is larger than {most} KiB", most=most_bytes(name) // 1024)
+
+
+def _unread(error: OSError, name: str) -> str:
     if error.errno == errno.EFBIG:
-        return _too_large()
+        return _too_large(name)
     return say("cannot be read: {reason}", reason=str(error.strerror))
-
-
-def _too_large() -> str:
-    return say("is larger than {most} KiB", most=MAX_BODY_SIZE // 1024)
 
 
 def read_content(data: bytes, name: str) -> FileContent:
@@ -73,53 +124,51 @@ def read_content(data: bytes, name: str) -> FileContent:
     The suffix of the name determines the format. For ``.txt`` and standard input, the content
     determines it.
     """
-    if len(data) > MAX_BODY_SIZE:
-        raise UnusableFileError(_too_large())
-    data = _in_utf_8(data)
-    match ending(name):
-        case ".toml":
-            return FileContent(_toml(data))
-        case ".txt":
-            return _recognised(data)
-        case known if known in PASTED_ENDINGS:
-            return FileContent(pasted_from(_text(data), known), is_pasted=True)
-        case _ if name == STANDARD_INPUT:
-            return _recognised(data)
-        case known if known in DATA_ENDINGS:
-            return FileContent(_json(data))
-        case other:
-            return FileContent(_json_without_suffix(data, other))
-
-
-def _in_utf_8(data: bytes) -> bytes:
-    if not data.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)):
-        return data
-    try:
-        return data.decode("utf-16").encode()
-    except UnicodeError as error:
+    kind = ending(name)
+    if len(data) > most_bytes(name):
+        raise UnusableFileError(_too_large(name))
+    if kind in BY_HAND_ENDINGS:
         raise UnusableFileError(
-            say("is not text: it begins like UTF-16, but is invalid")
-        ) from error
-
-
-def _text(data: bytes) -> str:
-    if b"\0" in data:
-        raise UnusableFileError(say("is not text: it has zero bytes"))
-    try:
-        text = data.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        raise UnusableFileError(
-            say("is not UTF-8 text: byte {byte} is wrong; save it as UTF-8", byte=error.start + 1)
-        ) from error
+            say("can only be graded by hand: a program cannot read {ending}", ending=kind)
+        )
+    if kind in OFFICE_ENDINGS:
+        return _excerpted(data, kind)
+    text = decoded(data)
     if not text.strip():
         raise UnusableFileError(say("is empty"))
-    return text
+    match kind:
+        case ".toml":
+            return FileContent(_toml(text))
+        case ".txt":
+            return _recognised(text)
+        case known if known in PASTED_ENDINGS:
+            return FileContent(pasted_from(text, known), is_pasted=True)
+        case _ if name == STANDARD_INPUT:
+            return _recognised(text)
+        case known if known in DATA_ENDINGS:
+            return _notebook_or(_json(text), data)
+        case other:
+            return _notebook_or(_json_without_suffix(text, other), data)
 
 
-def _json(data: bytes) -> object:
-    _text(data)
+def _excerpted(data: bytes, kind: str) -> FileContent:
+    found = excerpts(data, kind)
+    if (len(found) == 1 and found[0].text.startswith(("{", "["))) or '"answers"' in found[0].text:
+        # JSON that was typed into the editor of a platform.
+        return _recognised(found[0].text)
+    return FileContent(found[0].text, is_pasted=True, excerpts=found)
+
+
+def _notebook_or(value: object, data: bytes) -> FileContent:
+    # A notebook is JSON, but never the JSON of an answer.
+    if isinstance(value, dict) and "nbformat" in value:
+        return _excerpted(data, ".ipynb")
+    return FileContent(value)
+
+
+def _json(text: str) -> object:
     try:
-        return read_json(data)
+        return read_json(text.encode())
     except MalformedError as error:
         raise UnusableFileError(_json_reason(error)) from error
 
@@ -128,9 +177,9 @@ def _json_reason(error: MalformedError) -> str:
     return say("is not usable JSON: {reason}", reason=str(error))
 
 
-def _json_without_suffix(data: bytes, found: str) -> object:
+def _json_without_suffix(text: str, found: str) -> object:
     try:
-        return _json(data)
+        return _json(text)
     except UnusableFileError as error:
         known = " ".join((*DATA_ENDINGS, *PASTED_ENDINGS))
         problem = (
@@ -139,24 +188,27 @@ def _json_without_suffix(data: bytes, found: str) -> object:
             else say("is a file without an ending")
         )
         # Do not complain about JSON in a PDF or a photo.
-        if data.lstrip().startswith(b"{"):
+        if text.lstrip().startswith("{"):
             problem = say("{first}, and {second}", first=problem, second=error.args[0])
         raise UnusableFileError(
             say("{problem}; known are {endings}", problem=problem, endings=known)
         ) from error
 
 
-def _recognised(data: bytes) -> FileContent:
-    text = _text(data).strip()
+def _recognised(text: str) -> FileContent:
+    text = text.strip()
+    if _TAGS.search(text) and not _HAS_TABLE.search(text):
+        # Text from the editor of a platform, saved under the name of a text file.
+        text = typed_text(text)
     if text.startswith(("{", "[")):
         try:
-            return FileContent(read_json(data))
+            return FileContent(read_json(text.encode()))
         except MalformedError as error:
             if '"answers"' in text:
                 raise UnusableFileError(_json_reason(error)) from error
     if "answers" in text:
         try:
-            value = _toml(data)
+            value = _toml(text)
         except UnusableFileError:
             pass
         else:
@@ -165,8 +217,12 @@ def _recognised(data: bytes) -> FileContent:
     return FileContent(text, is_pasted=True)
 
 
-def _toml(data: bytes) -> object:
-    if len(data) > MAX_TOML_SIZE or data.count(b".") > MAX_TOML_DOTS:
+_TAGS: Final = re.compile("</(?:p|div|span)>|<br ?/?>", re.IGNORECASE)
+_HAS_TABLE: Final = re.compile("<t(?:able|r)[ >]", re.IGNORECASE)
+
+
+def _toml(text: str) -> object:
+    if len(text) > MAX_TOML_SIZE or text.count(".") > MAX_TOML_DOTS:
         raise UnusableFileError(
             say(
                 "is more TOML than {size} KiB or {dots:,} dots",
@@ -175,11 +231,7 @@ def _toml(data: bytes) -> object:
             )
         )
     try:
-        content: object = tomllib.loads(data.decode("utf-8-sig"))
-    except UnicodeDecodeError as error:
-        raise UnusableFileError(
-            say("is not UTF-8 text: byte {byte} is wrong", byte=error.start + 1)
-        ) from error
+        content: object = tomllib.loads(text)
     except RecursionError as error:
         raise _too_deep() from error
     except tomllib.TOMLDecodeError as error:

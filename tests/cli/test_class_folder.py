@@ -15,7 +15,8 @@ from typing import Any
 import pytest
 
 from service.cli.running.processes import WorkerLostError, mapped
-from service.submissions.file_content import UnusableFileError, read_file
+from service.submissions.file_content import read_file
+from service.submissions.office_files import UnusableFileError
 from tests.benchmarks.class_folder import BROKEN, EXERCISE, write_class
 from tests.guards import ANSWER
 

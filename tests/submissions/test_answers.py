@@ -84,9 +84,11 @@ def test_parts_that_are_not_set_are_left_out(tmp_path: Path) -> None:
     [
         ({"x.csv": CSV}, "after it, as in STUDENT.table.csv or STUDENT.pose.csv, or name the part"),
         ({"x.csv": CSV, "y.csv": CSV}, "there are x.csv, y.csv; name it as planar-rrr/table.csv"),
-        ({"x.pdf": b"%PDF"}, "a kind that is not read (.pdf); known are .json"),
-        ({"x.docx": b"PK\x03\x04\0"}, "a kind that is not read (.docx)"),
-        ({"table.csv": b"\xff\xfa"}, "not UTF-8"),
+        ({"x.pdf": b"%PDF"}, "x.pdf can only be graded by hand: a program cannot read .pdf"),
+        ({"a.png": b"\x89PNG", "b.jpg": b"\xff"}, "by hand: a program cannot read a.png, b.jpg"),
+        ({"x.xyz": b"a"}, "x.xyz is a file of a kind that is not read (.xyz); known are .json"),
+        ({"table.docx": b"PK\x03\x04\0"}, "table.docx is damaged, or not what its name says"),
+        ({"table.csv": b"\x81\xfa"}, "table.csv is not text"),
         ({"table.csv": b"a\0b"}, "zero bytes"),
         ({"table.csv": " \n"}, "is empty"),
         ({"table.csv": b"x" * 300_000}, "larger than 256 KiB"),
@@ -114,9 +116,9 @@ def test_files_that_cannot_be_assigned_are_explained(
 
 
 def test_a_broken_file_affects_only_itself(tmp_path: Path) -> None:
-    [found] = handed(tmp_path, {"table.csv": CSV, "pose.csv": b"\xff"}, RRR)
+    [found] = handed(tmp_path, {"table.csv": CSV, "pose.csv": b"\x81"}, RRR)
     assert answers_of(found) == {"table": CSV}
-    assert found.problem.startswith("pose.csv is not UTF-8")
+    assert found.problem.startswith("pose.csv is not text")
     assert found.file == str(tmp_path / "anna")
 
 
@@ -158,5 +160,5 @@ def test_a_file_must_name_one_of_several_exercises(
 def test_an_empty_folder_is_a_problem(tmp_path: Path) -> None:
     (tmp_path / "anna").mkdir()
     [found] = handed(tmp_path, {}, RRR)
-    assert (found.body, found.problem) == (None, "holds no file")
-    assert told(found.problem, LANGUAGES["de"].translation) == "enthält keine Datei"
+    assert (found.body, found.problem) == (None, "anna holds no file")
+    assert told(found.problem, LANGUAGES["de"].translation) == "anna enthält keine Datei"

@@ -2,12 +2,8 @@
 
 import pytest
 
-from service.submissions.file_content import (
-    MAX_TOML_DOTS,
-    MAX_TOML_SIZE,
-    UnusableFileError,
-    read_content,
-)
+from service.submissions.file_content import MAX_TOML_DOTS, MAX_TOML_SIZE, read_content
+from service.submissions.office_files import UnusableFileError
 
 
 @pytest.mark.parametrize(

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from service.submissions import handed_in
-from service.submissions.file_content import UnusableFileError
 from service.submissions.handed_in import HandedIn, all_handed_in
+from service.submissions.office_files import UnusableFileError
 
 needs_links = pytest.mark.skipif(os.name == "nt", reason="needs a right for symbolic links")
 

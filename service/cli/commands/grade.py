@@ -384,8 +384,10 @@ class _Run:
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:
-    told = (f"{file.file}: {spoken(file.problem)}" for file in submission.files if file.problem)
-    return [visible(line) for line in dict.fromkeys(told)]
+    told = ((file.file, spoken(file.problem)) for file in submission.files if file.problem)
+    # A problem begins with the name of its file; that of a file in a folder gets its path.
+    lines = (said if said.startswith(path) else f"{path}: {said}" for path, said in told)
+    return [visible(line) for line in dict.fromkeys(lines)]
 
 
 def _exit_code(submission: GradedSubmission) -> int:

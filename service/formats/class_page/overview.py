@@ -51,12 +51,12 @@ class Overview:
                 points=points(submission.points, submission.max_points),
                 score=submission.score,
                 passed=submission.passed,
-                is_graded=submission.is_graded,
+                is_graded=submission.is_complete,
                 is_gradable=submission.is_gradable,
                 problems=_problems(submission),
             )
         )
-        if submission.is_graded:
+        if submission.is_complete:
             self.statistics.scores.add(submission.score, passed=submission.passed)
         for file in submission.files:
             self.exercises.setdefault(file.exercise.id, file.exercise)

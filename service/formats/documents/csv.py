@@ -23,18 +23,18 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
-    is_graded = submission.is_graded
+    is_complete = submission.is_complete
     results = part_results(submission, setting.language)
-    # If nothing was graded, the points are empty.
+    # If something was not graded, the points are empty.
     return [
         submission.name,
-        submission.points if is_graded else None,
+        submission.points if is_complete else None,
         submission.max_points,
-        submission.score if is_graded else None,
+        submission.score if is_complete else None,
         "yes" if submission.passed else "no",
         "; ".join(submission.problems),
         " ".join(code for each in results if each.report for code in _codes(each.report)),
-        *(each.points if each.report else None for each in results),
+        *(None if each.is_unread else each.points for each in results),
     ]
 
 

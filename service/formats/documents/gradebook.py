@@ -8,6 +8,7 @@ from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.part_results import PartResult, part_results
 from service.formats.shared.plain_text import points
 from service.formats.shared.report_format import ReportFormat, Setting
+from service.translations import Language, say, told
 
 
 def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
@@ -17,18 +18,25 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
-    parts = (f"{each.name}: {_earned(each)}" for each in part_results(submission, setting.language))
+    parts = (
+        f"{each.name}: {_earned(each, setting.language)}"
+        for each in part_results(submission, setting.language)
+    )
     return [
         submission.learner,
-        # On import, an empty grade keeps the old grade.
-        submission.points if submission.is_graded else None,
+        # On import, an empty grade keeps the old grade. What was not read does not count as 0.
+        submission.points if submission.is_complete else None,
         submission.max_points,
         "; ".join(parts),
     ]
 
 
-def _earned(result: PartResult) -> str:
-    return points(result.points, result.max_points) if result.report else result.file.problem
+def _earned(result: PartResult, language: Language) -> str:
+    if result.report is None:
+        return result.file.problem
+    if result.is_unread:
+        return told(say("could not be read"), language.translation)
+    return points(result.points, result.max_points)
 
 
 FORMAT: Final = ReportFormat(_pieces)

@@ -27,7 +27,7 @@ def result_line(submission: GradedSubmission, translation: Translation | None) -
     words = [told(each, translation) for each in (_NOT_GRADED, _PASSED, _NOT_PASSED)]
     width = max(map(cell_len, words))
     not_graded, passed, not_passed = (set_cell_size(each, width) for each in words)
-    if not submission.is_graded:
+    if not submission.is_complete:
         # The name is at the end, because it may be long.
         return Text.assemble((not_graded, "magenta"), " " * 23, name)
     verdict = (passed, "green") if submission.passed else (not_passed, "red")
@@ -61,7 +61,7 @@ class ClassSummary:
         """Count a submission."""
         self._count += 1
         self._pass_mark = submission.pass_mark
-        if submission.is_graded:
+        if submission.is_complete:
             self._statistics.scores.add(submission.score, passed=submission.passed)
         for file in submission.files:
             if file.report:

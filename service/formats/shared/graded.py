@@ -1,6 +1,7 @@
 """Submissions with their reports: the input of every format."""
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from enum import StrEnum
 
 from service.catalogue import Exercise
@@ -78,6 +79,8 @@ class GradedFile:
     problem: str = ""
     # The names that the student gave the files, without the additions of a platform.
     names: tuple[str, ...] = ()
+    # A sentence about each file that was not read, by the student's own name of the file.
+    unread: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def weight(self) -> float:
@@ -88,6 +91,12 @@ class GradedFile:
     def points(self) -> float:
         """Return the points that the file earns in the submission."""
         return self.report.points * self.weight if self.report else 0.0
+
+    @property
+    def is_unread(self) -> bool:
+        """True if something in the file could not be read, so its points say too little."""
+        parts = self.report.parts if self.report else ()
+        return bool(self.problem) or any(part.verdict is Verdict.UNREADABLE for part in parts)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +129,14 @@ class GradedSubmission:
     def is_graded(self) -> bool:
         """True if any file has a report."""
         return any(file.report for file in self.files)
+
+    @property
+    def is_complete(self) -> bool:
+        """True if the points count: everything that the learner handed in was read.
+
+        An unread file or answer is not wrong: somebody has to grade it by hand.
+        """
+        return self.is_graded and not any(file.is_unread for file in self.files)
 
     @property
     def is_gradable(self) -> bool:

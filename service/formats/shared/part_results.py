@@ -61,6 +61,11 @@ class PartResult:
         return points_in_words(self.points, self.max_points, self.language.translation)
 
     @property
+    def is_unread(self) -> bool:
+        """True if nothing of the part could be read, so that its points say nothing."""
+        return self.verdict is Verdict.UNREADABLE
+
+    @property
     def verdict_name(self) -> str:
         """Return the name of the verdict."""
         return told(VERDICT_NAMES[self.verdict], self.language.translation)

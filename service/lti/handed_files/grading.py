@@ -14,7 +14,6 @@ from service.local_grading import GradingTerms, graded
 from service.lti.handed_files.notices import FileAtPlatform, HandedFiles
 from service.lti.handed_files.platform_files import NoFileError
 from service.lti.linking import parameters_assignment
-from service.submissions.answers import of_file
 from service.submissions.assignment import PASS_MARK, Assignment, assigned
 from service.submissions.file_content import PASTED_ENDINGS
 from service.submissions.handed_in import HandedFile, HandedIn
@@ -101,17 +100,21 @@ def report_on(file: FileAtPlatform, found: GradedFiles, now: datetime) -> dict[s
             "visibleToOwner": True,
         }
     earned, most = submission.points, submission.max_points
-    return report | {
-        "processingProgress": "Processed",
-        # Teachers look first at files in which nothing could be read.
-        "priority": 0 if submission.is_gradable else 3,
-        "result": points(earned, most).replace(" ", "")[:_LONGEST_RESULT],
-        "scoreGiven": earned,
-        "scoreMaximum": most,
-        "indicationColor": _PASSED if submission.passed else _NOT_PASSED,
-        "indicationAlt": points_in_words(earned, most, found.language.translation),
-        "visibleToOwner": True,
-    }
+    # What was not read does not count as 0, so such a submission has no score.
+    score = {"scoreGiven": earned, "scoreMaximum": most} if submission.is_complete else {}
+    return (
+        report
+        | score
+        | {
+            "processingProgress": "Processed",
+            # Teachers look first at submissions in which something could not be read.
+            "priority": 0 if submission.is_complete else 3,
+            "result": points(earned, most).replace(" ", "")[:_LONGEST_RESULT],
+            "indicationColor": _PASSED if submission.passed else _NOT_PASSED,
+            "indicationAlt": points_in_words(earned, most, found.language.translation),
+            "visibleToOwner": True,
+        }
+    )
 
 
 def _assignment(
@@ -141,12 +144,11 @@ def _names(files: HandedFiles) -> dict[str, str]:
 
 
 def _problem(found: GradedSubmission, name: str) -> str:
-    mine = [file for file in found.files if name in file.names]
-    if any(file.report for file in mine):
-        return ""
-    problems = [file.problem for file in mine or found.files if file.problem]
-    if problems:
-        return of_file(name, problems[0])
+    unread = next((file.unread[name] for file in found.files if name in file.unread), "")
+    if unread or any(file.report for file in found.files if name in file.names):
+        return unread
+    if problem := next((file.problem for file in found.files if file.problem), ""):
+        return problem
     return say(
         "{file} answers nothing; known are files with {endings}",
         file=name,

@@ -15,7 +15,7 @@ from service.lti.registrations import NOTICES_PATH, Registration
 from service.lti.scores.access_tokens import AccessTokens
 from service.lti.scores.grade_services import GradeServices, NotThereError
 from service.lti.scores.score_problems import RefusedError, ThisLaterError
-from service.submissions.strict_json import MAX_BODY_SIZE
+from service.submissions.file_content import most_bytes
 from service.translations import say
 
 _SCOPE: Final = "https://purl.imsglobal.org/spec/lti/scope/"
@@ -75,12 +75,12 @@ class PlatformFiles:
             url = file.url
             with asked as response:
                 if not response.is_redirect:
-                    return _checked(content(response, MAX_BODY_SIZE), file)
+                    return _checked(content(response, most_bytes(file.filename)), file)
                 url = urljoin(url, response.headers.get("location", ""))
             for _ in range(_MOST_REDIRECTS):
                 with answer(url, local=local, until=until) as response:
                     if response.is_success:
-                        return _checked(content(response, MAX_BODY_SIZE), file)
+                        return _checked(content(response, most_bytes(file.filename)), file)
                     if not response.is_redirect:
                         raise FetchError(say("the status is {status}", status=response.status_code))
                     url = urljoin(url, response.headers.get("location", ""))

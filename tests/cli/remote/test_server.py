@@ -148,12 +148,12 @@ def test_a_refused_or_failed_request_does_not_affect_other_submissions(
         first = run(*command, scripted_server.address)
         assert first.exit_code == 2
         assert first.stderr.splitlines()[:3] == [
-            f"a.json: is not graded: {scripted_server.address} answers with the status 500.",
-            "b.json: is refused by the server: Not so.",
+            f"a.json is not graded: {scripted_server.address} answers with the status 500.",
+            "b.json is refused by the server: Not so.",
             f"Not graded: 1 of 3, for {scripted_server.address} answers with the status 500.",
         ]
         second = run(*command, scripted_server.address)
-        assert second.stderr == "b.json: is refused by the server: Not so.\n"
+        assert second.stderr == "b.json is refused by the server: Not so.\n"
         assert len(scripted_server.requests) == 7
     assert [line.split(",")[:2] for line in second.stdout.splitlines()[1:]] == [
         ["a.json", "2"], ["b.json", ""], ["c.json", "2"],

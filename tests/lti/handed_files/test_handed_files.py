@@ -230,7 +230,7 @@ def test_hostile_names_and_contents_do_no_harm(course: Course) -> None:
     assert len(failed) >= 6
     # In the others, which have a known name, nothing can be read.
     others = [each for each in reports if each not in failed]
-    assert {(each["scoreGiven"], each["priority"]) for each in others} == {(0, 3)}
+    assert {("scoreGiven" in each, each["priority"]) for each in others} <= {(False, 3)}
     assert [each.state for each in course.rows()] == ["sent"]
 
 

@@ -1,0 +1,657 @@
+"""Read the texts and tables in files of office programs, notebooks and web editors.
+
+Each reader returns excerpts: pieces of the file that may be the answer, the likeliest first. This
+file knows nothing about robots or parts; `local_grading.py` chooses the excerpt that can be graded.
+All work is bounded: a file whose parts are too large or hostile is refused before it is parsed.
+"""
+
+import io
+import re
+import zipfile
+import zlib
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from datetime import date, datetime, time, timedelta
+from html import unescape
+from itertools import groupby, islice
+from typing import Any, Final
+from xml.etree import ElementTree as ET
+
+from service.submissions.documents import pasted_from
+from service.submissions.strict_json import MalformedError, read_json
+from service.translations import say
+
+# Bytes of the XML in one file after unpacking. A table of a student needs a hundredth of that.
+MAX_XML: Final = 2 * 1024 * 1024
+# The most cells of a sheet. A wide table with its title and scratch work has a few hundred.
+MAX_CELLS: Final = 20_000
+MAX_ROWS: Final = 500
+MAX_COLUMNS: Final = 64
+MAX_EXCERPTS: Final = 12
+MAX_ARCHIVE_ENTRIES: Final = 4_000
+
+
+class UnusableFileError(Exception):
+    """The file has no usable submission; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Excerpt:
+    """A piece of a file that may be the answer to a part.
+
+    ``name`` is the name of a sheet, or empty. An excerpt of a higher ``level`` counts only if none
+    of a lower level can be read.
+    """
+
+    text: str
+    name: str = ""
+    level: int = 0
+
+
+SheetRow = Sequence[str]
+
+
+# --- Archives: a file of an office program is a zip file of XML ---
+
+
+def open_archive(data: bytes) -> zipfile.ZipFile:
+    """Open a zip file. Raises UnusableFileError if it is damaged or has too many entries."""
+    try:
+        archive = zipfile.ZipFile(io.BytesIO(data))
+    except (zipfile.BadZipFile, ValueError, OSError, NotImplementedError) as error:
+        raise _damaged() from error
+    if len(archive.infolist()) > MAX_ARCHIVE_ENTRIES:
+        raise UnusableFileError(say("holds more than {most:,} files", most=MAX_ARCHIVE_ENTRIES))
+    return archive
+
+
+def unpacked(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
+    """Return an entry of a zip file with at most ``most`` bytes. Raises UnusableFileError."""
+    info = archive.getinfo(name)
+    if info.flag_bits & 1:
+        raise UnusableFileError(say("is encrypted; hand it in without a password"))
+    try:
+        # A false size in the directory makes zipfile stop there and report a wrong checksum.
+        with archive.open(info) as entry:
+            content = entry.read(most + 1)
+    except (
+        zipfile.BadZipFile,
+        zlib.error,
+        EOFError,
+        OSError,
+        NotImplementedError,
+        RuntimeError,
+    ) as error:
+        raise _damaged() from error
+    if len(content) > most:
+        raise _too_much()
+    return content
+
+
+def _damaged() -> UnusableFileError:
+    return UnusableFileError(say("is damaged, or not what its name says"))
+
+
+def _too_much() -> UnusableFileError:
+    return UnusableFileError(
+        say("holds more than a hand-in needs; leave only the table or matrix in it")
+    )
+
+
+class _Package:
+    """The XML parts of a file of an office program."""
+
+    def __init__(self, data: bytes) -> None:
+        self._archive = open_archive(data)
+        self._left = MAX_XML
+        self.names = tuple(self._archive.namelist())
+        for name in self.names:
+            lowered = name.lower()
+            if "vbaproject" in lowered or lowered.startswith(("basic/", "scripts/")):
+                raise UnusableFileError(say("has macros; save it without macros"))
+            if "externallinks/" in lowered:
+                raise UnusableFileError(
+                    say("takes values from other files; save it with its own values")
+                )
+
+    def read(self, name: str) -> bytes:
+        """Return the XML part with this name. Raises UnusableFileError."""
+        if name not in self.names:
+            raise _damaged()
+        content = unpacked(self._archive, name, self._left)
+        self._left -= len(content)
+        return content
+
+    def parsed(self, name: str) -> ET.Element:
+        """Return the root of the XML part with this name. Raises UnusableFileError."""
+        return parsed_xml(self.read(name))
+
+
+def parsed_xml(content: bytes) -> ET.Element:
+    """Return the root element of XML without a document type. Raises UnusableFileError."""
+    _require_plain(content)
+    try:
+        return ET.fromstring(content)
+    except (ET.ParseError, ValueError, LookupError) as error:
+        raise _damaged() from error
+
+
+def _require_plain(content: bytes) -> None:
+    # In UTF-16, the marks of a document type would not be found.
+    if b"<!DOCTYPE" in content or b"<!ENTITY" in content or b"\0" in content[:200]:
+        raise _damaged()
+
+
+def _local(element: ET.Element) -> str:
+    return element.tag.rpartition("}")[2]
+
+
+def _attribute(element: ET.Element, name: str) -> str:
+    for key, value in element.attrib.items():
+        if key.rpartition("}")[2] == name:
+            return value
+    return ""
+
+
+# --- Spreadsheets ---
+
+
+def _xlsx(data: bytes) -> Iterator[Excerpt]:
+    package = _Package(data)
+    kept = io.BytesIO()
+    # A copy of only the parts that are read, so that the library meets nothing else.
+    with zipfile.ZipFile(kept, "w") as copy:
+        for name in package.names:
+            if not name.endswith((".xml", ".rels")) or not _OF_SHEETS.match(name):
+                continue
+            content = package.read(name)
+            _require_plain(content)
+            if "worksheets/" in name:
+                if len(_CELL_OF_XLSX.findall(content)) > MAX_CELLS:
+                    raise _too_much()
+                if _WITHOUT_VALUE.search(content):
+                    raise UnusableFileError(
+                        say(
+                            "has formulas without their values; open it in a spreadsheet "
+                            "program, and save it there"
+                        )
+                    )
+            copy.writestr(name, content)
+    # Loaded only if there is such a file.
+    from openpyxl import load_workbook
+
+    book = load_workbook(kept, read_only=True, data_only=True, keep_links=False)
+    sheets = []
+    for sheet in book.worksheets:
+        if sheet.sheet_state == "visible":
+            sheet.reset_dimensions()
+            rows = sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS, values_only=True)
+            sheets.append((sheet.title, [[_shown(value) for value in row] for row in rows]))
+    yield from _of_sheets(sheets)
+
+
+_OF_SHEETS: Final = re.compile(
+    r"\[Content_Types\]\.xml$|_rels/\.rels$|docProps/(core|app)\.xml$|xl/(_rels/)?workbook\.xml(\.rels)?$|"
+    r"xl/(styles|sharedStrings)\.xml$|xl/worksheets/[^/]+\.xml$"
+)
+_CELL_OF_XLSX: Final = re.compile(rb"<(?:\w+:)?c[ >/]")
+_WITHOUT_VALUE: Final = re.compile(rb"</(?:\w+:)?f>\s*(?:<v\s*/>|<v></v>|</(?:\w+:)?c>)")
+
+
+def _xls(data: bytes) -> Iterator[Excerpt]:
+    import xlrd
+
+    book = xlrd.open_workbook(file_contents=data, ragged_rows=True, logfile=io.StringIO())
+    sheets = []
+    for sheet in book.sheets():
+        if sheet.visibility == 0:
+            if sum(map(sheet.row_len, range(sheet.nrows))) > MAX_CELLS:
+                raise _too_much()
+            rows = [
+                [_of_xls(cell, book.datemode) for cell in sheet.row(i)[:MAX_COLUMNS]]
+                for i in range(min(sheet.nrows, MAX_ROWS))
+            ]
+            sheets.append((sheet.name, rows))
+    yield from _of_sheets(sheets)
+
+
+def _of_xls(cell: Any, datemode: int) -> str:
+    import xlrd
+
+    if cell.ctype == xlrd.XL_CELL_DATE:
+        return _shown(xlrd.xldate_as_datetime(cell.value, datemode))
+    if cell.ctype == xlrd.XL_CELL_ERROR:
+        return str(xlrd.error_text_from_code.get(cell.value, "#N/A"))
+    return _shown(bool(cell.value) if cell.ctype == xlrd.XL_CELL_BOOLEAN else cell.value)
+
+
+def _ods(data: bytes) -> Iterator[Excerpt]:
+    root = _Package(data).parsed("content.xml")
+    tables = [each for each in root.iter() if _local(each) == "table"]
+    yield from _of_sheets(
+        [(_attribute(table, "name"), list(_rows_of_ods(table))) for table in tables]
+    )
+
+
+def _rows_of_ods(table: ET.Element) -> Iterator[list[str]]:
+    waiting = 0
+    found = 0
+    for row in table.iter():
+        if _local(row) != "table-row":
+            continue
+        times = _times(row, "number-rows-repeated")
+        cells: list[str] = []
+        blank = 0
+        for cell in row:
+            if _local(cell) not in ("table-cell", "covered-table-cell"):
+                continue
+            text, repeated = _cell_of_ods(cell), _times(cell, "number-columns-repeated")
+            if not text:
+                blank += repeated
+            elif len(cells) + blank + repeated > MAX_COLUMNS:
+                raise _too_much()
+            else:
+                cells += [""] * blank + [text] * repeated
+                blank = 0
+        if not cells:
+            waiting += times
+            continue
+        found += waiting + times
+        if found > MAX_ROWS:
+            raise _too_much()
+        # Empty rows before the next filled row; those at the end are the rest of the sheet.
+        yield from ([] for _ in range(waiting))
+        yield from (cells for _ in range(times))
+        waiting = 0
+
+
+def _times(element: ET.Element, name: str) -> int:
+    text = _attribute(element, name)
+    return int(text[:9]) if text.isascii() and text.isdigit() else 1
+
+
+def _cell_of_ods(cell: ET.Element) -> str:
+    kind = _attribute(cell, "value-type")
+    if kind in ("float", "percentage", "currency"):
+        try:
+            return _shown(float(_attribute(cell, "value")))
+        except ValueError:
+            return _attribute(cell, "value")
+    if kind == "date":
+        return _as_date(_attribute(cell, "date-value"))
+    if kind == "time":
+        return _as_date(_attribute(cell, "time-value"))
+    lines = ("".join(each.itertext()) for each in cell if _local(each) == "p")
+    return _one_line(" ".join(lines))
+
+
+def _shown(value: object) -> str:
+    """Return the text of a cell: numbers as one would type them, all else on one line."""
+    match value:
+        case None:
+            return ""
+        case bool():
+            return str(value).upper()
+        case float():
+            return str(int(value)) if value.is_integer() and abs(value) < 1e15 else repr(value)
+        case datetime() | date() | time() | timedelta():
+            return _as_date(str(value))
+    return _one_line(str(value))
+
+
+def _as_date(text: str) -> str:
+    # A spreadsheet made a date of a fraction such as 1/2. No reader takes this for a number.
+    return f"date({text.removesuffix(' 00:00:00')})"
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+def _of_sheets(sheets: Iterable[tuple[str, Sequence[SheetRow]]]) -> Iterator[Excerpt]:
+    filled = [(name, rows) for name, rows in sheets if any(any(row) for row in rows)]
+    for name, rows in filled:
+        yield Excerpt(_as_table(rows), name)
+    for name, rows in filled:
+        blocks = list(_blocks(rows))
+        if len(blocks) > 1:
+            yield from (Excerpt(_as_table(block), name, 1) for block in blocks if len(block) > 1)
+
+
+def _as_table(rows: Sequence[SheetRow]) -> str:
+    """Return rows as lines with tabs between the cells, without empty columns on the left."""
+    width = max((len(row) for row in rows), default=0)
+    full = [[*row, *[""] * (width - len(row))] for row in rows]
+    first = next((i for i in range(width) if any(row[i] for row in full)), 0)
+    last = max((i for i in range(width) if any(row[i] for row in full)), default=-1) + 1
+    return "\n".join("\t".join(row[first:last]) for row in full).strip("\n")
+
+
+def _blocks(rows: Sequence[SheetRow]) -> Iterator[list[SheetRow]]:
+    for is_filled, group in groupby(rows, key=any):
+        if is_filled:
+            yield list(group)
+
+
+# --- Documents ---
+
+
+def _docx(data: bytes) -> Iterator[Excerpt]:
+    root = _Package(data).parsed("word/document.xml")
+    lines: list[str] = []
+    tables: list[list[SheetRow]] = []
+    body = next((each for each in root if _local(each) == "body"), root)
+    _read_blocks(body, lines, tables)
+    texts = [_as_table(rows) for rows in tables]
+    yield from (Excerpt(text) for text in texts if text.strip())
+    between = "\n".join(line for line in lines if line.strip())
+    if between:
+        yield Excerpt(between, level=1 if texts else 0)
+
+
+def _read_blocks(parent: ET.Element, lines: list[str], tables: list[list[SheetRow]]) -> None:
+    for element in _blocks_of(parent):
+        if _local(element) == "p":
+            lines.extend(_text_of_word(element).split("\n"))
+            continue
+        rows: list[SheetRow] = [
+            [_one_line(" ".join(_paragraphs(cell))) for cell in _children(row, "tc")]
+            for row in _children(element, "tr")
+        ]
+        tables.append(rows)
+
+
+def _blocks_of(parent: ET.Element) -> Iterator[ET.Element]:
+    # Paragraphs and tables, also those in content controls and insertions.
+    for each in parent:
+        if _local(each) in ("p", "tbl"):
+            yield each
+        elif _local(each) in ("sdt", "sdtContent", "ins", "customXml", "smartTag"):
+            yield from _blocks_of(each)
+
+
+def _children(parent: ET.Element, name: str) -> Iterator[ET.Element]:
+    for each in parent:
+        if _local(each) == name:
+            yield each
+        elif _local(each) in ("sdt", "sdtContent", "ins", "customXml"):
+            yield from _children(each, name)
+
+
+def _paragraphs(cell: ET.Element) -> Iterator[str]:
+    for each in _blocks_of(cell):
+        if _local(each) == "p":
+            yield _text_of_word(each)
+        else:
+            # A table in a cell is not an entry that anybody could read.
+            yield "(table)"
+
+
+def _text_of_word(element: ET.Element) -> str:
+    """Return the text of a paragraph with its formulas written in one line."""
+    name = _local(element)
+    match name:
+        case "t":
+            return element.text or ""
+        case "tab":
+            return "\t"
+        case "br" | "cr":
+            return "\n"
+        case "noBreakHyphen":
+            return "-"
+        case "del" | "instrText" | "rPr" | "pPr" | "footnoteReference" | "AlternateContent":
+            return ""
+        case "drawing" | "pict" | "object":
+            return "(image)"
+        case "sym":
+            return _symbol(element)
+        case "oMath":
+            return _formula(element)
+    if name == "r" and _is_raised(element):
+        return f"^({_inside(element)})" if _inside(element).strip() not in ("o", "°") else "°"
+    return _inside(element)
+
+
+def _inside(element: ET.Element) -> str:
+    return "".join(map(_text_of_word, element))
+
+
+def _is_raised(run: ET.Element) -> bool:
+    for properties in run:
+        if _local(properties) == "rPr":
+            return any(
+                _local(each) == "vertAlign" and _attribute(each, "val") == "superscript"
+                for each in properties
+            )
+    return False
+
+
+# Letters of the font "Symbol", which Word puts in by its code.
+_SYMBOLS: Final = dict(zip("abgdqjfp-", "αβγδθϕφπ−", strict=True))
+
+
+def _symbol(element: ET.Element) -> str:
+    try:
+        letter = chr(int(_attribute(element, "char"), 16) & 0xFF)
+    except ValueError:
+        return "(symbol)"
+    return _SYMBOLS.get(letter, letter if letter.isdigit() else "(symbol)")
+
+
+def _formula(element: ET.Element) -> str:
+    """Return a formula of Word's equation editor as one would type it."""
+    name = _local(element)
+    if name == "t":
+        return element.text or ""
+    if name.endswith("Pr"):
+        return ""
+    written = _FORMULAS.get(name)
+    if written is None:
+        return "".join(map(_formula, element))
+    return written(_Parts(element))
+
+
+class _Parts:
+    """The written parts of a formula: numerator, index and so on, by Word's names."""
+
+    def __init__(self, element: ET.Element) -> None:
+        self.all: Final = [(_local(each), each) for each in element]
+
+    def __getitem__(self, name: str) -> str:
+        return "".join(_formula(each) for own, each in self.all if own == name)
+
+
+def _power(parts: _Parts) -> str:
+    return f"{parts['e']}°" if parts["sup"] in ("∘", "°") else f"{parts['e']}^({parts['sup']})"
+
+
+def _root(parts: _Parts) -> str:
+    degree = parts["deg"].strip()
+    return f"sqrt({parts['e']})" if degree in ("", "2") else f"({parts['e']})^(1/({degree}))"
+
+
+def _bracketed(parts: _Parts) -> str:
+    inner = ", ".join(_formula(each) for name, each in parts.all if name == "e")
+    # A matrix has brackets of its own.
+    return inner if inner.startswith("[[") else f"({inner})"
+
+
+def _matrix(parts: _Parts) -> str:
+    rows = (
+        ", ".join(_formula(each) for each in row if _local(each) == "e")
+        for name, row in parts.all
+        if name == "mr"
+    )
+    return f"[{', '.join(f'[{row}]' for row in rows)}]"
+
+
+def _index(text: str) -> str:
+    return text if text.isalnum() else f"{{{text}}}"
+
+
+# Other structures, such as sums, are no answers; their text must not be taken for one.
+_FORMULAS: Final[Mapping[str, Callable[[_Parts], str]]] = {
+    "f": lambda parts: f"({parts['num']})/({parts['den']})",
+    "sSup": _power,
+    "sSub": lambda parts: f"{parts['e']}_{_index(parts['sub'])}",
+    "sSubSup": lambda parts: f"{parts['e']}_{_index(parts['sub'])}^({parts['sup']})",
+    "rad": _root,
+    "func": lambda parts: f"{parts['fName']}({parts['e']})",
+    "d": _bracketed,
+    "m": _matrix,
+    **dict.fromkeys(
+        ("nary", "limLow", "limUpp", "eqArr", "groupChr", "acc", "sPre"), lambda _: "(formula)"
+    ),
+}
+
+
+def _rtf(data: bytes) -> Iterator[Excerpt]:
+    if not data.lstrip().startswith(b"{\\rtf"):
+        raise _damaged()
+    from striprtf.striprtf import rtf_to_text
+
+    text: str = rtf_to_text(data.decode("cp1252", "replace"), errors="replace")  # type: ignore[no-untyped-call]
+    table = pasted_from(text, ".md")
+    if table != text:
+        yield Excerpt(table)
+    yield Excerpt(text, level=1 if table != text else 0)
+
+
+def _notebook(data: bytes) -> Iterator[Excerpt]:
+    try:
+        content: Any = read_json(data)
+        cells = content["cells"] if "cells" in content else content["worksheets"][0]["cells"]
+        found = [(str(cell["cell_type"]), _source(cell), list(_outputs(cell))) for cell in cells]
+    except (MalformedError, KeyError, IndexError, TypeError) as error:
+        raise UnusableFileError(say("is not a usable notebook")) from error
+    code = [source for kind, source, _ in found if kind == "code" and source.strip()]
+    texts = [source for kind, source, _ in found if kind != "code" and source.strip()]
+    tables = [table for text in texts if (table := pasted_from(text, ".md")) != text]
+    yield from (Excerpt(table) for table in tables)
+    if code:
+        yield Excerpt("\n".join(code))
+        yield from (Excerpt(each, level=1) for each in code if len(code) > 1)
+    yield from (Excerpt(text, level=1) for text in texts)
+    # What the code printed last counts only if nothing else is there.
+    printed = [text for _, _, outputs in found for text in outputs if text.strip()]
+    if printed:
+        yield Excerpt(printed[-1], level=2)
+
+
+def _source(cell: Mapping[str, Any]) -> str:
+    return _joined_lines(cell.get("source", cell.get("input", "")))
+
+
+def _joined_lines(lines: object) -> str:
+    if isinstance(lines, str):
+        return lines
+    if not isinstance(lines, list):
+        raise TypeError
+    return "".join(lines)
+
+
+def _outputs(cell: Mapping[str, Any]) -> Iterator[str]:
+    for output in cell.get("outputs") or ():
+        text = output.get("text") or (output.get("data") or {}).get("text/plain") or ""
+        yield _joined_lines(text)
+
+
+# --- Web pages ---
+
+_TABLE: Final = re.compile(r"<(?:table|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
+# What begins a new line on a web page.
+_BREAK: Final = re.compile(
+    r"</?(?:p|div|br|li|ul|ol|pre|h[1-6]|blockquote|section|article|body|html|head)"
+    r"(?![A-Za-z0-9-])[^<>]{0,2000}>",
+    re.IGNORECASE,
+)
+_HIDDEN: Final = re.compile(
+    r"<(style|script|title)(?![A-Za-z0-9-])[^<>]{0,2000}>[^<]*</\1\s{0,9}>|<!--[^<>]{0,2000}-->|<![^<>]{0,2000}>",
+    re.IGNORECASE,
+)
+_TAG: Final = re.compile(r"</?[A-Za-z][^<>]{0,2000}>")
+_RAISED: Final = re.compile(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)
+
+
+def typed_text(page: str) -> str:
+    r"""Return the lines that a person typed into a platform's editor, which sends a web page.
+
+    >>> typed_text("<p>0,&nbsp;0, 0, q1<br>l1, 0, 0, q2</p>")
+    '0, 0, 0, q1\nl1, 0, 0, q2'
+    """
+    is_preformatted = re.search("<pre(?![A-Za-z0-9-])", page, re.IGNORECASE) is not None
+    page = _HIDDEN.sub("", page)
+    if not is_preformatted and _BREAK.search(page):
+        # Line ends in the source of a page mean no more than blanks.
+        page = " ".join(page.split("\n"))
+    page = _RAISED.sub(lambda found: "°" if found[1] in "oO0°" else f"^({found[1]})", page)
+    text = unescape(_TAG.sub("", _BREAK.sub("\n", page))).replace("\u00a0", " ")
+    lines = (line.strip(" ") for line in text.splitlines())
+    return "\n".join(line for line in lines if line.strip())
+
+
+def _web_page(data: bytes) -> Iterator[Excerpt]:
+    page = decoded(data)
+    has_table = _TABLE.search(page) is not None
+    if has_table:
+        yield Excerpt(page)
+    text = typed_text(page)
+    if text:
+        yield Excerpt(text, level=1 if has_table else 0)
+
+
+# --- The face of this file ---
+
+
+def decoded(data: bytes) -> str:
+    """Return the text of a file in UTF-8, UTF-16 or Windows-1252. Raises UnusableFileError."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        try:
+            return data.decode("utf-16")
+        except UnicodeError as error:
+            raise UnusableFileError(
+                say("is not text: it begins like UTF-16, but is invalid")
+            ) from error
+    if b"\0" in data:
+        raise UnusableFileError(say("is not text: it has zero bytes"))
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        pass
+    # Python leaves five bytes of Windows-1252 undefined; no text has them.
+    try:
+        text = data.decode("cp1252")
+    except UnicodeDecodeError as error:
+        raise UnusableFileError(say("is not text")) from error
+    if any(ord(sign) < 32 and sign not in "\t\n\r\f" for sign in text):
+        raise UnusableFileError(say("is not text"))
+    return text
+
+
+_READERS: Final[Mapping[str, Callable[[bytes], Iterator[Excerpt]]]] = {
+    ".xlsx": _xlsx,
+    ".xls": _xls,
+    ".ods": _ods,
+    ".docx": _docx,
+    ".rtf": _rtf,
+    ".ipynb": _notebook,
+    ".html": _web_page,
+    ".htm": _web_page,
+}
+OFFICE_ENDINGS: Final = tuple(_READERS)
+
+
+def excerpts(data: bytes, ending: str) -> tuple[Excerpt, ...]:
+    """Return the excerpts of a file with this ending, such as ``.xlsx``.
+
+    Raises UnusableFileError if the file is empty, damaged, too large, encrypted, or has macros.
+    """
+    try:
+        found = tuple(islice(_READERS[ending](data), MAX_EXCERPTS))
+    except UnusableFileError:
+        raise
+    except Exception as error:  # the libraries raise errors of many kinds for a damaged file
+        raise _damaged() from error
+    if not any(each.text.strip() for each in found):
+        raise UnusableFileError(say("is empty"))
+    return found

@@ -1,0 +1,311 @@
+"""Files of office programs, notebooks and web editors are read, and hostile ones are refused."""
+
+import io
+import json
+import time
+import zipfile
+from collections.abc import Callable
+from datetime import date
+from pathlib import Path
+from typing import Any, Final
+
+import openpyxl
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from service.local_grading import GradingTerms, graded
+from service.submissions.assignment import of_one
+from service.submissions.handed_in import all_handed_in
+from service.submissions.office_files import (
+    OFFICE_ENDINGS,
+    UnusableFileError,
+    excerpts,
+    typed_text,
+)
+from tests.shipped import shipped_exercises
+from tests.submissions import office_documents as made
+
+RRR: Final = shipped_exercises()["planar-rrr"]
+NUMBERS: Final = shipped_exercises()["planar-rr-numbers"]
+RIGHT: Final[list[list[str | float]]] = [
+    ["a", "alpha", "d", "theta"],
+    [0, 0, 0, "q1"],
+    ["l1", 0, 0, "q2"],
+    ["l2", 0, 0, "q3"],
+    ["l3", 0, 0, 0],
+]
+
+
+def grade_files(folder: Path, files: dict[str, bytes], *, exercise: Any = RRR) -> Any:
+    """Return the graded submission of the only student of a class."""
+    student = folder / "class" / "Ada Byron_1234_assignsubmission_file"
+    student.mkdir(parents=True)
+    for name, content in files.items():
+        (student / name).write_bytes(content)
+    [handed] = all_handed_in([folder / "class"])
+    return graded(handed, GradingTerms(of_one(exercise, "table"), 0.8))
+
+
+@pytest.mark.parametrize("kind", made.KINDS)
+def test_a_right_table_in_each_kind_of_file_gets_full_marks(tmp_path: Path, kind: str) -> None:
+    name, make = made.KINDS[kind]
+    found = grade_files(tmp_path, {name: make(RIGHT)})
+    assert found.problems == ()
+    assert (found.points, found.is_complete) == (8, True)
+
+
+@pytest.mark.parametrize("kind", made.KINDS)
+def test_a_wrong_cell_in_each_kind_of_file_is_found(tmp_path: Path, kind: str) -> None:
+    name, make = made.KINDS[kind]
+    wrong: made.Rows = [*RIGHT[:2], ["l1", 1.5, 0, "q2"], *RIGHT[3:]]
+    found = grade_files(tmp_path, {name: make(wrong)})
+    assert 0 < found.points < 8
+    [part] = found.files[0].report.parts
+    cells = [cell.verdict for row in part.rows for cell in row.cells]
+    assert cells.count("incorrect") == 1
+
+
+@pytest.mark.parametrize("name", ["scan.pdf", "photo.jpg", "IMG_1.HEIC", "notes.pages", "w.doc"])
+def test_a_file_for_a_person_is_listed_and_not_zero(tmp_path: Path, name: str) -> None:
+    found = grade_files(tmp_path, {name: b"%PDF-1.7 \x89"})
+    assert not found.is_complete
+    [problem] = found.problems
+    assert problem.startswith(f"{name} can only be graded by hand")
+
+
+def test_a_photo_beside_a_complete_answer_does_not_hold_it_up(tmp_path: Path) -> None:
+    found = grade_files(tmp_path, {"table.csv": made.csv(RIGHT), "photo.jpg": b"\xff\xd8"})
+    assert (found.points, found.is_complete, found.problems) == (8, True, ())
+
+
+def test_the_readable_one_of_two_files_is_graded(tmp_path: Path) -> None:
+    files = {"onlinetext.html": b"<p>See my file</p>", "hw3.xlsx": made.xlsx(RIGHT)}
+    found = grade_files(tmp_path, files)
+    assert (found.points, found.is_complete) == (8, True)
+
+
+def test_two_files_that_differ_are_left_to_a_person(tmp_path: Path) -> None:
+    wrong: made.Rows = [*RIGHT[:2], ["l1", 90, 0, "q2"], *RIGHT[3:]]
+    found = grade_files(tmp_path, {"a.xlsx": made.xlsx(RIGHT), "b.csv": made.csv(wrong)})
+    assert not found.is_complete
+    assert "has several answers to table, which differ" in found.problems[0]
+
+
+def test_scratch_sheets_and_blocks_beside_the_answer_do_not_matter(tmp_path: Path) -> None:
+    title = [["Name", "Ada Byron", "", ""], ["", "", "", ""]]
+    sheets = made.xlsx([["notes"], [1]], [*title, *RIGHT], names=["Notes", "DH"])
+    assert grade_files(tmp_path, {"hw.xlsx": sheets}).points == 8
+
+
+def test_sheets_with_the_names_of_parts_answer_these_parts(tmp_path: Path) -> None:
+    pose = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    (tmp_path / "hw.xlsx").write_bytes(made.xlsx(RIGHT, pose, names=["Table", "pose"]))
+    [handed] = all_handed_in([tmp_path / "hw.xlsx"])
+    found = graded(handed, GradingTerms(of_one(RRR), 0.8))
+    report = found.files[0].report
+    assert report is not None
+    table, other = report.parts
+    assert (table.points, other.verdict) == (8, "incorrect")
+
+
+def test_numbers_are_read_as_a_person_sees_them(tmp_path: Path) -> None:
+    book = made.xlsx([[1, 0.1, 1.5708, -0.25, 1e-05, 100000000]])
+    [excerpt] = excerpts(book, ".xlsx")
+    assert excerpt.text == "1\t0.1\t1.5708\t-0.25\t1e-05\t100000000"
+
+
+def test_a_fraction_that_became_a_date_is_not_a_number(tmp_path: Path) -> None:
+    book = openpyxl.load_workbook(io.BytesIO(made.xlsx(RIGHT)))
+    book.worksheets[0]["B3"] = date(2026, 2, 1)
+    written = io.BytesIO()
+    book.save(written)
+    found = grade_files(tmp_path, {"table.xlsx": written.getvalue()})
+    report = found.files[0].report
+    assert report is not None
+    cell = report.parts[0].rows[1].cells[1]
+    assert (cell.label, cell.verdict) == ("alpha", "unreadable")
+
+
+def test_a_formula_without_its_value_is_not_an_empty_cell() -> None:
+    rows: made.Rows = [*RIGHT[:2], ["l1", "=PI()/2", 0, "q2"], *RIGHT[3:]]
+    with pytest.raises(UnusableFileError, match="formulas without their values"):
+        excerpts(made.xlsx(rows), ".xlsx")
+
+
+WORD: Final = (
+    '<w:document xmlns:w="w" xmlns:m="m"><w:body><w:tbl><w:tr>{cells}</w:tr></w:tbl></w:body>'
+    "</w:document>"
+)
+
+
+def of_word(*cells: str) -> str:
+    """Return the text of a table in a document, with these formulas in its cells."""
+    inner = "".join(f"<w:tc><w:p>{cell}</w:p></w:tc>" for cell in cells)
+    content = made.zipped({"word/document.xml": WORD.format(cells=inner).encode()})
+    return excerpts(content, ".docx")[0].text
+
+
+def test_formulas_of_the_equation_editor_are_written_in_a_line() -> None:
+    def t(text: str) -> str:
+        return f"<m:r><m:t>{text}</m:t></m:r>"
+
+    sub = f"<m:sSub><m:e>{t('θ')}</m:e><m:sub>{t('1')}</m:sub></m:sSub>"
+    fraction = f"<m:f><m:num>{t('π')}</m:num><m:den>{t('2')}</m:den></m:f>"
+    root = f"<m:rad><m:radPr/><m:deg/><m:e>{t('2')}</m:e></m:rad>"
+    power = f"<m:sSup><m:e>{t('90')}</m:e><m:sup>{t('∘')}</m:sup></m:sSup>"
+    sine = f"<m:func><m:fName>{t('sin')}</m:fName><m:e>{sub}</m:e></m:func>"
+    row = f"<m:mr><m:e>{t('1')}</m:e><m:e>{t('0')}</m:e></m:mr>"
+    matrix = f"<m:d><m:dPr/><m:e><m:m>{row}{row}</m:m></m:e></m:d>"
+    cells = [f"<m:oMath>{each}</m:oMath>" for each in (sub, fraction, root, power, sine, matrix)]
+    assert of_word(*cells) == "θ_1\t(π)/(2)\tsqrt(2)\t90°\tsin(θ_1)\t[[1, 0], [1, 0]]"
+
+
+def test_what_has_no_text_in_a_document_is_not_an_empty_cell() -> None:
+    sum_of = "<m:oMath><m:nary><m:e><m:r><m:t>x</m:t></m:r></m:e></m:nary></m:oMath>"
+    image = "<w:r><w:drawing/></w:r>"
+    raised = '<w:r><w:rPr><w:vertAlign w:val="superscript"/></w:rPr><w:t>2</w:t></w:r>'
+    deleted = "<w:del><w:r><w:delText>5</w:delText></w:r></w:del><w:r><w:t>l1</w:t></w:r>"
+    plain = "<w:r><w:t>q</w:t></w:r>"
+    found = of_word(sum_of, image, plain + raised, deleted)
+    assert found == "(formula)\t(image)\tq^(2)\tl1"
+
+
+@pytest.mark.parametrize(
+    ("page", "lines"),
+    [
+        ("<p>0, 0</p><p>1, 2</p>", "0, 0\n1, 2"),
+        ("0,&nbsp;0<br>1,&#160;2<br />", "0, 0\n1, 2"),
+        ("<div>q<sub>1</sub></div><div>x<sup>2</sup> 90<sup>o</sup></div>", "q1\nx^(2) 90°"),
+        ("<p>a &lt; b &amp; &theta;1</p>", "a < b & θ1"),
+        ("<pre>A = [1 2\n3 4]</pre>", "A = [1 2\n3 4]"),
+        ("<style>p {}</style><!-- x --><ul><li>1</li><li>2</li></ul>", "1\n2"),
+        ("l1 < 3 and q1 > 2", "l1 < 3 and q1 > 2"),
+    ],
+)
+def test_typed_lines_are_the_lines_of_the_editor(page: str, lines: str) -> None:
+    assert typed_text(page) == lines
+
+
+def test_json_that_was_typed_into_an_editor_is_the_json_of_an_answer(tmp_path: Path) -> None:
+    answers = json.dumps({"answers": {"table": RIGHT[1:]}})
+    page = f"<p>{answers.replace(chr(34), '&quot;')}</p>".encode()
+    assert grade_files(tmp_path, {"onlinetext.html": page}).points == 8
+
+
+def test_a_notebook_is_not_the_json_of_an_answer(tmp_path: Path) -> None:
+    content = made.notebook(("code", made.python_list(RIGHT)))
+    assert grade_files(tmp_path, {"table.json": content}).points == 8
+
+
+def test_a_class_in_a_zip_file_is_graded_like_its_folder(tmp_path: Path) -> None:
+    names = {
+        "Ada Byron_1234_assignsubmission_file/hw.xlsx": made.xlsx(RIGHT),
+        "Ben Okri_1235_assignsubmission_file/deep/table.zip": made.zipped(
+            {"table.csv": made.csv(RIGHT)}
+        ),
+        "Cy Young_1236_assignsubmission_file/scan.pdf": b"%PDF",
+        "__MACOSX/Cy/._scan.pdf": b"x",
+    }
+    (tmp_path / "all.zip").write_bytes(made.zipped(names))
+    terms = GradingTerms(of_one(RRR, "table"), 0.8)
+    found = [graded(each, terms) for each in all_handed_in([tmp_path / "all.zip"])]
+    assert [each.learner for each in found] == [f"Participant {n}" for n in (1234, 1235, 1236)]
+    assert [each.points for each in found] == [8, 8, 0]
+    assert [each.is_complete for each in found] == [True, True, False]
+
+
+# --- Hostile files ---
+
+
+def xlsx_with(sheet: bytes, extra: dict[str, bytes] | None = None) -> bytes:
+    """Return a workbook whose sheet is replaced, with extra parts."""
+    written = io.BytesIO()
+    with (
+        zipfile.ZipFile(io.BytesIO(made.xlsx(RIGHT))) as source,
+        zipfile.ZipFile(written, "w", zipfile.ZIP_DEFLATED) as target,
+    ):
+        for name in source.namelist():
+            is_sheet = name == "xl/worksheets/sheet1.xml"
+            target.writestr(name, sheet if is_sheet and sheet else source.read(name))
+        for name, content in (extra or {}).items():
+            target.writestr(name, content)
+    return written.getvalue()
+
+
+SHEET: Final = (
+    b'<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>'
+)
+CELL: Final = b'<c r="A1"><v>1</v></c>'
+LAUGHS: Final = (
+    b'<?xml version="1.0"?><!DOCTYPE a [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;&a;&a;&a;&a;">]>'
+)
+ODS_LAUGHS: Final = LAUGHS + b"<x>&b;</x>"
+ODS: Final = (
+    '<x xmlns:t="t" xmlns:o="o" xmlns:p="p"><t:table><t:table-row t:number-rows-repeated="{rows}">'
+    '<t:table-cell t:number-columns-repeated="{columns}" o:value-type="float" o:value="1"/>'
+    "</t:table-row></t:table></x>"
+)
+HOSTILE: Final = {
+    "no zip.xlsx": b"PK\x03\x04" + bytes(100),
+    "zeros.xlsx": xlsx_with(SHEET + bytes(50_000_000)),
+    "a million cells.xlsx": xlsx_with(SHEET + b"<row>" + CELL * 1_000_000 + b"</row>"),
+    "entities.xlsx": xlsx_with(LAUGHS + SHEET + b"</sheetData></worksheet>"),
+    "macros.xlsx": xlsx_with(b"", {"xl/vbaProject.bin": b"x"}),
+    "links.xlsx": xlsx_with(b"", {"xl/externalLinks/externalLink1.xml": b"<x/>"}),
+    "cut.xlsx": made.xlsx(RIGHT)[:-200],
+    "noise.xls": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(range(256)) * 20,
+    "entities.ods": made.zipped({"content.xml": ODS_LAUGHS}),
+    "wide.ods": made.zipped({"content.xml": ODS.format(rows=1, columns=10**8).encode()}),
+    "long.ods": made.zipped({"content.xml": ODS.format(rows=10**8, columns=9).encode()}),
+    "entities.docx": made.zipped({"word/document.xml": ODS_LAUGHS}),
+    "deep.docx": made.zipped({"word/document.xml": b"<w>" * 100_000}),
+    "deep.ipynb": b'{"nbformat": 4, "cells": ' + b"[" * 100_000,
+    "wrong.ipynb": b'{"nbformat": 4, "cells": [{"cell_type": 1, "source": {"a": 1}}]}',
+    "open.rtf": b"{\\rtf1" + b"{" * 100_000,
+    "not.rtf": b"a, b",
+    "empty.html": b"<p>&nbsp;</p>",
+}
+
+
+@pytest.mark.parametrize("name", HOSTILE)
+def test_a_hostile_file_is_refused_at_once(name: str) -> None:
+    ending = f".{name.rpartition('.')[2]}"
+    excerpts_of_an_ordinary_file: dict[str, Callable[..., bytes]] = {
+        ".xlsx": made.xlsx,
+        ".xls": made.xls,
+        ".rtf": made.rtf,
+    }
+    if ending in excerpts_of_an_ordinary_file:
+        # The library is loaded before, so that only the reading is timed.
+        excerpts(excerpts_of_an_ordinary_file[ending](RIGHT), ending)
+    took = []
+    for _ in range(3):
+        start = time.process_time()
+        try:
+            found = excerpts(HOSTILE[name], ending)
+        except UnusableFileError:
+            pass
+        else:
+            assert name == "open.rtf", found
+        took.append(time.process_time() - start)
+    assert min(took) < 0.1
+
+
+def test_two_cells_in_far_corners_cost_no_memory() -> None:
+    book = openpyxl.Workbook()
+    book.worksheets[0]["A1"] = 1
+    book.worksheets[0]["XFD1048576"] = 2
+    written = io.BytesIO()
+    book.save(written)
+    [excerpt] = excerpts(written.getvalue(), ".xlsx")
+    assert excerpt.text == "1"
+
+
+@given(st.binary(max_size=300), st.sampled_from(OFFICE_ENDINGS))
+def test_any_bytes_are_read_or_refused(data: bytes, ending: str) -> None:
+    try:
+        found = excerpts(data, ending)
+    except UnusableFileError:
+        return
+    assert any(each.text.strip() for each in found)
