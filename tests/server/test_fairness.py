@@ -293,7 +293,7 @@ def test_work_gives_way_before_others_have_waited_long(
         with monkeypatch.context() as context:
             steps = _Steps()
             context.setattr(time_slices, "perf_counter", steps)
-            assert target.answer(BODIES[name]) in (200, 201, 422)
+            assert target.answer(BODIES[name]) in (200, 201, 403, 404, 422)
             steps.end(None)
         return steps.longest / max(before, floor_seconds()), steps.place
 
