@@ -128,6 +128,9 @@ def spoiled(
         # The form has filled in the last row.
         rows.pop()
     joint = next((each.name for each in exercise.variables if each.joint), "0.4")
+    if getattr(part, "tool", "given") == "free":
+        # The last row may then end in any frame, so that no entry in it is wrong.
+        rows.pop()
     first, last = rows[0] * width, rows[-1] * width
     for place in dict.fromkeys([first + width - 1, last, last + width - 1]):
         entry = right[place]
