@@ -105,7 +105,7 @@ def _opened(url: str, *, create: bool, migrate: bool) -> tuple[Engine, Revisions
 
 
 def _check_missing(engine: Engine, path: Path, *, create: bool) -> None:
-    # Where a restore was killed, nobody may begin with an empty database.
+    # After a killed restore, no program may begin with an empty database.
     kept = before(path)
     if kept.exists():
         problem = say(

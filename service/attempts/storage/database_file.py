@@ -16,8 +16,8 @@ from sqlalchemy.exc import SQLAlchemyError
 
 # Only the owner may read and write the file: it contains answers of learners.
 _OWN: Final = 0o600
-# SQLite cuts a larger write-ahead log when it begins to write it anew (bytes). A usual one has
-# 1,000 pages.
+# SQLite cuts a larger write-ahead log to this size (bytes) when it next writes from the start. A
+# usual log has 1,000 pages.
 LARGE_LOG: Final = 8 * 1024 * 1024
 # Overwrite deleted and replaced rows, so that no data of a deleted learner stays in the file.
 _SETTINGS: Final = (
@@ -132,7 +132,7 @@ def copy_of(source: Path, target: Path) -> Iterator[Path]:
     part = _new_part(target)
     uri = f"{source.absolute().as_uri()}?mode=ro"
     if _is_read_only(source) and not any(log.exists() for log in _logs(source)):
-        # SQLite cannot make its log there, and nobody can change the file.
+        # SQLite cannot make its log there, and no program can change the file.
         uri += "&immutable=1"
     try:
         with closing(sqlite3.connect(uri, uri=True, isolation_level=None)) as connection:
@@ -232,7 +232,7 @@ def _new_part(target: Path) -> Path:
 
 
 def _is_read_only(file: Path) -> bool:
-    # True if the file is on a disk to which nobody can write.
+    # True if the file is on a read-only disk.
     return hasattr(os, "statvfs") and bool(os.statvfs(file).f_flag & os.ST_RDONLY)
 
 
