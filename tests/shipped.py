@@ -38,3 +38,21 @@ def sampled(ids: Iterable[str], one_in: int = 1) -> list[ParameterSet]:
     ids = list(ids)
     kept = set(without_most_real_robots(ids)[::one_in])
     return [pytest.param(each, marks=() if each in kept else pytest.mark.campaign) for each in ids]
+
+
+def one_of_each_kind() -> list[ParameterSet]:
+    """Return parameters of a costly test; the suite runs it for a few exercises with all kinds."""
+    # The campaign runs it for all other exercises.
+    shipped = shipped_exercises()
+    kept: list[str] = []
+    missing = {part.kind for exercise in shipped.values() for part in exercise.parts}
+    while missing:
+        kept.append(
+            max(
+                shipped, key=lambda each: len(missing & {part.kind for part in shipped[each].parts})
+            )
+        )
+        missing -= {part.kind for part in shipped[kept[-1]].parts}
+    return [
+        pytest.param(each, marks=() if each in kept else pytest.mark.campaign) for each in shipped
+    ]

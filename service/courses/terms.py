@@ -15,13 +15,11 @@ from service.catalogue import Exercise, FeedbackLevel, least
 from service.catalogue.attempts import AttemptsSpec
 from service.contract.courses import (
     AssignmentState,
-    CourseAssignment,
-    Extension,
     Practice,
     ShowSolution,
 )
 from service.courses.errors import unknown_assignment, unknown_course, unknown_learner
-from service.courses.times import local
+from service.courses.times import local, own_dates
 
 _EXTENDED: Final = ("due", "closes", "max_attempts")
 _OWN: Final = and_(
@@ -187,24 +185,3 @@ def extended(
         late_worth=row.late_worth,
         hint_prices=None if row.hint_prices is None else json.loads(row.hint_prices),
     )
-
-
-def own_dates(
-    assignment: Any, due: datetime | None, closes: datetime | None
-) -> tuple[datetime | None, datetime | None]:
-    """Return the due date and the closing date of a learner with an extension."""
-    # The closing date is the latest date of the assignment and of the extension; None if neither of
-    # them has a closing date.
-    new_due = due or assignment.due
-    if new_due is not None and assignment.opens is not None:
-        new_due = max(new_due, assignment.opens)
-    ends = [each for each in (assignment.closes, closes, new_due) if each is not None]
-    if new_due is None or not (assignment.closes or closes):
-        return new_due, None
-    return new_due, max(ends)
-
-
-def with_own_dates(assignment: CourseAssignment, extension: Extension) -> Extension:
-    """Return the extension with the dates that hold for its learner, also those not extended."""
-    due, closes = own_dates(assignment, extension.due, extension.closes)
-    return extension.model_copy(update={"due": due, "closes": closes})

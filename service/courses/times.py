@@ -1,8 +1,10 @@
 """Dates in the time zone of a course."""
 
 from datetime import UTC, datetime, time
+from typing import Any
 from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 
+from service.contract.courses import CourseAssignment, Extension
 from service.courses.errors import CourseError
 from service.translations import say
 
@@ -45,3 +47,24 @@ def moment(written: datetime, zone: ZoneInfo) -> datetime:
 def local(when: datetime | None, zone: ZoneInfo) -> datetime | None:
     """Return a moment as the local time in a zone."""
     return None if when is None else when.astimezone(zone)
+
+
+def own_dates(
+    assignment: Any, due: datetime | None, closes: datetime | None
+) -> tuple[datetime | None, datetime | None]:
+    """Return the due date and the closing date of a learner with an extension."""
+    # The closing date is the latest date of the assignment and of the extension; None if neither of
+    # them has a closing date.
+    new_due = due or assignment.due
+    if new_due is not None and assignment.opens is not None:
+        new_due = max(new_due, assignment.opens)
+    ends = [each for each in (assignment.closes, closes, new_due) if each is not None]
+    if new_due is None or not (assignment.closes or closes):
+        return new_due, None
+    return new_due, max(ends)
+
+
+def with_own_dates(assignment: CourseAssignment, extension: Extension) -> Extension:
+    """Return the extension with the dates that hold for its learner, also those not extended."""
+    due, closes = own_dates(assignment, extension.due, extension.closes)
+    return extension.model_copy(update={"due": due, "closes": closes})

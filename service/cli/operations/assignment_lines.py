@@ -5,7 +5,7 @@ from datetime import datetime
 
 from service.catalogue import Exercise, FeedbackLevel
 from service.contract.courses import CourseAssignment, Extension, MissingLearner
-from service.courses.terms import with_own_dates
+from service.courses.times import with_own_dates
 from service.formats.shared.plain_text import number, visible
 from service.translations import Sentence, joined, say
 

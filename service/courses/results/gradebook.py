@@ -17,7 +17,7 @@ from service.contract.courses import (
 )
 from service.courses.assignments import assignment_of, assignments_of
 from service.courses.links import people
-from service.courses.terms import own_dates
+from service.courses.times import own_dates
 from service.formats.shared import spreadsheet
 
 # The points of an attempt that count, as a share of 1.

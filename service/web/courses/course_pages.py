@@ -19,7 +19,7 @@ from service.contract.courses import (
 from service.contract.own_courses import OwnCourse
 from service.contract.scores import PlatformScore
 from service.courses.names import told_apart
-from service.courses.terms import with_own_dates
+from service.courses.times import with_own_dates
 from service.translations import Language
 from service.web.assets import Assets
 from service.web.pages import page
