@@ -6,6 +6,7 @@ from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, too_many_cells
 from service.grids.cutting.limits import GRID_LIMITS
+from service.grids.cutting.line_ends import without_last_signs
 from service.grids.cutting.once import remembers
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats import (
@@ -28,7 +29,8 @@ from service.grids.scripts.program_text import without_function, without_title
 from service.grids.scripts.robot_script import describes_robot, read_script
 from service.grids.scripts.script import RobotTable
 from service.grids.scripts.session import session_outputs
-from service.grids.scripts.titles import without_fence, without_titles
+from service.grids.scripts.styled_names import without_styles
+from service.grids.scripts.titles import without_fence, without_pictures, without_titles
 from service.grids.scripts.toolbox_print import describes_print, read_print
 from service.time_slices import checkpoint
 from service.translations import say
@@ -39,6 +41,9 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
     latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT, matlab_rows.FORMAT,
     tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
 )  # fmt: skip
+
+# The formats in which a sign separates cells.
+_SEPARATED: Final = FORMATS[FORMATS.index(markdown.FORMAT) :]
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
@@ -64,10 +69,11 @@ def read_grid(text: str, *, of_table: bool = False) -> Grid:
     source = without_function(source)
     if of_table:
         source = without_print(without_uses(source))
+    source, pictures = without_pictures(source)
     source, defined = without_definitions(source)
     source, titles = without_titles(without_frame(without_title(source)))
     source, values = without_given_values(source)
-    notes = (*defined, *titles, *values)
+    notes = (*pictures, *defined, *titles, *values)
     found = grid_of(source)
     return replace(found, notes=(*notes, *found.notes)) if notes else found
 
@@ -91,7 +97,7 @@ def pasted_source(text: str, *, named: bool = False) -> SourceText:
     Raises GridError if the text is empty or too long.
     """
     # With ``named``, the name typed at a prompt becomes a heading above its output.
-    return session_outputs(_limited(text), named=named)
+    return without_styles(session_outputs(_limited(text), named=named))
 
 
 def _limited(text: str) -> SourceText:
@@ -117,10 +123,12 @@ def _limited(text: str) -> SourceText:
 
 def grid_of(source: SourceText) -> Grid:
     """Return the grid in a piece of a pasted text. Raises GridError if there is none."""
-    for candidate in FORMATS:
-        checkpoint()
-        if candidate.matches(source.text):
-            return candidate.parse(source)
+    found = _format_of(source)
+    if found in _SEPARATED:
+        source = without_last_signs(source)
+        found = _format_of(source)
+    if found:
+        return found.parse(source)
     raise GridError(
         "no_grid",
         say(
@@ -130,3 +138,11 @@ def grid_of(source: SourceText) -> Grid:
         ),
         source.whole,
     )
+
+
+def _format_of(source: SourceText) -> GridFormat | None:
+    for candidate in FORMATS:
+        checkpoint()
+        if candidate.matches(source.text):
+            return candidate
+    return None

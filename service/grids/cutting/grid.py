@@ -15,6 +15,7 @@ GridCell = SourceText
 _QUOTED: Final = re.compile(r"„[^„“”]+[“”]|“[^“”]+”|«[^«»]+»|»[^«»]+«")
 # The remark that a value is the variable of its joint.
 _VARIABLE: Final = re.compile(r"\s*[(\[](?:joint )?(?:variable|var\.?)[)\]]$", re.IGNORECASE)
+_NUMBER: Final = re.compile(r"\d{1,2}\Z")
 Rows = Sequence[Sequence[GridCell]]
 
 
@@ -45,6 +46,21 @@ class Grid:
         for above, row in reversed(self.empty):
             rows.insert(above, row[:width])
         return replace(self, rows=tuple(rows), empty=())
+
+    def without_half_row(self, fewest: int) -> "Grid":
+        """Return the grid without a last row that was only begun, if ``fewest`` others remain.
+
+        Such a row has only its number, and no other value.
+        """
+        *others, last = self.rows
+        begun = [cell.text for cell in last if cell.text]
+        is_short = len(last) < max(map(len, self.rows)) and last[0].text in begun
+        if len(others) < fewest or not is_short or len(begun) != 1 or not _NUMBER.match(begun[0]):
+            return self
+        note = Note(
+            "text_left_aside", say("The last row has only a number and was ignored."), last[0].whole
+        )
+        return replace(self, rows=tuple(others), notes=(*self.notes, note))
 
     @property
     def size(self) -> str:

@@ -40,7 +40,7 @@ def _parse(source: SourceText) -> Grid:
         if not line.text or _is_rule(line.text):
             continue
         cells = _cells(line)
-        if len(cells) == 1:
+        if len(cells) == 1 and not _SEPARATOR.search(line.text):
             message = say("This line of the table has no |; paste the table alone.")
             raise GridError("text_around", message, line.whole)
         rows.append(cells)

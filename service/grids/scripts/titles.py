@@ -100,6 +100,38 @@ def without_fence(source: SourceText) -> SourceText:
     return _between(source, lines[first + 1], lines[last - 1])
 
 
+# An image on a line of its own: in Markdown, HTML or LaTeX, or where a document had one.
+_IMAGE: Final = (
+    r"[ \t]*(?:!\[[^]\n]{0,200}\][(\[][^)\]\n]{0,400}[)\]]|!\[\[[^]\n]{1,200}\]\]"
+    r"|<img\b[^<>\n]{0,400}>|\\includegraphics(?:\[[^]\n]{0,200}\])?\{[^{}\n]{1,200}\})[ \t]*"
+)
+# A product of named matrices, such as A_i = Rot_z(theta_i) Trans_z(d_i): it gives no value to a
+# letter of a cell. Its arguments are plain names.
+_INDEX: Final = r"(?:[_^](?:\{(?:[\w\\, ]|i[-−]1){1,20}\}|\w|[-−]))"
+_FACTOR: Final = (
+    rf"(?:\{{\}}{_INDEX}{{0,2}})?(?:\\(?:text|mathrm|mathbf|operatorname)\{{[A-Z][a-z]{{0,6}}\}}"
+    rf"|[A-Z][a-z]{{0,6}}\d{{0,2}}){_INDEX}{{0,2}}"
+    r"(?:\((?:[a-z]\w{0,8}|\\[a-z]{1,8}|0|_\{?(?:\w{1,3}|i[-−]1)\}?|[, ]){1,12}\))?"
+)
+_BETWEEN: Final = r"[ \t]{0,3}(?:(?:\*|·|@|\\cdot|\\,|\\;|\\cdots|\.\.\.|…)[ \t]{0,3}){0,3}"
+_PRODUCT: Final = (
+    rf"[ \t]*(?P<open>\$\$|\$|\\\[|\\\()?\s{{0,4}}{_FACTOR}[ \t]{{0,3}}="
+    rf"[ \t]{{0,3}}{_FACTOR}(?:{_BETWEEN}{_FACTOR}){{1,12}}\s{{0,4}}"
+    r"(?(open)(?:\$\$?|\\\]|\\\)))[.,]?[ \t]*"
+)
+_PICTURE: Final = re.compile(rf"^(?:{_IMAGE}|{_PRODUCT})$\n?", re.MULTILINE)
+
+
+def without_pictures(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
+    """Return the text without lines that are an image or a product of named matrices."""
+    found = _PICTURE.search(source.text)
+    rest = joined(source.split(_PICTURE), source.at) if found else source
+    if found is None or not rest.text.strip():
+        return source, ()
+    message = say("The sentences before and after the table were ignored.")
+    return rest, (Note("text_left_aside", message, source.span(*found.span())),)
+
+
 def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     """Return the text without the sentences around the table, and a note on the sentences.
 

@@ -171,7 +171,7 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
 
 def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     height, width = len(quantities), len(quantities[0])
-    grid = grid.with_empty_rows(height)
+    grid = grid.with_empty_rows(height).without_half_row(height)
     if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
         span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
         raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))

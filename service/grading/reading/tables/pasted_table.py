@@ -114,6 +114,7 @@ def table_of(
         found = _with_meanings(found)
         columns, labels, more = _columns_by_headers(grid.rows[0], found)
     headings = int(found is not None)
+    grid = grid.without_half_row(headings + len(reader.vocabulary.joints))
     if labels is None:
         grid = grid.with_empty_rows(headings + len(reader.vocabulary.joints))
     body = grid.rows[headings:]
