@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Annotated, Final
 
 import typer
 
-from service.catalogue import load_exercise
+from service.catalogue import load_exercise, read_regular
 from service.cli.choices import choice, listed, one_of, report_language
 from service.cli.files.output import console_of, write
 from service.cli.files.output_folder import UnusableFolderError, is_for_folder, write_folder
@@ -27,14 +27,31 @@ from service.cli.running.interrupts import interruptible
 from service.cli.running.processes import WorkerLostError, jobs_for, mapped
 from service.cli.running.progress import Progress, progress
 from service.cli.running.shards import Shard, shard_of, with_header
-from service.cli.terminal import BELOW_PASS_MARK, UNUSABLE, complain, give_up, own_file
+from service.cli.terminal import (
+    BELOW_PASS_MARK,
+    UNUSABLE,
+    complain,
+    give_up,
+    own_file,
+    unreadable,
+)
 from service.formats import FORMAT_NAMES, report_format
+from service.formats.class_page import feedback_zip
+from service.formats.documents.gradebook import comment
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import ReportFormat, Setting, UnusableSettingError
+from service.formats.worksheets import (
+    MAX_WORKSHEET,
+    Grade,
+    UnusableWorksheetError,
+    Worksheet,
+    grade_of,
+)
 from service.grading import FeedbackLevel
 from service.local_grading import GradingTerms, graded
 from service.settings import Settings, load_settings
+from service.submissions.answers import of_file
 from service.submissions.assignment import (
     Assignment,
     UnknownPartNameError,
@@ -44,7 +61,7 @@ from service.submissions.assignment import (
 )
 from service.submissions.handed_in import HandedIn, all_handed_in
 from service.submissions.outline import SetExercise
-from service.translations import joined, say
+from service.translations import Language, joined, say
 from service.variants.variant import NoVariantError
 
 if TYPE_CHECKING:
@@ -110,7 +127,26 @@ def command(
         typer.Option(
             metavar="F",
             help="Write to this file; html writes several submissions into a folder, with an "
-            "overview of the class.",
+            "overview of the class, or, if F ends in .zip, into a zip file of feedback for Moodle.",
+        ),
+    ] = None,
+    worksheet: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="F",
+            help="The grading worksheet of Moodle, or the gradebook of Canvas, Brightspace or "
+            "Blackboard. Grades and comments go into a copy, F-graded.csv, and all else stays as "
+            "it is.",
+            exists=False,
+        ),
+    ] = None,
+    column: Annotated[
+        str | None,
+        typer.Option(
+            metavar="NAME",
+            help="The column of the gradebook that --worksheet fills, if there are several: its "
+            "heading, or the beginning of it.",
+            show_default=False,
         ),
     ] = None,
     pass_mark: Annotated[
@@ -216,6 +252,7 @@ def command(
         require_no_own_files(chosen)
     chosen = _variants_of_student(chosen, platform_data, variants)
     taken = _format(output_format, paths, shard)
+    sheet = _worksheet(worksheet, column, shard)
     folders = [path for path in paths if path.is_dir()]
     if output is not None:
         require_no_input(output, [*paths, *filter(None, [assignment])])
@@ -254,18 +291,19 @@ def command(
             progress(0 if quiet else len(own)) as shown,
             _grading(grader, terms, own, jobs, output, settings) as all_graded,
         ):
-            run = _Run(all_graded, shown, check)
+            run = _Run(all_graded, shown, check, terms.language if sheet else None)
             several = is_class or len(found) > 1
             if output and taken.folder and is_for_folder(output, several=several):
                 write_folder(taken.folder(run.submissions(), setting), output)
             else:
-                pieces = taken.pieces(run.submissions(), setting)
+                pieces = _pieces(taken, output)(run.submissions(), setting)
                 if shard is not None:
                     names = [each.name for each in found]
                     pieces = with_header(pieces, shard, names, [it.id for it in terms.answered])
                 at_once = shown.is_shown or not taken.is_stream
                 write(pieces, output, at_once=at_once, quiet=quiet)
             remember(output, folders)
+        _fill(sheet, worksheet, run)
     except UnusableFolderError as error:
         give_up(joined(": ", [str(output), error.args[0]]))
     except UnusableSettingError as error:
@@ -335,6 +373,36 @@ def _format(name: str, paths: Sequence[Path], shard: Shard | None) -> ReportForm
     return taken
 
 
+def _worksheet(file: Path | None, column: str | None, shard: Shard | None) -> Worksheet | None:
+    if file is None:
+        return None
+    if shard is not None:
+        give_up(say("--worksheet needs all submissions, and --shard grades some of them."))
+    try:
+        return Worksheet(read_regular(file, MAX_WORKSHEET), column)
+    except UnusableWorksheetError as error:
+        give_up(of_file(str(file), error.args[0]))
+    except OSError as error:
+        give_up(unreadable(file, error))
+
+
+def _fill(sheet: Worksheet | None, file: Path | None, run: "_Run") -> None:
+    if sheet is None or file is None:
+        return
+    content, problems = sheet.filled(run.grades)
+    write([content], file.with_name(f"{file.stem}-graded{file.suffix}"), at_once=True)
+    for problem in problems:
+        complain(problem)
+
+
+def _pieces(
+    taken: ReportFormat, output: Path | None
+) -> Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]:
+    if taken.folder and output and output.suffix.lower() == ".zip":
+        return partial(feedback_zip, page=taken.pieces)
+    return taken.pieces
+
+
 def _explain_one_student(output_format: str, folders: Sequence[Path], exit_code: int) -> None:
     if folders and exit_code == UNUSABLE and report_format(output_format).is_single:
         complain(
@@ -367,11 +435,15 @@ class _Run:
         submissions: Iterable[GradedSubmission],
         shown: Progress,
         check: Callable[[], None],
+        language: Language | None = None,
     ) -> None:
+        # With a language, the grades are kept for a worksheet.
         self._submissions = submissions
         self._shown = shown
         self._check = check
+        self._language = language
         self.exit_code = 0
+        self.grades: list[Grade] = []
 
     def submissions(self) -> Iterator[GradedSubmission]:
         for submission in self._submissions:
@@ -379,6 +451,8 @@ class _Run:
             for told in _complaints(submission):
                 self._shown.complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))
+            if self._language is not None:
+                self.grades.append(grade_of(submission, comment(submission, self._language)))
             yield submission
             self._shown.advance()
 

@@ -15,7 +15,8 @@ _UNFINISHED: Final = ".dh-grader-unfinished-"
 # The file that lists what a run has written, one path per line, so that a later run may replace it.
 WRITTEN: Final = ".dh-grader-written"
 _OLD: Final = "old"
-_PAGES: Final = (".html", ".htm")
+# A file with one of these endings holds all pages.
+_ONE_FILE: Final = (".html", ".htm", ".zip")
 
 
 class UnusableFolderError(Exception):
@@ -25,10 +26,10 @@ class UnusableFolderError(Exception):
 def is_for_folder(output: Path, *, several: bool) -> bool:
     """True if reports go into a folder, False if they go into a single file."""
     # A new ``output`` becomes a folder if there are several submissions, unless its name ends like
-    # an HTML file.
+    # an HTML or zip file.
     if output.exists():
         return output.is_dir()
-    return several and output.suffix.lower() not in _PAGES
+    return several and output.suffix.lower() not in _ONE_FILE
 
 
 def write_folder(documents: Iterable[Document], folder: Path) -> None:

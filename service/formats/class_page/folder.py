@@ -1,6 +1,10 @@
 """The folder of a class: a page for each submission, then the index."""
 
+import io
+import re
+import zipfile
 from collections.abc import Callable, Iterable, Iterator
+from pathlib import PurePath
 from typing import Final
 
 from service.formats.class_page.file_names import distinct_file_names
@@ -11,6 +15,9 @@ from service.formats.shared.report_format import Document, Setting
 
 # The subfolder of the pages.
 PAGES: Final = "reports"
+
+# The student and the number in the names that Moodle gives.
+_MOODLE: Final = re.compile(r"(?P<name>.+?)_(?P<number>\d+)(?:_assignsubmission_.*)?")
 
 Pages = Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
 Folder = Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]]
@@ -32,3 +39,24 @@ def class_folder(page: Pages) -> Folder:
         yield Document(INDEX, index(overview, setting.language))
 
     return documents
+
+
+def feedback_zip(
+    submissions: Iterable[GradedSubmission], setting: Setting, page: Pages
+) -> Iterator[bytes]:
+    """Yield a zip file with the page of each submission, as Moodle takes feedback files.
+
+    Moodle (``mod/assign/feedback/file/importziplib.php``) divides the name of a folder at ``_``;
+    the second piece is the number of the student.
+    """
+    file_name = distinct_file_names("")
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
+        for submission in submissions:
+            folder = file_name(submission.learner)
+            found = _MOODLE.fullmatch(PurePath(submission.name).name)
+            if found and submission.learner.endswith(f" {found['number']}"):
+                name = found["name"].replace("_", " ")
+                folder = f"{name}_{found['number']}_assignsubmission_file_"
+            archive.writestr(f"{folder}/feedback.html", b"".join(page([submission], setting)))
+    yield packed.getvalue()

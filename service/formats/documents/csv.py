@@ -30,12 +30,17 @@ def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float |
         submission.name,
         submission.points if is_complete else None,
         submission.max_points,
-        submission.score if is_complete else None,
+        _share(submission.score) if is_complete else None,
         "yes" if submission.passed else "no",
         "; ".join(submission.problems),
         " ".join(code for each in results if each.report for code in _codes(each.report)),
         *(None if each.is_unread else each.points for each in results),
     ]
+
+
+def _share(score: float) -> str:
+    # A share of 1 needs more decimals than points.
+    return f"{score:.6f}".rstrip("0").rstrip(".")
 
 
 def _codes(part: PartReport) -> list[str]:

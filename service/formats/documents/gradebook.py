@@ -18,17 +18,19 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 
 def _cells(submission: GradedSubmission, setting: Setting) -> list[str | float | None]:
-    parts = (
-        f"{each.name}: {_earned(each, setting.language)}"
-        for each in part_results(submission, setting.language)
-    )
     return [
         submission.learner,
         # On import, an empty grade keeps the old grade. What was not read does not count as 0.
         submission.points if submission.is_complete else None,
         submission.max_points,
-        "; ".join(parts),
+        comment(submission, setting.language),
     ]
+
+
+def comment(submission: GradedSubmission, language: Language) -> str:
+    """Return the points of each part in one line."""
+    results = part_results(submission, language)
+    return "; ".join(f"{each.name}: {_earned(each, language)}" for each in results)
 
 
 def _earned(result: PartResult, language: Language) -> str:

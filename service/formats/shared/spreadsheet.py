@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable
 from typing import Final
 
-from service.formats.shared.plain_text import visible
+from service.formats.shared.plain_text import number, visible
 
 # Some spreadsheets run a cell with such a beginning as a formula (OWASP, "CSV Injection"). Where a
 # comma is the decimal sign, they also end a cell at a semicolon, whatever quotes are around it.
@@ -26,6 +26,9 @@ def line(cells: Iterable[str | float | None]) -> bytes:
 def _cell(value: str | float | None) -> str:
     if value is None:
         return ""
-    if not isinstance(value, str):
-        return f"{value:.6f}".rstrip("0").rstrip(".")
-    return _FORMULA.sub("'", visible(value))
+    return without_formulas(value) if isinstance(value, str) else number(value)
+
+
+def without_formulas(text: str) -> str:
+    """Return the text in one line, with an apostrophe before all that looks like a formula."""
+    return _FORMULA.sub("'", visible(text))

@@ -501,3 +501,42 @@ def test_quiet_prints_only_problems(run: Run, save: Save, tmp_path: Path) -> Non
     result = table_only(run, half, "-q", "--format", "csv", "--output", output)
     assert (result.exit_code, result.output) == (1, "")
     assert "answer.json" in output.read_text(encoding="utf-8")
+
+
+WORKSHEET = (
+    "\ufeffIdentifier,Full name,Status,Grade,Maximum Grade,Grade can be changed,"
+    "Last modified (submission),Last modified (grade),Feedback comments\r\n"
+    "Participant 1234,Ada Byron,Submitted for grading,,8.00,Yes,"
+    '"Saturday, 3 October 2026, 2:05 PM",-,\r\n'
+    "Participant 1235,Ben Okri,Submitted for grading,,8.00,Yes,"
+    '"Saturday, 3 October 2026, 2:05 PM",-,\r\n'
+    "Participant 1236,Cy Young,No submission,,8.00,Yes,-,-,\r\n"
+)
+
+
+def test_grades_and_feedback_go_back_to_moodle(run: Run, tmp_path: Path) -> None:
+    table = "a, alpha, d, theta\n0, 0, 0, q1\nl1, 0, 0, q2\nl2, 0, 0, q3\nl3, 0, 0, 0\n"
+    with zipfile.ZipFile(tmp_path / "all.zip", "w") as archive:
+        archive.writestr("Ada Byron_1234_assignsubmission_file/table.csv", table)
+        archive.writestr("Ben Okri_1235_assignsubmission_file/table.pdf", b"%PDF-1.4")
+    (tmp_path / "Grades.csv").write_bytes(WORKSHEET.encode())
+    result = run(
+        "grade", tmp_path / "all.zip", "--exercise", "planar-rrr", "--part", "table", "--format",
+        "html", "--output", tmp_path / "feedback.zip", "--worksheet", tmp_path / "Grades.csv",
+    )  # fmt: skip
+    assert result.exit_code == 2
+    filled = (tmp_path / "Grades-graded.csv").read_bytes().decode()
+    first = "Participant 1234,Ada Byron,Submitted for grading,"
+    ada = WORKSHEET.replace(f"{first},", f"{first}8,").replace(
+        "-,\r\nParticipant 1235", "-,Denavit-Hartenberg table: 8 / 8\r\nParticipant 1235"
+    )
+    assert filled == ada
+    assert (tmp_path / "Grades.csv").read_bytes() == WORKSHEET.encode()
+    assert "Ben Okri_1235 could not be read completely" in result.stderr
+    with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
+        names = archive.namelist()
+        assert b"table.pdf can only be graded by hand" in archive.read(names[1])
+    assert names == [
+        "Ada Byron_1234_assignsubmission_file_/feedback.html",
+        "Ben Okri_1235_assignsubmission_file_/feedback.html",
+    ]

@@ -73,3 +73,7 @@ def test_no_cell_starts_like_a_formula() -> None:
         for line in read(*cases(), format_name=format_name):
             for cell in line:
                 assert not cell.lstrip().startswith(("=", "+", "-", "@", "\t", "\r"))
+
+
+def test_points_have_two_decimals() -> None:
+    assert spreadsheet.line([7.0, 7 / 3, 0.5, None]) == b"7,2.33,0.5,\r\n"

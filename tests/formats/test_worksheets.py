@@ -1,0 +1,261 @@
+"""Grades go into the files of platforms; a reader with the rules of Moodle's importer finds them.
+
+The headings are those of Moodle's language packs, version 4.5.
+"""
+
+import csv
+import io
+from dataclasses import dataclass
+
+import pytest
+
+from service.formats.worksheets import Grade, UnusableWorksheetError, Worksheet
+
+
+@dataclass(frozen=True)
+class Words:
+    """What Moodle writes in one language."""
+
+    identifier: str
+    name: str
+    status: str
+    grade: str
+    maximum: str
+    can_be_changed: str
+    submission_time: str
+    grade_time: str
+    comments: str
+    participant: str
+    submitted: str
+    yes: str
+    date: str
+    comma: bool
+
+
+WORDS = {
+    "en": Words(
+        "Identifier", "Full name", "Status", "Grade", "Maximum grade", "Grade can be changed",
+        "Last modified (submission)", "Last modified (grade)", "Feedback comments", "Participant ",
+        "Submitted for grading", "Yes", "Saturday, 3 October 2026, 2:05 PM", comma=False,
+    ),
+    "de": Words(
+        "ID", "Vollständiger Name", "Status", "Bewertung", "Bestwertung",
+        "Bewertung kann geändert werden", "Zuletzt geändert (Abgabe)",
+        "Zuletzt geändert (Bewertung)", "Feedback als Kommentar", "Teilnehmer/in",
+        "Zur Bewertung abgegeben", "Ja", "Samstag, 3. Oktober 2026, 14:05", comma=True,
+    ),
+    "es": Words(
+        "Identificador", "Nombre completo", "Estado", "Calificación", "Calificación máxima",
+        "La calificación puede ser cambiada", "Última modificación (entrega)",
+        "Última modificación (calificación)", "Comentarios de retroalimentación", "Participante",
+        "Enviado para calificar", "Sí", "sábado, 3 de octubre de 2026, 14:05", comma=True,
+    ),
+    "fr": Words(
+        "Identifiant", "Nom complet", "Statut", "Note", "Note maximale",
+        "La note peut être modifiée", "Dernière modification (travail remis)",
+        "Dernière modification (note)", "Feedback par commentaires", "Participant",
+        "Remis pour évaluation", "Oui", "samedi 3 octobre 2026, 14:05", comma=True,
+    ),
+    "zh": Words(
+        "标识符", "全名", "状态", "成绩", "最高分", "允许更改成绩", "上次修改（作业）",
+        "上次修改（评分）", "反馈意见", "参与人", "已提交请评分", "是",
+        "2026年10月3日 星期六 14:05", comma=False,
+    ),
+}  # fmt: skip
+
+ADA = Grade("in/Ada Byron_1234", "Participant 1234", 7 / 8, 7.0, 8.0, "Table: 7 / 8")
+BEN = Grade("in/Ben Okri_1235", "Participant 1235", 7 / 24, 7 / 3, 8.0, 'Table: "2.33" / 8; a, b')
+UNREAD = Grade("in/Cy Young_1236", "Participant 1236", None, 0.0, 8.0, "table.pdf is a PDF.")
+
+
+def moodle(words: Words, separator: str = ",", most: str = "8.00") -> bytes:
+    most = most.replace(".", ",") if words.comma else most
+    head = [
+        words.identifier, words.name, "ID number", words.status, words.grade, words.maximum,
+        words.can_be_changed, words.submission_time, words.grade_time, words.comments,
+    ]  # fmt: skip
+    students = [("Ada Byron", "1234"), ("Ben Okri", "1235"), ("Cy Young", "1236"), ("Di", "1237")]
+    rows = [
+        [f"{words.participant}{number}", name, "77", words.submitted, "", most, words.yes,
+         words.date, "-", ""]
+        for name, number in students
+    ]  # fmt: skip
+    written = io.StringIO(newline="")
+    csv.writer(written, delimiter=separator, lineterminator="\n").writerows([head, *rows])
+    return b"\xef\xbb\xbf" + written.getvalue().encode()
+
+
+def imported(content: bytes, words: Words, separator: str) -> dict[int, tuple[float | None, str]]:
+    """Return the grades and comments by participant, by the rules of Moodle's importer.
+
+    It compares headings with those of the user's language, cuts the length of the word
+    "Participant" from the identifier, refuses lines of another length and a file without the
+    identifier, the grade or the time of the grade, and skips grades that are empty or too high.
+    """
+    head, *rows = csv.reader(io.StringIO(content.decode("utf-8-sig")), delimiter=separator)
+    assert all(len(row) == len(head) for row in rows)
+    id_, grade, _ = (head.index(each) for each in (words.identifier, words.grade, words.grade_time))
+    comments = head.index(words.comments)
+    found = {}
+    for row in rows:
+        number = int(row[id_][len(words.participant) :])
+        value = row[grade].replace(",", ".") if words.comma else row[grade]
+        points = float(value) if value else None
+        assert points is None or 0 <= points <= 8
+        found[number] = (points, row[comments])
+    return found
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+@pytest.mark.parametrize("language", WORDS)
+def test_moodles_importer_reads_the_grades(language: str, separator: str) -> None:
+    words = WORDS[language]
+    filled, problems = Worksheet(moodle(words, separator)).filled([ADA, BEN, UNREAD])
+    assert imported(filled, words, separator) == {
+        1234: (7.0, "Table: 7 / 8"),
+        1235: (2.33, 'Table: "2.33" / 8; a, b'),
+        # What was not read is graded by hand, and who handed nothing in stays.
+        1236: (None, ""),
+        1237: (None, ""),
+    }
+    [problem] = problems
+    assert "Cy Young" in problem
+    assert "by hand" in problem
+
+
+@pytest.mark.parametrize("language", WORDS)
+def test_all_else_stays_byte_for_byte(language: str) -> None:
+    before = moodle(WORDS[language])
+    after, _ = Worksheet(before).filled([ADA])
+    comma = WORDS[language].comma
+    lines = before.split(b"\n")
+    most = b'"8,00"' if comma else b"8.00"
+    lines[1] = lines[1].replace(b",," + most, b",7," + most)
+    assert lines[1].endswith(b"-,")
+    lines[1] += b"Table: 7 / 8"
+    assert after == b"\n".join(lines)
+    assert Worksheet(before).filled([])[0] == before
+
+
+def test_points_are_scaled_to_the_maximum_of_the_worksheet() -> None:
+    words = WORDS["en"]
+    after, _ = Worksheet(moodle(words, most="100.00")).filled([BEN])
+    assert b",29.17,100.00," in after
+
+
+def test_a_worksheet_without_the_time_of_grades_is_refused() -> None:
+    words = WORDS["en"]
+    rows = list(csv.reader(io.StringIO(moodle(words).decode("utf-8-sig"))))
+    written = io.StringIO()
+    csv.writer(written).writerows([row[:7] for row in rows])
+    with pytest.raises(UnusableWorksheetError, match="last modified"):
+        Worksheet(written.getvalue().encode())
+
+
+def test_the_number_of_a_group_is_not_the_number_of_a_student() -> None:
+    group = Grade("in/Group 3_1234", "Participant 1234", 1.0, 8.0, 8.0, "")
+    before = moodle(WORDS["en"])
+    after, [problem] = Worksheet(before).filled([group])
+    assert after == before
+    assert problem == "in/Group 3_1234 is in no row of the worksheet. Enter 8 / 8 points by hand."
+
+
+def test_two_submissions_of_one_student_fill_nothing() -> None:
+    before = moodle(WORDS["en"])
+    after, problems = Worksheet(before).filled([ADA, ADA])
+    assert after == before
+    assert len(problems) == 2
+
+
+def test_anonymous_worksheets_have_no_names() -> None:
+    text = (
+        "Identifier,Status,Grade,Maximum Grade,Grade can be changed,"
+        "Last modified (submission),Last modified (grade),Feedback comments\r\n"
+        "Participant 1234,Submitted for grading,,8.00,Yes,"
+        '"Saturday, 3 October 2026, 2:05 PM",-,\r\n'
+    )
+    anonymous = Grade("in/Participant 1234_1234", "Participant 1234", 0.5, 4, 8, "ok")
+    after, problems = Worksheet(text.encode()).filled([anonymous])
+    assert after.decode() == text.replace("grading,,", "grading,4,").replace("-,\r", "-,ok\r")
+    assert problems == []
+
+
+CANVAS = (
+    "Student,ID,SIS User ID,SIS Login ID,Section,HW 1 (501),HW 2 (502),Final Score\r\n"
+    ",,,,,Manual Posting,,\r\n"
+    "    Points Possible,,,,,16.00,8.00,(read only)\r\n"
+    '"Lee, Ann",11,,,A,,,0\r\n'
+    '"Lee, Ann",12,s12,ann2,B,,,0\r\n'
+    '"Roe, Cy",13,s13,cy,B,EX,,0\r\n'
+    '"Student, Test",14,,x,B,,,0\r\n'
+)
+
+
+def test_canvas_students_of_one_name_are_told_apart_by_id() -> None:
+    grades = [
+        Grade("in/leeann_12", "12", 1.0, 8.0, 8.0, "c"),
+        Grade("in/leeann_11", "11", 0.25, 2.0, 8.0, "c"),
+        Grade("in/roecy_13", "13", 0.25, 2.0, 8.0, "c"),
+        Grade("in/who_15", "15", 0.25, 2.0, 8.0, "c"),
+    ]
+    after, problems = Worksheet(CANVAS.encode(), "HW 1").filled(grades)
+    # A row without a login is filled like the others.
+    wanted = CANVAS.replace("11,,,A,,", "11,,,A,4,").replace("ann2,B,,", "ann2,B,16,")
+    assert after.decode() == wanted
+    assert sorted(problems) == [
+        "in/roecy_13 is from an excused student. The row stays as it was.",
+        "in/who_15 is in no row of the worksheet. Enter 2 / 8 points by hand.",
+    ]
+
+
+def test_the_column_of_a_gradebook_is_never_guessed() -> None:
+    with pytest.raises(UnusableWorksheetError, match=r"HW 1 \(501\), HW 2 \(502\)"):
+        Worksheet(CANVAS.encode())
+    with pytest.raises(UnusableWorksheetError):
+        Worksheet(CANVAS.encode(), "HW 7")
+
+
+BRIGHTSPACE = (
+    "OrgDefinedId,Username,Last Name,First Name,"
+    "HW 1 Points Grade <Numeric MaxPoints:10 Weight:5 Category:Home>,End-of-Line Indicator\r\n"
+    "#9001,#abyron,Byron,Ada,,#\r\n"
+    "#9002,#alee,Lee,Ann,,#\r\n"
+    "#9003,#alee2,Lee,Ann,,#\r\n"
+)
+
+
+def test_brightspace_finds_students_by_name_if_the_name_is_unique() -> None:
+    ada = Grade("in/Ada Byron_75-12", "Ada Byron", 0.75, 6.0, 8.0, "c")
+    ann = Grade("in/Ann Lee_76-13", "Ann Lee", 0.75, 6.0, 8.0, "c")
+    after, [problem] = Worksheet(BRIGHTSPACE.encode()).filled([ada, ann])
+    assert after.decode() == BRIGHTSPACE.replace("Ada,,", "Ada,7.5,")
+    assert "Ann Lee" in problem
+    assert "2 rows" in problem
+
+
+BLACKBOARD = (
+    '"Last Name"\t"First Name"\t"Username"\t"Student ID"\t"Last Access"\t"Availability"\t'
+    '"HW1 [Total Pts: 8 Score] |123"\n'
+    '"Byron"\t"Ada"\t"abyron"\t""\t"2026-10-01 10:00:00"\t"Yes"\t""\n'
+    '"Lee"\t"Ann"\t"a_lee"\t""\t""\t"Yes"\t""\n'
+    '"Lee"\t"Bo"\t"b_lee"\t""\t""\t"Yes"\t""\n'
+)
+
+
+def test_blackboards_file_in_utf_16() -> None:
+    before = b"\xff\xfe" + BLACKBOARD.encode("utf-16-le")
+    ada = Grade("in/HW1_abyron", "abyron", 0.75, 6.0, 8.0, "c")
+    lee = Grade("in/HW1_a_lee", "lee", 0.75, 6.0, 8.0, "c")
+    after, [problem] = Worksheet(before).filled([ada, lee])
+    wanted = BLACKBOARD.replace('00"\t"Yes"\t""', '00"\t"Yes"\t"6"')
+    assert after == b"\xff\xfe" + wanted.encode("utf-16-le")
+    assert "a_lee" in problem
+    assert "2 rows" in problem
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"\xef\xbb\xbf", b"\xff\xfe\x00", b"a,b\n1,2\n", b"PK\x03\x04\0\0", b"\n"]
+)
+def test_other_files_are_refused(content: bytes) -> None:
+    with pytest.raises(UnusableWorksheetError):
+        Worksheet(content)
