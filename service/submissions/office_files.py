@@ -28,6 +28,8 @@ MAX_CELLS: Final = 20_000
 MAX_ROWS: Final = 500
 MAX_COLUMNS: Final = 64
 MAX_EXCERPTS: Final = 12
+# Documents with tables in tables have about 40.
+MAX_DEPTH: Final = 200
 MAX_ARCHIVE_ENTRIES: Final = 4_000
 
 
@@ -131,9 +133,27 @@ def parsed_xml(content: bytes) -> ET.Element:
     """Return the root element of XML without a document type. Raises UnusableFileError."""
     _require_plain(content)
     try:
-        return ET.fromstring(content)
+        return ET.fromstring(content, ET.XMLParser(target=_Shallow()))
     except (ET.ParseError, ValueError, LookupError) as error:
         raise _damaged() from error
+
+
+class _Shallow(ET.TreeBuilder):
+    """Builds a tree of XML. Raises ValueError as soon as elements are nested too deep."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._depth = 0
+
+    def start(self, tag: str, attrs: dict[str, str]) -> ET.Element:
+        self._depth += 1
+        if self._depth > MAX_DEPTH:
+            raise ValueError("elements are nested too deep")
+        return super().start(tag, attrs)
+
+    def end(self, tag: str) -> ET.Element:
+        self._depth -= 1
+        return super().end(tag)
 
 
 def _require_plain(content: bytes) -> None:

@@ -26,7 +26,7 @@ BROKEN = {
     "b-unreadable.json": "line 1",
     "c-binary.json": "zero bytes",
     "d-large.json": "larger than 256 KiB",
-    "e-word.docx": "is damaged or not what its name says",
+    "e-word.docx": "is damaged, or not what its name says",
     "f-pipe.json": "pipe",
     "g-link.json": "symbolic link out of the folder",
     "h-nothing": "holds no file",

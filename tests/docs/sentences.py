@@ -23,7 +23,6 @@ from service.grading.lost_points import without_places
 from service.grading.misconception import all_records
 from service.grading.reading.preview import preview_pasted
 from service.grading.report import Feedback, PartReport, Place, messages_of
-from service.grids import GRID_LIMITS
 from tests.docs import test_message_codes as messages_page
 from tests.docs.codes import sources
 from tests.docs.templates import Template, templates_in
@@ -38,7 +37,7 @@ _NO_SENTENCES: Final = frozenset(
     {
         "CSV with semicolons", "rows with semicolons", "drawn matrix", "Judged | None",
         "GivenMotion | None", "Reread | None", "end effector", "joint variable", "not applicable",
-        "see above", "turns in steps", "efector final",
+        "grids as written", "theta offset", "see above", "turns in steps", "efector final",
         "exercise … has no part …; it has …", "exercise … has no part …", "exercise … has no robot",
         "part … has no formulas",
         "Write a number or a formula, not true or false.",
@@ -106,8 +105,9 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
             yield Example(exercise.id, check.answers, check.angle_unit)
     # An answer that is too long to be read completely.
     yield Example("planar-rr", {"position": ["+" * LIMITS.characters] * 2})
-    texts = "1, 2\n" * (GRID_LIMITS.characters // 5)
-    yield Example("planar-rr", {"table": texts, "pose": texts})
+    # Pasted texts that are too long together, or have too many brackets.
+    for texts in (("q1 + " * 9 + "1, 2\n") * 400, ("(" * 8 + "1" + ")" * 8 + ", 2\n") * 300):
+        yield Example("planar-rr", {"table": texts, "pose": texts})
     # An answer with too many mistakes to explain them all.
     wrong = [["c1 c4", "c1 s4", "c4 s1", "s1 s4"]] * 4
     yield Example("stanford-arm", {"table": wrong[:1] * 6, "links": [wrong] * 6, "pose": wrong})
