@@ -106,8 +106,8 @@ def answers(catalogue: Mapping[str, Exercise]) -> Iterator[Example]:
     # An answer that is too long to be read completely.
     yield Example("planar-rr", {"position": ["+" * LIMITS.characters] * 2})
     # Pasted texts that are too long together, or have too many brackets.
-    for texts in (("q1 + " * 9 + "1, 2\n") * 400, ("(" * 8 + "1" + ")" * 8 + ", 2\n") * 300):
-        yield Example("planar-rr", {"table": texts, "pose": texts})
+    for texts in (("q1 + " * 300 + "1, 2\n") * 12, ("(1)" * 180 + ", 2\n") * 12):
+        yield Example("planar-rr", {"table": texts, "pose": "4" + texts})
     # An answer with too many mistakes to explain them all.
     wrong = [["c1 c4", "c1 s4", "c4 s1", "s1 s4"]] * 4
     yield Example("stanford-arm", {"table": wrong[:1] * 6, "links": [wrong] * 6, "pose": wrong})
