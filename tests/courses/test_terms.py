@@ -3,16 +3,22 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from datetime import datetime, timedelta
+from functools import partial
 from types import SimpleNamespace
 from typing import Any
 from zoneinfo import ZoneInfo
 
 import pytest
+from sqlalchemy import select, update
 
 from service.attempts.policy import AttemptRefusedError, ruling
+from service.attempts.storage.tables import assignments
 from service.catalogue import Exercise, FeedbackLevel
 from service.catalogue.attempts import AttemptsSpec
-from service.courses.terms import LearnerTerms, extended
+from service.contract.courses import CourseAssignment, Extension
+from service.courses.assignments import extend
+from service.courses.terms import LearnerTerms, extended, terms_of, with_own_dates
+from tests.courses.conftest import Class
 from tests.together import together
 
 BERLIN = ZoneInfo("Europe/Berlin")
@@ -81,6 +87,50 @@ def test_an_attempt_is_on_time_late_or_refused(
 
 
 OPENS = "2026-10-20T08:00"
+LATER = "2026-10-30T12:00"
+
+
+@together(
+    ("of_assignment", "own", "expected"),
+    [
+        # Each pair is a due date and a closing date.
+        ((DUE, CLOSES), (None, None), (DUE, CLOSES)),
+        ((DUE, None), (LATER, None), (LATER, None)),
+        ((DUE, CLOSES), (LATER, None), (LATER, LATER)),
+        ((DUE, None), (None, CLOSES), (DUE, CLOSES)),
+        ((None, None), (DUE, CLOSES), (DUE, CLOSES)),
+        # Without a due date, all attempts are on time: no closing date holds.
+        ((None, None), (None, CLOSES), (None, None)),
+        ((None, None), (None, None), (None, None)),
+    ],
+)
+def test_an_extension_shows_the_dates_that_hold(
+    of_assignment: tuple[str | None, ...],
+    own: tuple[str | None, ...],
+    expected: tuple[str | None, ...],
+) -> None:
+    due, closes = map(at, of_assignment)
+    assignment = CourseAssignment.model_construct(opens=None, due=due, closes=closes)
+    due, closes = map(at, own)
+    given = Extension.model_construct(learner="ada", due=due, closes=closes, limit=2)
+    told = with_own_dates(assignment, given)
+    assert (told.due, told.closes) == tuple(map(at, expected))
+    assert (told.learner, told.limit) == ("ada", 2)
+
+
+@pytest.mark.parametrize("has_variants", [False, True])
+def test_terms_have_the_variants_and_the_extension(class_: Class, has_variants: bool) -> None:
+    class_.assign(variants=has_variants)
+    class_.do(lambda it: extend(it, "robots", "homework", Extension(learner="ada", limit=2)))
+    class_.do(lambda it: it.execute(update(assignments).values(choices="{}")))
+    ada, grace = (
+        class_.do(partial(terms_of, course="robots", assignment="homework", learner=each))
+        for each in ("ada", "grace")
+    )
+    assert (ada.is_extended, grace.is_extended) == (True, False)
+    assert (ada.rules.limit, grace.rules.limit) == (2, None)
+    assert ada.variants == class_.do(lambda it: it.scalar(select(assignments.c.variants)))
+    assert (ada.variants is not None, ada.choices) == (has_variants, "{}")
 
 
 def terms(

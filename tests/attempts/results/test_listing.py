@@ -1,5 +1,5 @@
 from collections.abc import Mapping
-from datetime import timedelta
+from datetime import UTC, datetime, timedelta
 from itertools import count
 
 import pytest
@@ -7,7 +7,7 @@ from sqlalchemy import event
 
 from service.attempts.attempt import AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
-from service.attempts.results.listing import history, page
+from service.attempts.results.listing import history, page, place_of
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from tests.attempts.recorded import LAZY, NO_TWIST, NOON, RIGHT, recorded
@@ -77,9 +77,20 @@ def test_an_invalid_cursor_is_refused(store: AttemptStore) -> None:
             "1." * 9,
             "1_0.0x1",
             "1.٣",
+            # A time or a number that is larger than those of a database: 2 to the power of 62.
+            "0.4000000000000000",
+            "4000000000000000.0",
+            # The largest time: it is after the year 9999.
+            "3fffffffffffffff.0",
         ):
             with pytest.raises(BadCursorError):
                 page(connection, EVERY, cursor, 3)
+
+
+def test_cursors_at_the_limits_are_places() -> None:
+    epoch = datetime(1970, 1, 1, tzinfo=UTC)
+    assert place_of("0.0") == (epoch, 0)
+    assert place_of("f.3fffffffffffffff") == (epoch + timedelta(microseconds=15), 2**62 - 1)
 
 
 def test_an_attempt_has_its_answers(store: AttemptStore, catalogue: Mapping[str, Exercise]) -> None:

@@ -1,12 +1,18 @@
-from collections.abc import Mapping
+import json
+from collections.abc import Mapping, Sequence
 from datetime import timedelta
 
+import pytest
+from sqlalchemy import insert
+
 from service.attempts.attempt import AttemptFilter
+from service.attempts.outcome import Outcome
 from service.attempts.results.statistics import exercise_statistics
+from service.attempts.storage.tables import hints
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.contract.statistics import ExerciseStatistics
-from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, recorded
+from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, new_attempt, recorded, recorded_all
 
 WRONG_LENGTH = NO_TWIST.replace("a2", "a1")
 
@@ -57,3 +63,87 @@ def test_a_span_of_time_is_counted(store: AttemptStore, catalogue: Mapping[str, 
 def test_the_statistics_of_no_attempts_are_zero(store: AttemptStore) -> None:
     told = statistics(store)
     assert (told.attempts, told.learners, told.parts) == (0, 0, [])
+
+
+def record_outcome(
+    store: AttemptStore, scara: Exercise, ordinals: Sequence[int | None], learner: str = "ada",
+    part: str = "table", codes: str = "", cells: str = "",
+) -> None:  # fmt: skip
+    """Record attempts whose part has these codes and right cells."""
+    told = {
+        "verdict": "partial",
+        "cells": dict.fromkeys(cells.split(), "correct"),
+        "codes": codes.split(),
+    }
+    outcome = Outcome("scara", json.dumps({part: told}))
+    recorded_all(
+        store,
+        [(new_attempt(scara, learner, RIGHT, n, hours=n or 0)[0], outcome) for n in ordinals],
+    )
+
+
+def test_a_learning_curve_has_twelve_attempts_of_each_learner(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    record_outcome(store, scara, (1, 2, 3), codes="value half_turn")
+    record_outcome(store, scara, (4,), codes="value")
+    record_outcome(store, scara, range(5, 14))
+    # An attempt in which nothing could be read is in no curve.
+    record_outcome(store, scara, (None,), codes="value")
+    record_outcome(store, scara, (1,), "grace", codes="half_turn")
+    record_outcome(store, scara, (2,), "grace", codes="an_a_code")
+    # A part that the exercise no longer has.
+    record_outcome(store, scara, (3,), "grace", part="axes", codes="value")
+    told = statistics(store)
+    assert (told.attempts, told.learners) == (17, 2)
+    assert told.learners_by_attempt == [2, 2, 2, *[1] * 9]
+    found = [(each.part, each.code, each.attempts, each.by_attempt) for each in told.misconceptions]
+    assert found == [
+        ("table", "value", 5, [1, 1, 1, 1, *[0] * 8]),
+        ("table", "half_turn", 4, [2, 1, 1, *[0] * 9]),
+        ("axes", "value", 1, [0, 0, 1, *[0] * 9]),
+        ("table", "an_a_code", 1, [0, 1, *[0] * 10]),
+    ]
+
+
+def test_equally_common_misconceptions_are_in_alphabetical_order(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    for i, code in enumerate(("value", "half_turn", "sign", "half_turn"), start=1):
+        record_outcome(store, catalogue["scara"], (i,), codes=code)
+    found = [each.code for each in statistics(store).misconceptions]
+    assert found == ["half_turn", "sign", "value"]
+
+
+@pytest.mark.parametrize(
+    ("with_row", "without", "unread", "is_shown"),
+    [(1, 0, 0, True), (1, 1, 0, False), (2, 1, 0, True), (2, 2, 0, False), (1, 0, 2, True)],
+)
+def test_a_row_is_shown_if_most_tables_have_it(
+    store: AttemptStore,
+    catalogue: Mapping[str, Exercise],
+    with_row: int,
+    without: int,
+    unread: int,
+    is_shown: bool,
+) -> None:
+    # Tables without cells are not counted.
+    numbers = iter(range(1, 10))
+    for times, cells in ((with_row, "1/a 5/a"), (without, "1/a"), (unread, "")):
+        ordinals = [next(numbers) for _ in range(times)]
+        record_outcome(store, catalogue["scara"], ordinals, cells=cells)
+    (table,) = statistics(store).parts
+    first, fifth = ("1", with_row + without), ("5", with_row)
+    shown = [(row.label, row.answered) for row in table.rows]
+    assert shown == ([first, fifth] if is_shown else [first])
+
+
+def test_taken_hints_are_counted(store: AttemptStore, catalogue: Mapping[str, Exercise]) -> None:
+    attempt = recorded(store, catalogue["scara"], "ada", NO_TWIST).number
+    place = {"attempt": attempt, "part": "table", "code": "half_turn", "row": "2", "at": NOON}
+    taken = [{**place, "cell": "alpha", "step": step, "price": 0.1} for step in (1, 2)]
+    with store.engine.execution_options(writes=True).begin() as connection:
+        connection.execute(insert(hints), [*taken, {**taken[0], "cell": "a"}])
+    (told,) = statistics(store).hints
+    assert (told.part, told.code, told.taken) == ("table", "half_turn", [2, 1, 0])

@@ -3,6 +3,7 @@
 import io
 import re
 import zipfile
+from collections.abc import Mapping
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
@@ -17,11 +18,14 @@ from typer.testing import CliRunner
 from service.access.caller import Scope
 from service.access.key_table import add_key
 from service.access.key_text import new_key_text
+from service.catalogue import Exercise
 from service.cli.program import program
 from service.contract.courses import NewLearner
 from service.courses import roll
+from service.courses.results.workbook import gradebook_workbook
 from tests.access.kept_services import SECRET
 from tests.courses.conftest import NOW, Class, days
+from tests.courses.results.test_gradebook import fill
 
 _NAMES = {
     "m": "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
@@ -44,6 +48,9 @@ def sheets(content: bytes) -> dict[str, list[list[str | float | None]]]:
             assert part.find(f".//m:{hostile}", _NAMES) is None
         rows = part.iterfind(".//m:row", _NAMES)
         found[sheet.attrib["name"]] = [_row(row, texts) for row in rows]
+        # A row without cells is not in the file.
+        places = [int(row.attrib["r"]) for row in part.iterfind(".//m:row", _NAMES)]
+        assert places == list(range(1, len(places) + 1))
     return found
 
 
@@ -96,6 +103,44 @@ def test_the_workbook_has_points_and_hand_ins_and_no_formula(graded: Class) -> N
     now = datetime.now(ZoneInfo("Europe/Berlin")).replace(tzinfo=UTC)
     last = (now - datetime(1899, 12, 30, tzinfo=UTC)).total_seconds() / 86400
     assert rows[1][4] == pytest.approx(last, abs=0.01, rel=0)
+
+
+def test_the_workbook_of_one_assignment_has_no_hand_ins_of_another(
+    class_: Class, catalogue: Mapping[str, Exercise]
+) -> None:
+    fill(class_, catalogue)
+
+    def told(only: str | None) -> dict[str, list[list[str | float | None]]]:
+        return sheets(class_.do(lambda it: gradebook_workbook(it, "robots", only)))
+
+    def days_at(hour: int) -> float:
+        # The clocks of Berlin are an hour ahead in November. Day 0 is 1899-12-30.
+        return (
+            datetime(2026, 11, 22, 13 + hour, tzinfo=UTC) - datetime(1899, 12, 30, tzinfo=UTC)
+        ) / timedelta(days=1)
+
+    def near(*rows: list[float]) -> list[Any]:
+        return [pytest.approx(row, abs=1e-6, rel=0) for row in rows]
+
+    both, second = told(None), told("second")
+    assert [row[3:] for row in both["Points"][1:]] == near([5, 3, 8], [0, 4, 4])
+    assert [row[3:] for row in second["Points"][1:]] == near([3, 3], [4, 4])
+    # Hand-ins: for each column the number and the last time.
+    assert [row[3:] for row in both["Hand-ins"][1:]] == near(
+        [2, days_at(1), 1, days_at(2)], [1, days_at(3), 1, days_at(4)]
+    )
+    assert [row[3:] for row in second["Hand-ins"][1:]] == near([1, days_at(2)], [1, days_at(4)])
+
+
+def test_the_titles_and_the_learners_stay_in_view(class_: Class) -> None:
+    content = class_.do(lambda it: gradebook_workbook(it, "robots"))
+    with zipfile.ZipFile(io.BytesIO(content)) as file:
+        for name in ("sheet1", "sheet2"):
+            sheet = ElementTree.fromstring(file.read(f"xl/worksheets/{name}.xml"))
+            pane = sheet.find(".//m:pane", _NAMES)
+            assert pane is not None
+            # One row of titles, and the learner's name, full name and address.
+            assert (pane.attrib["ySplit"], pane.attrib["xSplit"]) == ("1", "3")
 
 
 def test_only_tutors_of_the_course_get_the_workbook(graded: Class) -> None:
