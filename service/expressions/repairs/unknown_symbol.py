@@ -62,7 +62,7 @@ def _names(name: str, vocabulary: Vocabulary) -> str:
     named = [symbol for symbol in vocabulary.symbols if symbol.kind == kind]
     constants = [symbol for symbol in named if symbol.joint is None]
     if kind is not None and (constants or not (named or vocabulary.of_books)):
-        return _names_of_kind(kind, constants, vocabulary)
+        return _names_of_kind(kind, named, vocabulary)
     return _all_names(list(vocabulary.symbols), vocabulary) if vocabulary.symbols else ""
 
 
@@ -75,8 +75,9 @@ def _all_names(symbols: list[Symbol], vocabulary: Vocabulary) -> str:
     return say("It has {names}.", names=names)
 
 
-def _names_of_kind(kind: Kind, constants: list[Symbol], vocabulary: Vocabulary) -> str:
-    names = _joined(constants)
+def _names_of_kind(kind: Kind, named: list[Symbol], vocabulary: Vocabulary) -> str:
+    # The variables of joints stand behind the constants.
+    names = _joined(sorted(named, key=lambda symbol: symbol.joint is not None))
     if vocabulary.of_books:
         if kind == "length":
             return say("The lengths are {names}.", names=names)

@@ -220,23 +220,33 @@ def undefined(case: WrongValue) -> Finding | None:
 
 def differs(case: WrongValue, hint: str) -> Finding:
     """Return a finding with a hint and a counterexample."""
+    return finding_on(case, hint, _counterexample(case))
+
+
+def _counterexample(case: WrongValue) -> dict[str, float | str] | None:
     # The counterexample is computed from the printed numbers, so that a pocket calculator agrees.
     # A right number without its formula can be checked only with the values of all symbols.
     alone = case.corrects and case.correction is None
     symbols = case.samples.values.keys() if alone else case.expression.symbols
-    values: dict[str, float | str] = {**case.samples.at(0, symbols)}
-    if values:
-        values[YOURS] = _printed(case, _at_printed(case))
-        if case.corrects:
-            values[EXPECTED] = _printed(case, float(case.expected[0]))
-    return finding_on(case, hint, values or None)
+    for i, expected in enumerate(case.expected):
+        values: dict[str, float | str] = {**case.samples.at(i, symbols)}
+        if not values:
+            return None
+        values[YOURS] = _printed(case, _at_printed(case, i))
+        if not case.corrects:
+            return values
+        values[EXPECTED] = _printed(case, float(expected))
+        # Two numbers that look the same show no mistake.
+        if values[YOURS] != values[EXPECTED]:
+            return values
+    return None
 
 
-def _at_printed(case: WrongValue) -> float:
+def _at_printed(case: WrongValue, sample: int) -> float:
     samples, names = case.samples, case.expression.symbols
     printed = {
         name: np.array([math.radians(number) if name in samples.in_degrees else number])
-        for name, number in samples.at(0, names).items()
+        for name, number in samples.at(sample, names).items()
     }
     return float(np.ravel(case.expression.evaluate(printed))[0])
 

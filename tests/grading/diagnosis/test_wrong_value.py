@@ -1,5 +1,7 @@
 """Test the explanations of wrong numbers."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from service.expressions import Symbol, Vocabulary, read
@@ -104,3 +106,22 @@ def test_a_bare_number_has_no_counterexample() -> None:
         "yours",
         "expected",
     }
+
+
+def test_a_counterexample_shows_two_numbers_that_differ() -> None:
+    # Both are 4.512 with four digits in the first sample.
+    rights = np.where(np.arange(SAMPLES) == 0, 4.5121, 9.0)
+    case = WrongValue(
+        expression=read("l1", Vocabulary([Symbol("l1", "length")])),
+        actual=4.5124 * ONES,
+        expected=rights,
+        samples=Samples({"l1": 4.5124 * ONES}),
+        scale=1.0,
+        angle=False,
+        corrects=True,
+    )
+    found = differs(case, "Hint.").values
+    assert found is not None
+    assert (found["yours"], found["expected"]) == (4.512, 9.0)
+    alike = replace(case, expected=4.5121 * ONES)
+    assert differs(alike, "Hint.").values is None
