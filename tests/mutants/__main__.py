@@ -63,7 +63,11 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "results": Package(
         ["service/attempts/results/*.py"],
-        ["tests/attempts/results", "tests/api/recording/test_listing.py"],
+        [
+            "tests/attempts/results",
+            "tests/api/recording/test_listing.py",
+            "tests/api/recording/test_managing.py",
+        ],
         ["tests/attempts/results"],
     ),
     "fair_points": Package(

@@ -3,14 +3,18 @@ from datetime import UTC, datetime, timedelta
 from itertools import count
 
 import pytest
-from sqlalchemy import event
+from sqlalchemy import event, select
 
 from service.attempts.attempt import AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
 from service.attempts.results.listing import history, page, place_of
+from service.attempts.storage.tables import assignments
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
-from tests.attempts.recorded import LAZY, NO_TWIST, NOON, RIGHT, recorded
+from service.contract.courses import NewAssignment, NewCourse
+from service.courses.assignments import add_assignment
+from service.courses.roll import add_course
+from tests.attempts.recorded import LAZY, NO_TWIST, NOON, RIGHT, new_attempt, recorded, recorded_all
 
 EVERY = AttemptFilter()
 
@@ -63,6 +67,47 @@ def test_filters_combine(store: AttemptStore, catalogue: Mapping[str, Exercise])
     assert found(AttemptFilter(since=NOON + hour, until=NOON + 2 * hour)) == {second.id, other.id}
     assert found(AttemptFilter(counted=False)) == {unread.id}
     assert found(AttemptFilter(learner="ada", counted=True, since=NOON + hour)) == {second.id}
+
+
+@pytest.mark.parametrize(
+    ("wanted", "expected"),
+    [
+        (AttemptFilter(counted=True), {1, 2, 3}),
+        (AttemptFilter(counted=False), {0}),
+        (AttemptFilter(exercise="scara~s"), {1}),
+        (AttemptFilter(exercise="scara~t"), set()),
+        (AttemptFilter(course="robots"), {1, 2}),
+        (AttemptFilter(course="robots", assignment="second"), {2}),
+        (AttemptFilter(course="others"), {3}),
+        (AttemptFilter(course="others", assignment="second"), set()),
+    ],
+)
+def test_attempts_are_chosen_by_course_variant_and_whether_they_count(
+    store: AttemptStore,
+    catalogue: Mapping[str, Exercise],
+    wanted: AttemptFilter,
+    expected: set[int],
+) -> None:
+    scara = catalogue["scara"]
+    with store.engine.execution_options(writes=True).begin() as connection:
+        for course in ("robots", "others"):
+            new = NewCourse(id=course, title="Course", zone="UTC")
+            add_course(connection, new, NOON)
+        exercises = [{"exercise": "scara", "points": 1}]
+        for course, name in (("robots", "first"), ("robots", "second"), ("others", "first")):
+            fields = {"id": name, "title": name, "exercises": exercises}
+            add_assignment(connection, course, NewAssignment.model_validate(fields), {"scara"})
+        rows = connection.execute(select(assignments).order_by(assignments.c.number))
+        numbers = [row.number for row in rows]
+    new_attempts = [
+        new_attempt(scara, "ada", "?!", None),
+        new_attempt(scara, "ada", RIGHT, 1, assignment=numbers[0], variant="s"),
+        new_attempt(scara, "ada", RIGHT, 2, assignment=numbers[1]),
+        new_attempt(scara, "ada", RIGHT, 3, assignment=numbers[2]),
+    ]
+    written = [each.id for each in recorded_all(store, new_attempts)]
+    (found,) = all_pages(store, wanted, 4)
+    assert {written.index(each.id) for each in found} == expected
 
 
 def test_an_invalid_cursor_is_refused(store: AttemptStore) -> None:
