@@ -110,7 +110,10 @@ def test_an_extension_shows_the_dates_that_hold(
     expected: tuple[str | None, ...],
 ) -> None:
     due, closes = map(at, of_assignment)
-    assignment = CourseAssignment.model_construct(opens=None, due=due, closes=closes)
+    assignment = CourseAssignment(
+        id="homework", title="Homework", exercises=[], due=due, closes=closes, late_worth=0.5,
+        practice="open", solution="never", variants=False, extensions=[],
+    )  # fmt: skip
     due, closes = map(at, own)
     given = Extension.model_construct(learner="ada", due=due, closes=closes, limit=2)
     told = with_own_dates(assignment, given)

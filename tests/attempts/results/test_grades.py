@@ -55,7 +55,8 @@ def test_the_best_or_the_last_attempt_counts(
         for i, each in enumerate(points)
     ]  # fmt: skip
     recorded_all(store, new)
-    for rule, expected in (("best", best), ("last", last)):
+    expected_by: Mapping[Counting, int | None] = {"best": best, "last": last}
+    for rule, expected in expected_by.items():
         counts = [json.loads(each)["counts"] for each in exported(store, GradesFormat.JSONL, rule)]
         assert counts == [i == expected for i in range(len(points))]
 
