@@ -17,7 +17,8 @@ from service.catalogue import Exercise, FeedbackLevel
 from service.catalogue.attempts import AttemptsSpec
 from service.contract.courses import CourseAssignment, Extension
 from service.courses.assignments import extend
-from service.courses.terms import LearnerTerms, extended, terms_of, with_own_dates
+from service.courses.terms import LearnerTerms, extended, terms_of
+from service.courses.times import with_own_dates
 from tests.courses.conftest import Class
 from tests.together import together
 
