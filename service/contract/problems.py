@@ -79,7 +79,7 @@ PROBLEM_TYPES: Final[Mapping[str, ProblemType]] = {
     ),
     "origin-refused": ProblemType(403, "a page of this origin may not record attempts"),
     "metrics-off": ProblemType(403, "the service does not show you metrics"),
-    "tokens-not-made": ProblemType(404, "the service needs no keys, so nobody can make a token"),
+    "tokens-not-made": ProblemType(404, "the service needs no keys, so it makes no tokens"),
     "batch-too-large": ProblemType(
         422, "the batch has more submissions than the limit allows at once"
     ),
