@@ -5,7 +5,7 @@ The headings are those of Moodle's language packs, version 4.5.
 
 import csv
 import io
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import pytest
 
@@ -141,6 +141,16 @@ def test_points_are_scaled_to_the_maximum_of_the_worksheet() -> None:
     words = WORDS["en"]
     after, _ = Worksheet(moodle(words, most="100.00")).filled([BEN])
     assert b",29.17,100.00," in after
+
+
+def test_points_have_the_decimal_comma_of_the_worksheet() -> None:
+    after, _ = Worksheet(moodle(WORDS["de"])).filled([BEN])
+    assert b',"2,33","8,00",' in after
+
+
+def test_a_comment_is_no_formula_of_a_spreadsheet() -> None:
+    after, _ = Worksheet(moodle(WORDS["en"])).filled([replace(ADA, comment="=1+1")])
+    assert b",-,'=1+1\n" in after
 
 
 def test_a_worksheet_without_the_time_of_grades_is_refused() -> None:

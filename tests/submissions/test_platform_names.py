@@ -38,6 +38,17 @@ from service.submissions.platform_names import PlatformName, platform_name
         ("lovelaceada_12345_link.html", "lovelaceada_12345", "12345", "link.html"),
         ("anon_x7Gh2_678_table.csv", "anon_x7Gh2", "anon_x7Gh2", "table.csv"),
         ("LATE_anon_x7Gh2_678_table.csv", "anon_x7Gh2", "anon_x7Gh2", "table.csv"),
+        # Brightspace.
+        (
+            "75842-1234567 - Ann-Marie Lee - Oct 3, 2026 405 PM",
+            "Ann-Marie Lee_75842-1234567", "Ann-Marie Lee", "",
+        ),
+        # Blackboard.
+        (
+            "HW1_abyron_attempt_2026-10-03-16-05-33_dh_table.csv",
+            "HW1_abyron", "abyron", "dh_table.csv",
+        ),
+        ("HW1_abyron_attempt_2026-10-03-16-05-33.txt", "HW1_abyron", "abyron", "attempt.txt"),
     ],
 )  # fmt: skip
 def test_the_student_in_a_platform_name_is_found(

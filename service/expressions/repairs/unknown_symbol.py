@@ -76,7 +76,7 @@ def _all_names(symbols: list[Symbol], vocabulary: Vocabulary) -> str:
 
 
 def _names_of_kind(kind: Kind, named: list[Symbol], vocabulary: Vocabulary) -> str:
-    # The variables of joints stand behind the constants.
+    # Name the constants first, then the joint variables.
     names = _joined(sorted(named, key=lambda symbol: symbol.joint is not None))
     if vocabulary.of_books:
         if kind == "length":
