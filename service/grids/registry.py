@@ -21,6 +21,7 @@ from service.grids.formats import (
     tsv,
 )
 from service.grids.formats.data_frame import without_frame
+from service.grids.formats.decimal_commas import with_decimal_points
 from service.grids.matrices import bracketed, drawn_matrix, eigen, maple, matlab_rows, word
 from service.grids.scripts.given_values import without_definitions, without_given_values
 from service.grids.scripts.later_statements import without_print, without_uses
@@ -44,6 +45,8 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 
 # The formats in which a sign separates cells.
 _SEPARATED: Final = FORMATS[FORMATS.index(markdown.FORMAT) :]
+# The formats in which a comma separates no cells.
+_WITHOUT_COMMAS: Final = (html.FORMAT, markdown.FORMAT, tsv.FORMAT, semicolons.FORMAT)
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
@@ -127,6 +130,8 @@ def grid_of(source: SourceText) -> Grid:
     if found in _SEPARATED:
         source = without_last_signs(source)
         found = _format_of(source)
+    if found in _WITHOUT_COMMAS:
+        return with_decimal_points(found.parse(source))
     if found:
         return found.parse(source)
     raise GridError(

@@ -12,7 +12,7 @@ from service.grading.numerics.samples import Samples
 from service.grading.reading.entry import Reader
 from service.grading.reading.pasted import pasted_grid
 from service.grading.report import Verdict
-from service.grids import GridError
+from service.grids import GridError, read_grid
 
 
 def cells(text: str) -> list[str]:
@@ -37,6 +37,33 @@ def test_other_indices_have_two_readings(text: str) -> None:
 
 
 # --- decimal commas
+
+
+@pytest.mark.parametrize(
+    ("text", "read"),
+    [
+        ("0,5;1\n2,25;l1", [["0.5", "1"], ["2.25", "l1"]]),
+        ("0,5\t1,000\n2\tl1", [["0.5", "1.000"], ["2", "l1"]]),
+        ("-0,5l1;cos(0,5)\n2*1,25;atan2(1,5)", [["-0.5l1", "cos(0,5)"], ["2*1.25", "atan2(1,5)"]]),
+        ("|a, mm|alpha|\n|---|---|\n|12,5|q1|", [["a, mm", "alpha"], ["12.5", "q1"]]),
+        # Thousands, points beside commas, lists, or one line: no comma is certain.
+        ("1,000;2\n12,500;3", [["1,000", "2"], ["12,500", "3"]]),
+        ("1.000;0,5\n2;3", [["1.000", "0,5"], ["2", "3"]]),
+        ("1,2,3;0,5\n2;3", [["1,2,3", "0,5"], ["2", "3"]]),
+        ("1, 2;0,5\n2;3", [["1, 2", "0,5"], ["2", "3"]]),
+        ("q1,5;0,5\n2;3", [["q1,5", "0,5"], ["2", "3"]]),
+    ],
+)
+def test_a_comma_is_a_decimal_comma_only_where_nothing_else_fits(
+    text: str, read: list[list[str]]
+) -> None:
+    assert [[cell.text for cell in row] for row in read_grid(text, of_table=True).rows] == read
+
+
+def test_a_decimal_comma_in_a_cell_keeps_its_place() -> None:
+    cell = read_grid("0,5;1\n2,25;l1", of_table=True).rows[1][0]
+    assert (cell.text, cell.whole) == ("2.25", (6, 10))
+
 
 # The table of the UR5e as its maker prints it, in the language of a German spreadsheet.
 ROWS = (
@@ -76,8 +103,20 @@ def test_a_table_with_decimal_commas_has_full_marks(
     assert report.points == report.max_points
 
 
-@pytest.mark.parametrize("shape", SHAPES)
-def test_without_leave_no_decimal_comma_is_read(
+@pytest.mark.parametrize("shape", ["spreadsheet", "csv", "markdown"])
+def test_between_other_signs_than_commas_a_decimal_comma_is_read_with_a_note(
+    arm: Callable[[bool], Exercise], shape: str
+) -> None:
+    [report, *_] = grade(arm(False), Submission({"table": SHAPES[shape]})).parts
+    assert report.points == report.max_points
+    notes = [finding for finding in report.feedback if finding.code == "decimal_comma_read"]
+    assert [str(note.message) for note in notes] == [
+        "`0,1625` is read as 0.1625: the comma is a decimal comma."
+    ]
+
+
+@pytest.mark.parametrize("shape", ["cells", "spaces"])
+def test_elsewhere_no_decimal_comma_is_read_without_leave(
     arm: Callable[[bool], Exercise], shape: str
 ) -> None:
     [report, *_] = grade(arm(False), Submission({"table": SHAPES[shape]})).parts

@@ -138,7 +138,8 @@ def test_an_unreadable_number_keeps_the_unit_of_its_header(
 ) -> None:
     # An entry with its unit gets the correct repair even without the header.
     headers = [unit, *(name for name in ("a", "alpha", "d", "theta") if name not in unit.split())]
-    text = f"{';'.join(headers)}\n{typed};0;0;q1"
+    # A list of values in another cell: the commas of the text are not certainly decimal commas.
+    text = f"{';'.join(headers)}\n{typed};1,2,3;0;q1"
     [cell] = [cell for cell in preview_pasted(text, arm, "table").rows[0] if cell.typed == typed]
     assert cell.entry == entry
     quantity: Kind = "length" if unit.startswith("d") else "angle"

@@ -99,10 +99,10 @@ def test_a_row_of_the_wrong_length_affects_only_itself(catalogue: Mapping[str, E
     assert text[slice(*feedback.span)] == "0, q4, 0"
 
 
-def test_a_decimal_comma_is_named_and_affects_only_its_cell(
+def test_a_comma_that_may_separate_thousands_is_named_and_affects_only_its_cell(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    text = "a;alpha;d;theta\nl2;0;l1;q1\nl3;3,14159;0;q2\n0;0;l4;q3\n0;0;q4;0"
+    text = "a;alpha;d;theta\nl2;0;l1;q1\nl3;3,142;0;q2\n0;0;l4;q3\n0;0;q4;0"
     report = pasted(catalogue[RRRP.exercise], text)
     assert not_correct(report) == {("2", "alpha"): Verdict.UNREADABLE}
     assert codes(cell(report, "2", "alpha")) == ["decimal_comma"]
