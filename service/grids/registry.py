@@ -23,6 +23,7 @@ from service.grids.formats import (
 from service.grids.formats.data_frame import without_frame
 from service.grids.formats.decimal_commas import with_decimal_points
 from service.grids.matrices import bracketed, drawn_matrix, eigen, maple, matlab_rows, word
+from service.grids.matrices.identity import identity
 from service.grids.scripts.given_values import without_definitions, without_given_values
 from service.grids.scripts.later_statements import without_print, without_uses
 from service.grids.scripts.named_columns import describes_columns, read_columns
@@ -66,6 +67,8 @@ def read_grid(text: str, *, of_table: bool = False) -> Grid:
     # The length of the text is bounded by ``GRID_LIMITS``. With ``of_table``, later statements of a
     # script may use the grid: it is the answer, and their results are not.
     source = pasted_source(text)
+    if not of_table and (named := identity(source)):
+        return named
     if named_values.FORMAT.matches(source.text):
         # The label of the first row would be a title.
         return named_values.FORMAT.parse(source)

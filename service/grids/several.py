@@ -17,6 +17,7 @@ from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.formats import latex
 from service.grids.matrices import latex_list
+from service.grids.matrices.identity import identity
 from service.grids.matrices.lists import lines_of
 from service.grids.registry import grid_of, pasted_source
 from service.grids.scripts.program_text import MAKERS, TAIL, without_harmless_lines, without_remarks
@@ -85,7 +86,7 @@ def _is_made_later(each: NamedGrid, later: Sequence[NamedGrid]) -> bool:
 
 def _read(piece: SourceText) -> Grid | GridError:
     try:
-        return grid_of(piece)
+        return identity(piece) or grid_of(piece)
     except GridError as error:
         return error
 
@@ -142,7 +143,8 @@ def _labelled(source: SourceText) -> Iterator[tuple[SourceText, SourceText]]:
 def _holds_something(content: SourceText) -> bool:
     # True unless the text is only prose or a product of named matrices.
     text = content.text.strip(TAIL)
-    return _PRODUCT.fullmatch(text) is None and _PROSE.fullmatch(text) is None
+    is_name = _PRODUCT.fullmatch(text) or _PROSE.fullmatch(text)
+    return not is_name or identity(content) is not None
 
 
 def _listed(content: SourceText) -> list[SourceText]:

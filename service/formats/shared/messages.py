@@ -3,6 +3,7 @@
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import reduce
+from itertools import chain, groupby
 from typing import Final
 
 from service.formats.shared.graded import GradedSubmission
@@ -53,6 +54,9 @@ _SEVERITY_NAMES: Final[Mapping[Severity, str]] = {
 
 _RESULTS: Final = (YOURS, EXPECTED)
 
+# A message, its places, and the verdict there.
+_Placed = tuple[Feedback, tuple[Place, ...], Verdict]
+
 
 @dataclass(frozen=True, slots=True)
 class Message:
@@ -92,8 +96,21 @@ def messages(part: PartReport, translation: Translation | None = None) -> Iterat
     if part.verdict is Verdict.MISSING and not part.feedback and not part.rows:
         nothing = Feedback("missing", Severity.ERROR, say("Nothing was handed in."))
         yield _message(nothing, (), Verdict.MISSING, (), translation)
-    for feedback, places, verdict in messages_of(part):
+    for feedback, places, verdict in _once_for_each_row(messages_of(part)):
         yield _message(feedback, places, verdict, part.rows, translation)
+
+
+def _once_for_each_row(found: Iterable[_Placed]) -> Iterator[_Placed]:
+    # The same message on cells of one row, one after the other, is told once.
+    def same(each: _Placed) -> object:
+        feedback, places, verdict = each
+        is_on_a_cell = len(places) == 1 and places[0].cell is not None
+        return feedback, verdict, places[0].row if is_on_a_cell else places
+
+    for _, group in groupby(found, same):
+        first, *more = group
+        feedback, places, verdict = first
+        yield feedback, (*places, *chain.from_iterable(each[1] for each in more)), verdict
 
 
 def marks(

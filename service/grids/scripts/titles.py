@@ -27,7 +27,11 @@ _ENVIRONMENT: Final = re.compile(r"\\(?:begin|end) ?\{(?!document\})|\\[\[\]]|\$
 _PADDING: Final = " \t;,"
 _EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
 # A line of one or two words, which may be short: "DH", "% DH", "End".
-_FEW_WORDS: Final = re.compile(r"[%#*\s]*(?!pi\b)[^\W\d_]{2,}(?: [^\W\d_]+)?\s?[.!:]?")
+_FEW_WORDS: Final = re.compile(
+    r"[%#*\s]*(?:(?!pi\b)[^\W\d_]{2,}(?: [^\W\d_]+)?"
+    r"|[A-Z]\w{0,3} (?:[Mm]atri[xz]|[Mm]atrice|[Tt]able|[Tt]ab(?:elle|la|leau)))\s?[.!:]?"
+)
+_MOST_WORDS: Final = 2
 # Signs of a row with several values.
 _SEVERAL: Final = re.compile(r"[\s,;\[\]]")
 # Signs of a formula, a row or a program.
@@ -181,7 +185,9 @@ def _has_heading(lines: list[SourceText]) -> bool:
     # A comment of a program is removed with the other comments.
     if first[0] in "%#" or not _is_few_words(first) or not _WORD.search(first):
         return False
-    return "[" in others[0] or (" " not in first and all(map(_SEVERAL.search, others)))
+    if "[" in others[0] or all(len(line.split()) > _MOST_WORDS for line in others):
+        return True
+    return " " not in first and all(map(_SEVERAL.search, others))
 
 
 def _is_padded(line: str) -> bool:

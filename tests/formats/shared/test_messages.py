@@ -104,3 +104,28 @@ def test_places_without_cells_are_rows() -> None:
     assert places_in_words([]) == ""
     assert places_in_words([Place("1"), Place("3")]) == "rows 1, 3"
     assert places_in_words([Place("1", "d"), Place("2")]) == "row 1 d; row 2"
+
+
+def test_a_message_on_all_cells_of_a_row_is_told_once() -> None:
+    unread = Feedback("row_length", Severity.ERROR, say("The row is too short."))
+    other = Feedback("sign", Severity.ERROR, say("The sign is wrong."))
+    unreadable = Verdict.UNREADABLE
+
+    def row(label: str, *found: Feedback | None) -> RowReport:
+        cells = [
+            CellReport(name, unreadable, (each,) if each else ())
+            for name, each in zip("abc", found, strict=True)
+        ]
+        return RowReport(label, unreadable, 0.0, 1.0, tuple(cells), ())
+
+    rows = (
+        row("1", unread, unread, unread),
+        row("2", unread, None, unread),
+        row("3", other, None, other),
+    )
+    report = PartReport("p", "matrix", unreadable, 0.0, 1.0, False, rows, ())
+    assert [message.line for message in messages(report)] == [
+        "row 1: The row is too short.",
+        "row 2 a, c: The row is too short.",
+        "row 3 a, c: The sign is wrong.",
+    ]

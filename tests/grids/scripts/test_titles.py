@@ -48,6 +48,11 @@ def test_a_heading_above_a_matrix_is_no_row(heading: str, matrix: str) -> None:
     assert cells(f"{heading}\n{matrix}") == cells(matrix)
 
 
+@pytest.mark.parametrize("heading", ["T matrix", "Matrix T", "H0 Matrix:"])
+def test_the_name_of_a_matrix_above_its_columns_is_no_row(heading: str) -> None:
+    assert cells(f"{heading}\nc1 -s1 0\ns1 c1 0\n0 0 1") == cells("c1 -s1 0\ns1 c1 0\n0 0 1")
+
+
 def test_two_words_are_a_heading_only_above_brackets() -> None:
     assert cells("My answer\n[c1, -s1; s1, c1]") == cells("[c1, -s1; s1, c1]")
     assert cells("gamma, delta\n1, 2") == [["gamma", "delta"], ["1", "2"]]

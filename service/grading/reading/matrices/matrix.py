@@ -23,6 +23,7 @@ from service.grading.reading.pasted import from_grid_error, pasted_grid, place_o
 from service.grading.reading.unit_comments import refuse_other_lengths
 from service.grading.report import Verdict
 from service.grids import Grid, GridCell, GridError
+from service.grids.matrices.identity import ANY_SIZE
 from service.kinematics.transforms import Numbers
 from service.translations import say
 
@@ -172,6 +173,8 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
 def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     height, width = len(quantities), len(quantities[0])
     grid = grid.with_empty_rows(height).without_half_row(height)
+    if grid.format == ANY_SIZE and height == width:
+        grid = replace(grid, rows=tuple(row[:width] for row in grid.rows[:height]))
     if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
         span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
         raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))

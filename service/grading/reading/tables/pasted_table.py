@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Final
 
+from service.expressions.errors import Note
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.pasted import (
@@ -34,10 +35,13 @@ from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
 from service.grids.cutting.source_text import joined
+from service.grids.scripts.titles import check_units
 from service.kinematics.chain import COLUMNS, THETA, D
-from service.translations import listed, say
+from service.translations import listed, say, say_count
 
 ColumnOrder = tuple[int | None, Header]
+# The most rows above the headers that do not belong to the table.
+_MOST_NAMES: Final = 3
 _OFFSETS: Final = (column_headers.OFFSET, column_headers.THETA_OFFSET)
 
 
@@ -105,7 +109,7 @@ def table_of(
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)
-    grid = with_units_in_headers(grid)
+    grid = with_units_in_headers(_below_names(grid, reader))
     found = _found_headers(grid.rows[0], reader)
     named = None if found is not None else columns_in_comments(comments)
     if found is None:
@@ -134,6 +138,28 @@ def table_of(
     notes = tuple(map(from_note, grid.notes))
     headers = tuple(header for _, header in columns)
     return PastedTable(rows, headers, (*notes, *findings), bool(found or named))
+
+
+def _below_names(grid: Grid, reader: Reader) -> Grid:
+    # Rows above the headers are no rows of the table, but the name of a student or a homework, if
+    # something in each of them is unreadable.
+    first = next((i for i, row in enumerate(grid.rows) if _names_all_columns(row)), 0)
+    above = grid.rows[:first]
+    if not 0 < first <= _MOST_NAMES or any(
+        all(reader.read(cell.text, "number").readable for cell in row) for row in above
+    ):
+        return grid
+    for row in above:
+        check_units(joined(row, row[0].at))
+    message = say("The sentences before and after the table were ignored.")
+    note = Note("text_left_aside", message, place_of(above[0]))
+    return replace(grid, rows=grid.rows[first:], notes=(*grid.notes, note))
+
+
+def _names_all_columns(row: Sequence[GridCell]) -> bool:
+    headers = [read_header(cell.text) for cell in row]
+    named = [header.column for header in headers if header and header.column in QUANTITIES]
+    return sorted(named) == sorted(COLUMNS)
 
 
 def table_of_robot(robot: RobotTable, reader: Reader) -> PastedTable:
@@ -428,9 +454,13 @@ def _row(
     found: Sequence[Header | None] = (),
 ) -> PastedRow:
     if len(row) != width:
-        message = say(
-            "This row has {values} values, but the table has {columns} columns. Write one value "
-            "in each column; where a parameter is 0, write 0.",
+        message = say_count(
+            "The row {row} has {values} value, but the table has {columns} columns. Write one "
+            "value in each column; where a parameter is 0, write 0.",
+            "The row {row} has {values} values, but the table has {columns} columns. Write one "
+            "value in each column; where a parameter is 0, write 0.",
+            count=len(row),
+            row=quoted(", ".join(cell.text for cell in row)),
             values=len(row),
             columns=width,
         )

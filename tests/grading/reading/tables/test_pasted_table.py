@@ -99,6 +99,34 @@ def test_a_row_of_the_wrong_length_affects_only_itself(catalogue: Mapping[str, E
     assert text[slice(*feedback.span)] == "0, q4, 0"
 
 
+@pytest.mark.parametrize(
+    "above",
+    [
+        "Ada, Lovelace, 12345, HW 3",
+        "Name: Ada, 12345\nHomework, 3, , ",
+        "x, sentence, with, commas",
+    ],
+)
+def test_names_above_the_headers_are_no_rows(above: str, catalogue: Mapping[str, Exercise]) -> None:
+    text = f"{above}\n{table_of(RRRP_LINES)}"
+    report = pasted(catalogue[RRRP.exercise], text)
+    assert full_marks(report)
+    assert "text_left_aside" in {each.code for each in report.feedback}
+
+
+def test_a_row_of_values_above_the_headers_is_kept(catalogue: Mapping[str, Exercise]) -> None:
+    text = f"{RRRP_LINES[0]}\n{table_of(RRRP_LINES[1:])}"
+    report = pasted(catalogue[RRRP.exercise], text)
+    assert not full_marks(report)
+    assert "text_left_aside" not in {each.code for each in report.feedback}
+
+
+def test_a_unit_above_the_headers_is_not_lost(catalogue: Mapping[str, Exercise]) -> None:
+    text = f"Ada, angles in degrees, 123, x\n{table_of(RRRP_LINES)}"
+    report = pasted(catalogue[RRRP.exercise], text)
+    assert [each.code for each in report.feedback] == ["text_around"]
+
+
 def test_a_comma_that_may_separate_thousands_is_named_and_affects_only_its_cell(
     catalogue: Mapping[str, Exercise],
 ) -> None:
