@@ -20,7 +20,7 @@ from typing import Final
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.plain_text import number, points
 from service.formats.shared.spreadsheet import without_formulas
-from service.translations import Sentence, say
+from service.translations import Sentence, say, say_count
 
 # Bytes.
 MAX_WORKSHEET: Final = 16 * 1024 * 1024
@@ -42,6 +42,8 @@ _BLACKBOARD_COLUMN: Final = re.compile(
     r".*\[[^\]\d]*([\d.,]+)[^\]]*\]\s*\|\s*\d+(?:_\d+)*", re.DOTALL
 )
 _EXCUSED: Final = "EX"
+# The most students that one sentence names.
+_MOST_NAMES: Final = 40
 
 
 class UnusableWorksheetError(ValueError):
@@ -125,10 +127,10 @@ class Worksheet:
                 grade_of_row[found[0]] = grade
         problems += [_shared_row(grade_of_row.pop(i)) for i in twice]
         changes: list[tuple[_Cell, str]] = []
+        unread = [grade for grade in grade_of_row.values() if grade.share is None]
         for i, grade in grade_of_row.items():
             cells = layout.rows[i]
             if grade.share is None:
-                problems.append(_by_hand(grade))
                 continue
             if cells[layout.grade].value.strip().upper() == _EXCUSED:
                 problems.append(_excused(grade))
@@ -136,7 +138,7 @@ class Worksheet:
             changes.append((cells[layout.grade], self._written(grade, layout.max_points(cells))))
             if layout.comment is not None:
                 changes.append((cells[layout.comment], without_formulas(grade.comment)))
-        return self._changed(changes), problems
+        return self._changed(changes), [*problems, *([_by_hand(unread)] if unread else [])]
 
     def _written(self, grade: Grade, most: str) -> str:
         maximum = _value(most) if most else grade.max_points
@@ -381,10 +383,16 @@ def _shared_row(grade: Grade) -> Sentence:
     )
 
 
-def _by_hand(grade: Grade) -> Sentence:
-    return say(
-        "{name} could not be read completely. Its row stays as it was; grade it by hand.",
-        name=grade.name,
+def _by_hand(grades: Sequence[Grade]) -> Sentence:
+    # The report says what could not be read in each.
+    names = [PurePath(grade.name).name for grade in grades]
+    return say_count(
+        "{count} row of the worksheet stays as it was, because something in the submission could "
+        "not be read. Grade it by hand: {names}.",
+        "{count} rows of the worksheet stay as they were, because something in the submissions "
+        "could not be read. Grade them by hand: {names}.",
+        count=len(grades),
+        names=", ".join(names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else ""),
     )
 
 

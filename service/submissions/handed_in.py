@@ -100,13 +100,13 @@ def all_handed_in(
     paths: Iterable[Path],
     *,
     folder_is_one: bool = False,
-    left_out: Path | None = None,
+    left_out: Collection[Path] = (),
     parts: Collection[str] = (),
 ) -> Iterator[HandedIn]:
     """Yield the submissions in files and folders.
 
-    With ``folder_is_one``, a folder is the submission of one student. ``left_out`` is a file that
-    is not a submission. ``parts`` are the possible parts in file names such as
+    With ``folder_is_one``, a folder is the submission of one student. ``left_out`` are files that
+    are no submissions. ``parts`` are the possible parts in file names such as
     ``STUDENT.PART.csv``.
     """
     for path in paths:
@@ -126,7 +126,9 @@ def all_handed_in(
             yield from _of_class(path, left_out, parts)
 
 
-def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> Iterator[HandedIn]:
+def _of_class(
+    folder: Path, left_out: Collection[Path], parts: Collection[str]
+) -> Iterator[HandedIn]:
     try:
         names = _names(folder, MAX_SUBMISSIONS_IN_FOLDER)
     except UnusableFileError as error:
@@ -134,7 +136,7 @@ def _of_class(folder: Path, left_out: Path | None, parts: Collection[str]) -> It
         return
     by_student: dict[str, list[str]] = {}
     for name in names:
-        if left_out is None or not _is_same(folder / name, left_out):
+        if not any(_is_same(folder / name, each) for each in left_out):
             by_student.setdefault(_student(folder, name, parts), []).append(name)
     for student, own in by_student.items():
         entries = tuple(_entry(folder, name) for name in own)

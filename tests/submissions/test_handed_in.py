@@ -57,7 +57,7 @@ def test_hidden_and_system_files_and_the_output_are_skipped(tmp_path: Path) -> N
         tmp_path, "anna.json", ".DS_Store", "._anna.json", "__MACOSX/anna.json", "Thumbs.db",
         "~$anna.json", "anna.json~", "bert/.git/config", "bert/answer.json", "grades.csv",
     )  # fmt: skip
-    found = all_handed_in([tmp_path], left_out=tmp_path / "grades.csv")
+    found = all_handed_in([tmp_path], left_out=[tmp_path / "grades.csv"])
     assert [told(each) for each in found] == [("anna", ["anna.json"]), ("bert", ["answer.json"])]
 
 

@@ -3,6 +3,7 @@
 import os
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
+from dataclasses import replace
 from datetime import UTC, datetime
 from functools import partial
 from pathlib import Path
@@ -269,7 +270,7 @@ def command(
         all_handed_in(
             paths,
             folder_is_one=one_student or taken.is_single,
-            left_out=output,
+            left_out=_no_submissions(output, worksheet),
             parts=chosen.part_names,
         )
     )
@@ -294,7 +295,8 @@ def command(
             run = _Run(all_graded, shown, check, terms.language if sheet else None)
             several = is_class or len(found) > 1
             if output and taken.folder and is_for_folder(output, several=several):
-                write_folder(taken.folder(run.submissions(), setting), output)
+                in_folder = replace(setting, folder=output)
+                write_folder(taken.folder(run.submissions(), in_folder), output)
             else:
                 pieces = _pieces(taken, output)(run.submissions(), setting)
                 if shard is not None:
@@ -390,9 +392,19 @@ def _fill(sheet: Worksheet | None, file: Path | None, run: "_Run") -> None:
     if sheet is None or file is None:
         return
     content, problems = sheet.filled(run.grades)
-    write([content], file.with_name(f"{file.stem}-graded{file.suffix}"), at_once=True)
+    write([content], _filled_name(file), at_once=True)
     for problem in problems:
         complain(problem)
+
+
+def _filled_name(worksheet: Path) -> Path:
+    return worksheet.with_name(f"{worksheet.stem}-graded{worksheet.suffix}")
+
+
+def _no_submissions(output: Path | None, worksheet: Path | None) -> list[Path]:
+    # The files of this command, which may be in the folder of the class.
+    filled = [worksheet, _filled_name(worksheet)] if worksheet else []
+    return [*filter(None, [output]), *filled]
 
 
 def _pieces(

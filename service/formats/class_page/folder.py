@@ -30,7 +30,7 @@ def class_folder(page: Pages) -> Folder:
     """
 
     def documents(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[Document]:
-        overview = Overview({each.id: each for each in setting.exercises})
+        overview = Overview({each.id: each for each in setting.exercises}, folder=setting.folder)
         file_name = distinct_file_names(".html")
         for submission in submissions:
             path = f"{PAGES}/{file_name(submission.learner)}"

@@ -1,12 +1,22 @@
 """The data of the index, collected from submissions one by one."""
 
+import os
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from pathlib import Path
 
 from service.formats.shared.graded import AnsweredExercise, GradedSubmission
 from service.formats.shared.plain_text import points
 from service.statistics import ClassStatistics
+
+
+@dataclass(frozen=True, slots=True)
+class ByHand:
+    """The reason why a file must be graded by hand; ``file`` is the path to it, or empty."""
+
+    reason: str
+    file: str
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,7 +31,7 @@ class SubmissionLine:
     passed: bool
     is_graded: bool
     is_gradable: bool
-    problems: tuple[str, ...]
+    problems: tuple[ByHand, ...]
 
 
 @dataclass(slots=True)
@@ -36,6 +46,8 @@ class Overview:
     statistics: ClassStatistics = field(default_factory=ClassStatistics)
     pass_mark: float = 0.0
     graders: set[str] = field(default_factory=set)
+    # The folder of the index, from which the paths to files lead; None if it is unknown.
+    folder: Path | None = None
     _learners: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: GradedSubmission, page: str) -> None:
@@ -53,7 +65,7 @@ class Overview:
                 passed=submission.passed,
                 is_graded=submission.is_complete,
                 is_gradable=submission.is_gradable,
-                problems=_problems(submission),
+                problems=_problems(submission, self.folder),
             )
         )
         if submission.is_complete:
@@ -78,11 +90,24 @@ class Overview:
         return [line for line in self.lines if line.problems or not line.is_gradable]
 
 
-def _problems(submission: GradedSubmission) -> tuple[str, ...]:
+def _problems(submission: GradedSubmission, folder: Path | None) -> tuple[ByHand, ...]:
     has_several = len(submission.files) > 1
-    told = (
-        f"{file.exercise.title}: {file.problem}" if has_several else file.problem
+    found = (
+        ByHand(
+            f"{file.exercise.title}: {file.problem}" if has_several else file.problem,
+            _path(file.file, folder),
+        )
         for file in submission.files
         if file.problem
     )
-    return tuple(dict.fromkeys(told))
+    return tuple(dict.fromkeys(found))
+
+
+def _path(file: str, folder: Path | None) -> str:
+    # A file in a zip file has no path.
+    if folder is None or not file or not Path(file).is_file():
+        return ""
+    try:
+        return Path(os.path.relpath(file, folder)).as_posix()
+    except ValueError:  # on another drive of Windows
+        return Path(file).absolute().as_uri()

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from service.formats.shared.graded import AnsweredExercise, GradedSubmission, Visibility
@@ -26,6 +27,8 @@ class Setting:
     environment: Mapping[str, str] = field(default_factory=dict)
     visibility: Visibility = Visibility.VISIBLE
     language: Language = ENGLISH
+    # The folder that the documents are written to, if they are several.
+    folder: Path | None = None
 
 
 class UnusableSettingError(ValueError):

@@ -1,9 +1,11 @@
 import json
 import os
+import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
+from urllib.parse import unquote
 
 import pytest
 from typer.testing import Result
@@ -514,6 +516,38 @@ WORKSHEET = (
 )
 
 
+def test_a_worksheet_in_the_folder_of_the_class_is_no_submission(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "class"
+    (folder / "Ada Byron_1234_assignsubmission_file").mkdir(parents=True)
+    table = "a, alpha, d, theta\n0, 0, 0, q1\nl1, 0, 0, q2\nl2, 0, 0, q3\nl3, 0, 0, 0\n"
+    (folder / "Ada Byron_1234_assignsubmission_file" / "table.csv").write_text(table)
+    (folder / "Grades.csv").write_bytes(WORKSHEET.encode())
+    for _ in range(2):  # The second time, the filled worksheet is there, too.
+        result = run(
+            "grade", folder, "--exercise", "planar-rrr", "--part", "table", "--format", "csv",
+            "--worksheet", folder / "Grades.csv",
+        )  # fmt: skip
+        assert len(result.stdout.splitlines()) == 2
+        assert result.exit_code == 0
+
+
+def test_the_page_of_a_class_leads_to_each_file_that_a_person_grades(
+    run: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "in" / "Ben Okri_1235_assignsubmission_file").mkdir(parents=True)
+    photo = tmp_path / "in" / "Ben Okri_1235_assignsubmission_file" / "my table: a #1.png"
+    photo.write_bytes(b"\x89PNG\r\n\x1a\n")
+    result = run(
+        "grade", tmp_path / "in", "--exercise", "planar-rrr", "--part", "table", "--format", "html",
+        "--output", tmp_path / "out",
+    )  # fmt: skip
+    assert result.exit_code == 2
+    [link] = re.findall(
+        r'<a href="([^"]+)">Open the file</a>', (tmp_path / "out/index.html").read_text()
+    )
+    assert (tmp_path / "out" / unquote(link)).resolve() == photo
+
+
 def test_grades_and_feedback_go_back_to_moodle(run: Run, tmp_path: Path) -> None:
     table = "a, alpha, d, theta\n0, 0, 0, q1\nl1, 0, 0, q2\nl2, 0, 0, q3\nl3, 0, 0, 0\n"
     with zipfile.ZipFile(tmp_path / "all.zip", "w") as archive:
@@ -532,7 +566,8 @@ def test_grades_and_feedback_go_back_to_moodle(run: Run, tmp_path: Path) -> None
     )
     assert filled == ada
     assert (tmp_path / "Grades.csv").read_bytes() == WORKSHEET.encode()
-    assert "Ben Okri_1235 could not be read completely" in result.stderr
+    [told] = [line for line in result.stderr.splitlines() if "worksheet" in line]
+    assert told.endswith("Grade it by hand: Ben Okri_1235.")
     with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
         names = archive.namelist()
         assert b"table.pdf can only be graded by hand" in archive.read(names[1])
