@@ -9,7 +9,7 @@ from bisect import bisect_left
 from collections.abc import Callable
 from typing import Final
 
-from service.expressions.errors import Note
+from service.expressions.errors import Note, Span
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText, joined
 from service.translations import say
@@ -132,8 +132,7 @@ def without_pictures(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     rest = joined(source.split(_PICTURE), source.at) if found else source
     if found is None or not rest.text.strip():
         return source, ()
-    message = say("The sentences before and after the table were ignored.")
-    return rest, (Note("text_left_aside", message, source.span(*found.span())),)
+    return rest, (left_aside(source.span(*found.span())),)
 
 
 def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
@@ -152,9 +151,13 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     if not around or not all(_is_prose(line.text.strip(_PADDING)) for line in around):
         return source, ()
     _check_sentences(lines[:first], lines[last + 1 :])
-    message = say("The sentences before and after the table were ignored.")
-    note = Note("text_left_aside", message, around[0].whole)
-    return _between(source, lines[first], lines[last]), (note,)
+    return _between(source, lines[first], lines[last]), (left_aside(around[0].whole),)
+
+
+def left_aside(place: Span) -> Note:
+    """Return the note that the lines around a table were ignored; the first is at ``place``."""
+    message = say("The lines around the table or matrix were ignored.")
+    return Note("text_left_aside", message, place)
 
 
 def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Final
 
-from service.expressions.errors import Note
 from service.grading.feedback import Finding, reading_error, reading_note
 from service.grading.reading.entry import Entry, Reader, from_note, unreadable
 from service.grading.reading.pasted import (
@@ -35,7 +34,7 @@ from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
 from service.grids.cutting.source_text import joined
-from service.grids.scripts.titles import check_units
+from service.grids.scripts.titles import check_units, left_aside
 from service.kinematics.chain import COLUMNS, THETA, D
 from service.translations import listed, say, say_count
 
@@ -151,8 +150,7 @@ def _below_names(grid: Grid, reader: Reader) -> Grid:
         return grid
     for row in above:
         check_units(joined(row, row[0].at))
-    message = say("The sentences before and after the table were ignored.")
-    note = Note("text_left_aside", message, place_of(above[0]))
+    note = left_aside(place_of(above[0]))
     return replace(grid, rows=grid.rows[first:], notes=(*grid.notes, note))
 
 
