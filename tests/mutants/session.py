@@ -196,7 +196,8 @@ class Reached:
         """
         lines = self._lines.get(file, {})
         if line is None:
-            found = {each for names in lines.values() for each in names}
+            # Constants alone run only when they are loaded, before any test.
+            found = {each for names in lines.values() for each in names} or set(self._seconds)
         else:
             found = set(lines.get(str(line), ()))
 
