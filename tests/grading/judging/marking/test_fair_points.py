@@ -155,6 +155,7 @@ ROWS_GIVEN_UP: list[tuple[Judged, dict[str, Any], list[tuple[int, Judged]], int 
     (LOSES_14, {}, [(2, LOSES_15)], None),
     # The wrong cells of one row, too.
     (judged("---- ++++ ++++ ++++", lost=1.5), {}, [], None),
+    (judged("---+ ++++ ++++ ++++", slips=1), {}, [], None),
     (LOSES_15, {}, [(2, LOSES_8)], 2),
     # Three wrong cells in two rows: the row with the most wrong cells first.
     (LOSES_21, {}, [(2, LOSES_14), (1, LOSES_15)], 2),
@@ -237,6 +238,8 @@ UNREAD_AND_EMPTY: list[_Case] = [
     ("scara", "???? ..?? .... ????", ALL_WRONG, {}, {}, {}, 0),
     ("scara", "wwww ww?w .... ?www", LOSES_21, {}, {"wwww ww?w xxxx ?www": LOSES_21},
      {"at_most": LOSES_21}, WORK),
+    ("scara", "?www ww?w .... www?", ALL_WRONG, {}, {"?www ww?w xxxx www?": LOSES_21},
+     {"at_most": LOSES_21}, WORK),
 ]  # fmt: skip
 MISSING_ROWS: list[_Case] = [
     # A missing row counts as a wrong one. If only it is wrong, there is nothing to limit.
@@ -306,6 +309,8 @@ WRONG_END: list[_Case] = [
     ("planar-rrr", READ, TIP_8, {"tool": "free"}, {given_up(4): TIP_8}, {}, AGAIN),
     ("planar-rrr", READ, TIP_8, {"frames": "given"}, {}, {}, 0),
     ("planar-rrr", f"{READ} wwww", judged("++++ ++++ ++++ ++++ -+++", FIVE_ROWS), {}, {}, {}, 0),
+    ("planar-rrr", READ, judged("++++ ++++ ++++ -+++ ----", FIVE_ROWS), {},
+     {given_up(i): TIP_10 for i in (1, 4)}, {}, 2 * AGAIN),
     # If a cell is unread or empty, the missing row is compared with a wrong one.
     ("planar-rrr", "w?ww wwww wwww wwww", UNREAD_10, {},
      {"w?ww wwww wwww": UNREAD_12, "w?ww wwww wwww xxxx": TIP_10},
