@@ -162,7 +162,7 @@ def test_each_entry_has_its_own_match() -> None:
 def test_each_entry_has_its_own_tolerance() -> None:
     # The size of one entry, and that it is an angle, mean nothing for the other.
     expected = np.array([[1e6] * 4, [1.0] * 4])
-    found = matches(expected + [[0.95e-6], [0.95e-6]], expected, 1.0)
+    found = matches(expected + 0.95e-6, expected, 1.0)
     assert found.tolist() == [Match.EXACT, Match.DIFFERENT]
     expected = np.array([[1.0] * 4, [1e-3] * 4])
     assert nearly_equal(expected + 0.9e-3, expected).tolist() == [True, False]
@@ -226,6 +226,9 @@ def test_only_rounded_decimals_count_as_equal(arm: Exercise) -> None:
         ("0 + 1.571", 1.5705, True), ("0 + 1.571", 1.57049, False),
         ("0 + 1.571", 1.57199, True), ("0 + 1.571", 1.572, False),
         ("0.999", 1.0, False), ("15.71", 15.705, True), ("15.71", 15.7049, False),
+        # The limits are 0.500001 and 0.999 units.
+        ("1.571", 1.571 - 0.5000005e-3, True), ("1.571", 1.571 - 0.50001e-3, False),
+        ("1.571", 1.571 + 0.9985e-3, True), ("1.571", 1.571 + 0.9995e-3, False),
         # A sum of two decimals may be twice as far away.
         ("1.571 + 1.571", 3.1411, True), ("1.571 + 1.571", 3.1409, False),
         ("1.571 + 1.571", 3.14395, True), ("1.571 + 1.571", 3.1441, False),
