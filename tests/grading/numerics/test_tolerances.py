@@ -17,6 +17,7 @@ from service.kinematics.chain import links, products
 from service.kinematics.dh import Convention
 from service.kinematics.rotations import from_angles, other_triple
 from service.kinematics.transforms import Matrices, Numbers
+from tests.grading.support.submitting import graded_table
 from tests.together import together
 
 
@@ -135,3 +136,20 @@ def test_only_a_value_that_does_not_vary_is_printed_as_a_number() -> None:
         formula = number_formula(np.full(SAMPLES, value))
         assert formula is not None
         assert formula.text == text
+
+
+@together(("error", "is_right"), [(0.5e-6, True), (2e-6, False)])
+def test_a_huge_offset_does_not_enlarge_the_tolerance(
+    catalogue: Mapping[str, Exercise], error: float, is_right: bool
+) -> None:
+    # Offsets along parallel axes cancel; with ten million lengths, seven figures are left.
+    exercise = catalogue["planar-rrr"]
+    rest = round(error * exercise.length_scale * 1e12)
+    rows = [
+        ("0", "0", "10^7", "q1"),
+        ("l1", "0", f"{rest}/10^12 - 10^7", "q2"),
+        ("l2", "0", "0", "q3"),
+        ("l3", "0", "0", "0"),
+    ]
+    report = graded_table(exercise, rows)
+    assert (report.points == report.max_points) is is_right
