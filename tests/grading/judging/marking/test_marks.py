@@ -252,6 +252,8 @@ def test_the_points_that_each_row_loses(
     assert sum(found) == sum(lost) == 8 - report.points
     assert sum(each.points for each in report.lost) == sum(lost)
     assert 0.25 * steps_lost(table, answer) == sum(lost)
+    # Only the grading of later parts can say this.
+    assert not report.follow_through
     if "at_most" not in more:
         assert found == lost
 
@@ -344,6 +346,11 @@ def test_rows_of_zeros_are_named_if_points_are_lost(table: PartSpec) -> None:
     assert (told.rows, told.points) == (("3",), 0.25)
     assert part_report(table, judged(RIGHT)).little_worth is None
     assert part_report(table, judged("-+++ ++++ -+++ ++++")).little_worth is None
+    # Rows that need knowledge are not named, though each is worth a twelfth.
+    many = Content(((True, *(False,) * 3),) * 12, tuple((i,) * 4 for i in range(12)))
+    part = table.model_copy(update={"points": 24})
+    report = part_report(part, judged(" ".join(["-+++", *["++++"] * 11]), many))
+    assert (report.points, report.little_worth) == (22, None)
     big = [RowReport("1", Verdict.CORRECT, p, p, ()) for p in (0.0, 1.0, 1.001)]
     told = little_worth(big, 8)
     assert told is not None
@@ -389,6 +396,22 @@ def test_a_bottom_row_and_a_group_have_limits(table: PartSpec) -> None:
         assert sum(row.points for row in report.rows) == pytest.approx(points)
 
 
+def test_a_row_that_loses_all_it_is_worth_is_not_overdrawn(table: PartSpec) -> None:
+    # Each cell that needs knowledge is worth 2 points; rows 1 and 2 are a group. Rows 1 and 3 are
+    # wrong, and row 3 has 2 points left, which a slip without a cell costs.
+    known = tuple(tuple(cell == "x" for cell in row) for row in ("x...", "x...", "xx..", "x..."))
+    pairs = Content(known, tuple((i // 2,) * 4 for i in range(4)))
+    part = table.model_copy(update={"points": 10})
+    report = part_report(part, judged("-+++ ++++ -+++ ++++", pairs, slips=1))
+    assert [row.max_points - row.points for row in report.rows] == [2, 0, 4, 0]
+
+
+def test_a_given_row_costs_a_step_if_it_is_wrong(table: PartSpec) -> None:
+    part = table.model_copy(update={"marking": "rows"})
+    given = replace(TABLE, given=(True, False, False, False))
+    assert part_report(part, judged(ONE, given)).points == 8 - 0.25
+
+
 def test_additional_cells_of_own_frames_cost_what_the_usual_ones_do(table: PartSpec) -> None:
     # Only three of the four cells count: a unit is 2 points, and each row has another 0.5.
     fixed = replace(TABLE, most=3)
@@ -424,5 +447,6 @@ def test_a_loss_names_its_cells() -> None:
 
     assert message("a alpha d theta", "+-+?") == "α and θ in row 2"
     assert message("a alpha d theta", "----") == "row 2"
+    assert message("a alpha d theta", "++++") == "row 2"
     assert message("1 2 3 4", "-+++") == "column 1 in row 2"
     assert message("1 2 3 4", "--+-") == "columns 1, 2 and 4 in row 2"
