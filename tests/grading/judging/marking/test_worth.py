@@ -120,6 +120,8 @@ def test_additional_cells_do_not_make_a_mistake_cheaper() -> None:
     assert fixed.fifth(0) == 2
     usual = worth(content("x...", "xx..", "....", "..x.", besides=True, most=4), 8)
     assert (usual.is_fixed, usual.unit, usual.counted) == (False, 7, 4)
+    # The student's frames need fewer cells.
+    assert worth(content("x...", "xx..", besides=True, most=4), 8).counted == 3
 
 
 def test_cells_without_a_counterpart_cost_all_points() -> None:
