@@ -370,6 +370,8 @@ def test_the_slack_is_that_of_the_sample_with_the_largest_error(arm: Exercise) -
         ([[1.0, -2.0, 4.0]], [6.1], False),
         ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 0.8], True),
         ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 2.6], False),
+        # This needs many projections: the shifts 0.95, 0.95 and 0.9 explain it.
+        ([[4.0, -2.0, 1.0], [3.0, -2.0, -3.0]], [2.8, -1.75], True),
         # Each of two unknowns has an effect of its own.
         ([[1.0, 0.0], [0.0, 1.0]], [0.9, -0.4], True),
         ([[1.0, 0.0], [0.0, 1.0]], [-0.4, 0.9], True),
