@@ -208,6 +208,7 @@ def test_only_rounded_decimals_count_as_equal(arm: Exercise) -> None:
     is_angle = (np.arange(len(texts)) != 4)[:, None]
     told[4] = no
     assert entry_matches(read_, actual, wanted, 1.0, samples, is_angle).tolist() == told
+    assert entry_matches([None], actual[5:6], wanted[5:6], 1.0, samples).tolist() == [no]
     # The shape of the entries is kept.
     found = entry_matches(
         read_[:4], actual[:4].reshape(2, 2, -1), wanted[:4].reshape(2, 2, -1), 1.0, samples
@@ -234,6 +235,8 @@ def test_only_rounded_decimals_count_as_equal(arm: Exercise) -> None:
         ("1.571 + 1.571", 3.14395, True), ("1.571 + 1.571", 3.1441, False),
         ("1.571 - 1.571", 0.0014, True), ("1.571 - 1.571", 0.0016, False),
         ("1.571*0.500", 0.785398, True), ("1.571*0.500", 0.79, False),
+        # A number is not an angle unless it is said to be one: this is 5 pi / 2.
+        ("7.854", np.pi / 2, False),
         # Two figures are not rounded.
         ("1.5", 1.5001, False), ("0.05", 0.0501, False),
     ],
@@ -303,6 +306,9 @@ def test_an_entry_with_many_decimals_counts_as_exact(arm: Exercise) -> None:
         (1.005, 1.0, 1.0, False, 0.006, True), (1.005, 1.0, 1.0, False, 0.004, False),
         (1.009, 1.0, 1.0, False, 0.5, True), (1.011, 1.0, 1.0, False, 0.5, False),
         (2 * np.pi + 0.5, 0.5, 1.0, True, 0.0, True),
+        (4 * np.pi + 0.5, 0.5, 1.0, True, 0.0, True),
+        # The floating-point error of ten thousand million.
+        (1e10 + 0.9e-2, 1e10, 1.0, False, 0.0, True), (1e10 + 1.1e-2, 1e10, 1.0, False, 0.0, False),
         (np.nan, 1.0, 1.0, False, 0.0, False), (1.0, np.nan, 1.0, False, 0.0, False),
         (np.inf, 1.0, 1.0, False, 0.0, False), (1.0, np.inf, 1.0, False, 0.0, False),
     ],
