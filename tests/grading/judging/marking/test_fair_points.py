@@ -80,7 +80,7 @@ class Limiting:
     def _judged_again(self, table: StudentTable) -> Judged:
         words = words_of(table)
         self.asked.append(words)
-        # The numbers in place of others are wrong; those in place of nothing are missing.
+        # Only cells that were read keep their number; only empty and unreadable ones have none.
         for row in table.rows:
             for entry, values in zip(row.entries, row.values, strict=True):
                 assert np.isnan(values).all() == (entry in (EMPTY, CELLS["?"]))
@@ -209,7 +209,7 @@ def test_a_wrong_table_earns_what_it_earns_with_a_wrong_row_given_up(
 # A robot and a table, its first judgement, changes of the part, the judgements of other tables in
 # the order in which they are asked for, the limits of the points, and the work of the searches.
 Others = dict[str, Judged]
-Limits = dict[str, Judged]
+Limits = dict[str, Any]
 _Case = tuple[str, str, Judged, dict[str, Any], Others, Limits, float]
 SHORT = "wwww wwww wwww"
 # Only the first three rows; of these, one has a wrong cell, or two have.
