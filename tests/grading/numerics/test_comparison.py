@@ -164,6 +164,7 @@ def test_each_entry_has_its_own_tolerance() -> None:
     expected = np.array([[1e6] * 4, [1.0] * 4])
     found = matches(expected + 0.95e-6, expected, 1.0)
     assert found.tolist() == [Match.EXACT, Match.DIFFERENT]
+    assert matches(expected[:1] + 1.2e-6, expected[:1], 1.0) == Match.DIFFERENT
     expected = np.array([[1.0] * 4, [1e-3] * 4])
     assert nearly_equal(expected + 0.9e-3, expected).tolist() == [True, False]
     expected = np.full((2, 4), 100.0)
@@ -388,12 +389,16 @@ def test_the_slack_is_that_of_the_sample_with_the_largest_error(arm: Exercise) -
         ([[1.0, 1.0], [1.0, -1.0]], [1.4, 1.6], False),
         # More errors than unknowns can explain.
         ([[1.0], [1.0]], [0.5, 0.5], True), ([[1.0], [1.0]], [0.5, 0.4], False),
-        ([[1.0], [0.0]], [0.5, 1e-6], False),
+        ([[1.0], [0.0]], [0.5, 1e-5], False),
+        # Floating-point errors are left where no unknown has an effect.
+        ([[1.0], [0.0]], [0.5, 1e-16], True), ([[1.0], [0.0]], [0.5, 0.9e-9], True),
         # The second unknown has a small effect, and is found in a later step.
         ([[1.0, 0.0], [0.0, 0.02]], [0.0, 0.01], True),
         ([[1.0, 0.0], [0.0, 3e-3]], [0.5, 1.5e-3], True),
         ([[1.0, 0.0], [0.0, 3e-8]], [0.5, 1.5e-8], True),
         ([[1.0, 0.0], [0.0, 3e-3]], [0.5, 3.2e-3], False),
+        # An effect as small as floating-point errors explains nothing: the shifts are 0.5 each.
+        ([[1.0, 1.0], [0.0, 1e-12]], [1.0, 5e-10], True),
     ],
 )  # fmt: skip
 def test_shifts_within_rounding_explain_an_error(
@@ -427,6 +432,14 @@ def test_a_fit_follows_a_bend_and_ends_where_nothing_is_finite() -> None:
     far = fitted_unknowns(lambda u: (u - [0.5, 7.0], np.eye(2)), sizes, 1, 1e-9)
     assert far == pytest.approx([0.5, 7.0])
     assert fitted_unknowns(lambda u: (u - [0.5, 7.0], np.eye(2)), sizes, 2, 1e-9) is None
+    far = fitted_unknowns(lambda u: (u - [0.5, 70.0], np.eye(2)), sizes, 1, 1e-9)
+    assert far == pytest.approx([0.5, 70.0])
+    # Three unknowns have the same effect, and two of them are bounded: the third takes the rest.
+    rates = np.array([[1.0, 1.0, 1.0]])
+    found = fitted_unknowns(lambda u: (rates @ u - 5.0, rates), np.ones(3), 2, 1e-9)
+    assert found is not None
+    assert found[:2].max() < 1.0
+    assert rates @ found == pytest.approx(5.0)
     for value in (np.nan, np.inf):
         hole, bad = np.array([[1.0, 0.0], [0.0, value]]), np.array([0.1, value])
         for error, rates in ((np.full(2, 0.1), hole), (bad, np.eye(2))):
@@ -468,6 +481,8 @@ def test_too_many_decimals_are_not_tested_together(arm: Exercise) -> None:
     more = SharedDecimals([*most, one], samples)
     assert (more.count, len(more.units)) == (0, 0)
     assert more.shifted(np.zeros((1, 0)), np.ones((5, 3))).tolist() == np.ones((1, 5, 3)).tolist()
+    sixteen = read(" + ".join(["1.001"] * MOST_ALONE), arm.vocabulary)
+    assert SharedDecimals([sixteen], samples).count == MOST_ALONE
     # An entry with more decimals than are tested alone is left out.
     long = read(" + ".join(["1.001"] * (MOST_ALONE + 1)), arm.vocabulary)
     assert SharedDecimals([long, one], samples).count == 1

@@ -103,15 +103,18 @@ def test_angles_within_a_millionth_belong_to_a_triple(error: float, side: int) -
 
 
 @together(
-    ("vary", "noise", "found"),
+    ("angle", "vary", "noise", "found"),
     [
-        # A constant is one to a billionth; the rest of a sum of letters, to a millionth.
-        (0.0, 0.5e-9, ([], 0.4)), (1.0, 0.5e-6, ([(1, "a1")], 0.4)), (1.0, 2e-6, None),
-        (0.0, 2e-9, ([], 0.4)),
+        # A constant is one to a billionth, and no letter of the arm is an angle.
+        (True, 0.0, 0.5e-9, ([], 0.4)), (True, 0.0, 2e-9, None),
+        # The rest of a sum of letters is constant to a millionth.
+        (False, 0.0, 2e-9, ([], 0.4)), (False, 1.0, 0.5e-6, ([(1, "a1")], 0.4)),
+        (False, 1.0, 2e-6, None),
     ],
 )  # fmt: skip
 def test_a_constant_is_a_sum_of_letters_and_a_number(
     catalogue: Mapping[str, Exercise],
+    angle: bool,
     vary: float,
     noise: float,
     found: tuple[list[tuple[int, str]], float] | None,
@@ -120,7 +123,7 @@ def test_a_constant_is_a_sum_of_letters_and_a_number(
     samples = draw(exercise, None)
     values: Numbers = 0.4 + vary * samples.values["a1"][:HALF]
     values[5] += noise
-    told = multiples(values, False, exercise, samples)
+    told = multiples(values, angle, exercise, samples)
     assert (told is None) == (found is None)
     if told is not None and found is not None:
         assert told[0] == found[0]
