@@ -73,7 +73,7 @@ PACKAGES: Final[Mapping[str, Package]] = {
     "fair_points": Package(
         ["service/grading/judging/marking/fair_points.py"],
         ["tests/grading/judging", "tests/grading/test_unread_cells.py", "tests/frame_choice/rows"],
-        ["tests/frame_choice/rows"],
+        ["tests/grading/judging/marking/test_fair_points.py"],
     ),
     "marks": Package(
         [

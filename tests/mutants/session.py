@@ -19,14 +19,14 @@ import time
 import traceback
 import warnings
 from collections import Counter, defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext, suppress
 from dataclasses import asdict, dataclass, field
-from functools import partial
+from functools import _lru_cache_wrapper, partial
 from itertools import count
 from pathlib import Path
 from types import CodeType, FunctionType, ModuleType
-from typing import Any, Final
+from typing import Any, Final, TypeAlias
 
 import pytest
 from coverage import Coverage
@@ -40,6 +40,8 @@ SPARE_CPU: Final = 20
 SPARE_CLOCK: Final = 120
 # Tests with these fixtures run the code in other processes, which a mutant does not reach.
 _ELSEWHERE: Final = frozenset({"server", "visit", "browser", "killable"})
+
+Cache: TypeAlias = "_lru_cache_wrapper[Any]"
 
 
 def _databases() -> Any:
@@ -139,6 +141,7 @@ class Mutating:
         called = _called_by_module(tree)
         loaded = sys.modules[file.removesuffix(".py").replace("/", ".")]
         functions = functions_of(loaded)
+        caches = _caches_of([file])
         gc.freeze()  # so that no child copies the pages of the collected tests
         for i, mutant in enumerate(mutants(tree)):
             place = (mutant.function, mutant.before, mutant.after)
@@ -160,20 +163,22 @@ class Mutating:
                 elif mutant.place == "definition":
                     end = _tried_afresh(file, tree, items, 3 * self._wanted.seconds + SPARE_CLOCK)
                 else:
-                    end = self._tried(
-                        session,
-                        items,
-                        partial(put_into, loaded, functions, tree, assignments=not ran),
-                    )
+                    mutate = partial(put_into, loaded, functions, tree, assignments=not ran)
+                    end = self._tried(session, items, mutate, caches)
             kind, _, by = end.partition(" ")
             self._out.write(json.dumps(asdict(told) | {"end": kind, "by": by}) + "\n")
             self._out.flush()
 
     def _tried(
-        self, session: pytest.Session, items: Sequence[pytest.Item], mutate: Callable[[], None]
+        self,
+        session: pytest.Session,
+        items: Sequence[pytest.Item],
+        mutate: Callable[[], None],
+        caches: Sequence[Cache],
     ) -> str:
         def ended() -> str:
             mutate()
+            _clear(caches)
             return _first_failure(session, items)
 
         seconds = self._wanted.seconds
@@ -196,7 +201,8 @@ class Reached:
         """
         lines = self._lines.get(file, {})
         if line is None:
-            found = {each for names in lines.values() for each in names}
+            # Constants alone run only when they are loaded, before any test.
+            found = {each for names in lines.values() for each in names} or set(self._seconds)
         else:
             found = set(lines.get(str(line), ()))
 
@@ -222,8 +228,11 @@ def _measure(
         data_file=None, include=list(files), concurrency=["thread", "greenlet"], config_file=False
     )
     failed = _Failures(session)
+    caches = _caches_of(files)
     measured.start()
     for item, following in _with_next(items):
+        # What an earlier test has left in a cache hides the lines that compute it.
+        _clear(caches)
         measured.switch_context(item.nodeid)
         before = time.process_time()
         item.config.hook.pytest_runtest_protocol(item=item, nextitem=following)
@@ -346,6 +355,24 @@ def functions_of(loaded: ModuleType) -> list[FunctionType]:
         for each in gc.get_objects()
         if isinstance(each, FunctionType) and each.__code__.co_filename == loaded.__file__
     ]
+
+
+def _caches_of(files: Iterable[str]) -> list[Cache]:
+    # The memoized functions of files.
+    paths = {str(Path(each).resolve()) for each in files}
+    gc.unfreeze()
+    found = [each for each in gc.get_objects() if isinstance(each, _lru_cache_wrapper)]
+    return [each for each in found if _place_of(each) in paths]
+
+
+def _place_of(cache: Cache) -> str | None:
+    code = getattr(cache.__wrapped__, "__code__", None)
+    return code and str(Path(code.co_filename).resolve())
+
+
+def _clear(caches: Iterable[Cache]) -> None:
+    for each in caches:
+        each.cache_clear()
 
 
 def put_into(

@@ -11,7 +11,7 @@ import pytest
 
 from tests.mutants.__main__ import Equivalent, Package, equivalents, report, tried
 from tests.mutants.mutations import mutants
-from tests.mutants.session import Result, functions_of, put_into
+from tests.mutants.session import Reached, Result, functions_of, put_into
 from tests.together import together
 
 ROOT = Path(__file__).parents[2]
@@ -113,6 +113,26 @@ def test_a_change_is_put_into_the_loaded_module(
     assert told() == expected
     put_into(loaded, functions, ast.parse(SOURCE), assignments=True)
     assert told() == (True, 3, False, 3)
+
+
+def test_a_mutant_is_tried_by_the_tests_that_reach_its_line() -> None:
+    seconds = {"home::slow": 4.0, "home::quick": 1.0, "other::quick": 0.5, "home::failed": None}
+    lines = {
+        "code.py": {"3": ["home::slow", "other::quick"], "4": ["home::quick", "home::failed"]},
+        "constants.py": {},
+    }
+    reached = Reached({"seconds": seconds, "lines": lines})
+
+    def tests(file: str, line: int | None, most: float = 9.0) -> list[str]:
+        return reached.tests(file, line, ["home"], most)
+
+    assert tests("code.py", 3) == ["home::slow", "other::quick"]
+    assert tests("code.py", 5) == []
+    everything = ["home::quick", "home::slow", "other::quick"]
+    assert tests("code.py", None) == everything
+    assert tests("code.py", None, most=5.2) == everything[:2]
+    # Constants run when they are loaded, so that no test reaches their lines.
+    assert tests("constants.py", None) == everything
 
 
 def result(before: str, after: str, end: str) -> Result:

@@ -283,7 +283,7 @@ def fitted_unknowns(
             return unknowns
         if step == 0:
             first = largest
-            if count == len(sizes) and _is_out_of_reach(error, rates):
+            if count == len(sizes) and _is_out_of_reach(error, rates, tolerance):
                 return None
         elif step > 1 and (largest > first / 2 or beyond > MISSED * first):
             return None
@@ -351,9 +351,11 @@ def _nearest_inside(unknowns: Numbers, determined: Numbers, bounds: Numbers) -> 
     return unknowns
 
 
-def _is_out_of_reach(error: Numbers, rates: Numbers) -> bool:
-    # The largest possible shifts still leave an error far from 0.
-    return bool((np.abs(error) > OUT_OF_REACH * CUT_OFF * np.abs(rates).sum(axis=1)).any())
+def _is_out_of_reach(error: Numbers, rates: Numbers, tolerance: float) -> bool:
+    # The largest possible shifts still leave an error far from 0. Errors on which the shifts have
+    # no effect are floating-point errors, and need not be 0.
+    reached = OUT_OF_REACH * CUT_OFF * np.abs(rates).sum(axis=1) + tolerance
+    return bool((np.abs(error) > reached).any())
 
 
 def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:

@@ -152,6 +152,26 @@ def test_a_wrong_sum_in_a_singular_configuration_is_wrong(
     assert len(not_correct(report)) == 1
 
 
+@pytest.mark.parametrize(
+    ("first", "answer", "is_right"),
+    [
+        # Only the last angle minus the first one counts: -0.5236. The true numbers 0.3007 and
+        # -0.2229 are cut off; none in the range of the next decimal fits.
+        ("30deg", ["0.300", "90deg", "-0.222"], True),
+        ("30deg", ["0.300", "90deg", "-0.221"], False),
+        # 0.3008 is cut off or rounded up.
+        ("0", ["0.300", "90deg", "0.301"], True),
+        ("0", ["0.300", "90deg", "0.302"], False),
+    ],
+)
+def test_two_angles_may_be_rounded_in_a_singular_configuration(
+    first: str, answer: list[str], is_right: bool, make_exercise: Make
+) -> None:
+    fields = f'sequence = "ZYX"\nexpected = ["{first}", "90deg", "0"]'
+    report = graded(make_exercise(one_part("euler_angles", fields, setting="")), answer)
+    assert full_marks(report) is is_right
+
+
 @pytest.mark.parametrize("axes", ["moving", "fixed"])
 @pytest.mark.parametrize("sequence", SEQUENCES)
 def test_every_sequence_of_axes_is_graded(sequence: str, axes: str, make_exercise: Make) -> None:

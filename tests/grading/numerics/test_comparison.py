@@ -1,5 +1,6 @@
 """Compare values with expected values."""
 
+import warnings
 from collections.abc import Mapping
 from functools import partial
 
@@ -28,7 +29,7 @@ from service.grading.numerics.samples import SAMPLES, Samples, draw
 from tests.together import together
 
 # The most decimals of an entry, and of all entries together, that may be rounded.
-MAX_DECIMALS, MAX_SHARED_DECIMALS = 16, 32
+MOST_ALONE, MOST_TOGETHER = 16, 32
 ANGLES = st.floats(-50, 50)
 TURNS = st.integers(-20, 20)
 
@@ -120,6 +121,7 @@ def arm(catalogue: Mapping[str, Exercise]) -> Exercise:
     [
         # A billionth of the scale, and 1e-12 of the size.
         (0.0, 1.0, 0.9e-9, Match.EXACT),
+        (0.0, 1.0, 1e-9, Match.EXACT),
         (0.0, 1.0, 1.1e-9, Match.DIFFERENT),
         (0.0, 1000.0, 0.9e-6, Match.EXACT),
         (0.0, 1000.0, 1.1e-6, Match.DIFFERENT),
@@ -157,6 +159,29 @@ def test_each_entry_has_its_own_match() -> None:
     assert matches(actual, expected, 1.0, is_angle).tolist() == told
 
 
+def test_each_entry_has_its_own_tolerance() -> None:
+    # The size of one entry, and that it is an angle, mean nothing for the other.
+    expected = np.array([[1e6] * 4, [1.0] * 4])
+    found = matches(expected + 0.95e-6, expected, 1.0)
+    assert found.tolist() == [Match.EXACT, Match.DIFFERENT]
+    assert matches(expected[:1] + 1.2e-6, expected[:1], 1.0) == Match.DIFFERENT
+    expected = np.array([[1.0] * 4, [1e-3] * 4])
+    assert nearly_equal(expected + 0.9e-3, expected).tolist() == [True, False]
+    expected = np.full((2, 4), 100.0)
+    is_angle = np.array([True, False])[:, None]
+    assert nearly_equal(expected + 3e-3, expected, 1.0, is_angle).tolist() == [True, False]
+
+
+def test_values_without_a_number_cause_no_warning() -> None:
+    huge = np.array([[1e308], [np.inf], [np.nan], [-np.inf]])
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        found = matches(huge, -huge, 1.0)
+        same_infinity = matches(huge[1], huge[1], 1.0)
+    assert found[1:].tolist() == [Match.UNDEFINED] * 3
+    assert same_infinity == Match.UNDEFINED
+
+
 def test_without_a_mask_whole_turns_are_a_difference() -> None:
     turn = np.array([2 * np.pi])
     assert difference(turn, np.zeros(1)) == turn
@@ -184,6 +209,7 @@ def test_only_rounded_decimals_count_as_equal(arm: Exercise) -> None:
     is_angle = (np.arange(len(texts)) != 4)[:, None]
     told[4] = no
     assert entry_matches(read_, actual, wanted, 1.0, samples, is_angle).tolist() == told
+    assert entry_matches([None], actual[5:6], wanted[5:6], 1.0, samples).tolist() == [no]
     # The shape of the entries is kept.
     found = entry_matches(
         read_[:4], actual[:4].reshape(2, 2, -1), wanted[:4].reshape(2, 2, -1), 1.0, samples
@@ -202,11 +228,16 @@ def test_only_rounded_decimals_count_as_equal(arm: Exercise) -> None:
         ("0 + 1.571", 1.5705, True), ("0 + 1.571", 1.57049, False),
         ("0 + 1.571", 1.57199, True), ("0 + 1.571", 1.572, False),
         ("0.999", 1.0, False), ("15.71", 15.705, True), ("15.71", 15.7049, False),
+        # The limits are 0.500001 and 0.999 units.
+        ("1.571", 1.571 - 0.5000005e-3, True), ("1.571", 1.571 - 0.50001e-3, False),
+        ("1.571", 1.571 + 0.9985e-3, True), ("1.571", 1.571 + 0.9995e-3, False),
         # A sum of two decimals may be twice as far away.
         ("1.571 + 1.571", 3.1411, True), ("1.571 + 1.571", 3.1409, False),
         ("1.571 + 1.571", 3.14395, True), ("1.571 + 1.571", 3.1441, False),
         ("1.571 - 1.571", 0.0014, True), ("1.571 - 1.571", 0.0016, False),
         ("1.571*0.500", 0.785398, True), ("1.571*0.500", 0.79, False),
+        # A number is not an angle unless it is said to be one: this is 5 pi / 2.
+        ("7.854", np.pi / 2, False),
         # Two figures are not rounded.
         ("1.5", 1.5001, False), ("0.05", 0.0501, False),
     ],
@@ -220,6 +251,23 @@ def test_a_decimal_is_rounded_or_cut_off(
     assert found is expected
 
 
+@together(
+    ("scale", "units", "expected"),
+    # Rounding allows shifts from -0.500001 to 0.999 units, and a thousandth of the tolerance more.
+    [(0.9, 0.9998, True), (0.9, 1.0, False), (0.4, -0.5003, True), (0.4, -0.5006, False)],
+)
+def test_floating_point_errors_may_enlarge_a_tiny_shift(
+    catalogue: Mapping[str, Exercise], scale: float, units: float, expected: bool
+) -> None:
+    # The tolerance is nearly as large as a unit of the last place.
+    exercise = catalogue["stanford-arm"]
+    samples = draw(exercise, None)
+    for text in ("1.000000001", "0 + 1.000000001"):
+        entry = read(text, exercise.vocabulary)
+        true = np.full(SAMPLES, 1.000000001 + units * 1e-9)
+        assert is_rounded(entry, true, scale, samples) is expected
+
+
 def test_a_rounded_decimal_is_the_same_at_all_samples(arm: Exercise) -> None:
     samples = draw(arm, None)
     for text in ("1.571", "0 + 1.571"):
@@ -231,7 +279,7 @@ def test_a_rounded_decimal_is_the_same_at_all_samples(arm: Exercise) -> None:
 
 def test_an_entry_with_many_decimals_counts_as_exact(arm: Exercise) -> None:
     samples = draw(arm, None)
-    for count, expected in ((MAX_DECIMALS, True), (MAX_DECIMALS + 1, False)):
+    for count, expected in ((MOST_ALONE, True), (MOST_ALONE + 1, False)):
         entry = read(" + ".join(["1.001"] * count), arm.vocabulary)
         true = np.full(SAMPLES, 1.001 * count + 0.0003)
         assert is_rounded(entry, true, 1.0, samples) is expected
@@ -246,6 +294,7 @@ def test_an_entry_with_many_decimals_counts_as_exact(arm: Exercise) -> None:
         (-2.0 + 1.9e-3, -2.0, 2.0, False, 0.0, True), (0.0, 1e-3, 1.0, False, 0.0, False),
         # Nothing but floating-point errors around 0.
         (0.9e-9, 0.0, 1.0, False, 0.0, True), (1.1e-9, 0.0, 1.0, False, 0.0, False),
+        (1e-9, 0.0, 1.0, False, 0.0, True),
         (0.9e-7, 0.0, 100.0, False, 0.0, True), (1.1e-7, 0.0, 100.0, False, 0.0, False),
         # Of larger values, a thousandth of the robot's largest: 1.5 typical lengths, 4 radians.
         (100.0 + 1.4e-3, 100.0, 1.0, False, 0.0, True),
@@ -258,6 +307,9 @@ def test_an_entry_with_many_decimals_counts_as_exact(arm: Exercise) -> None:
         (1.005, 1.0, 1.0, False, 0.006, True), (1.005, 1.0, 1.0, False, 0.004, False),
         (1.009, 1.0, 1.0, False, 0.5, True), (1.011, 1.0, 1.0, False, 0.5, False),
         (2 * np.pi + 0.5, 0.5, 1.0, True, 0.0, True),
+        (4 * np.pi + 0.5, 0.5, 1.0, True, 0.0, True),
+        # The floating-point error of ten thousand million.
+        (1e10 + 0.9e-2, 1e10, 1.0, False, 0.0, True), (1e10 + 1.1e-2, 1e10, 1.0, False, 0.0, False),
         (np.nan, 1.0, 1.0, False, 0.0, False), (1.0, np.nan, 1.0, False, 0.0, False),
         (np.inf, 1.0, 1.0, False, 0.0, False), (1.0, np.inf, 1.0, False, 0.0, False),
     ],
@@ -299,6 +351,14 @@ def test_the_slack_is_a_unit_of_each_decimal(
     assert found == pytest.approx(slack, rel=1e-9)
 
 
+def test_the_slack_is_that_of_the_sample_with_the_largest_error(arm: Exercise) -> None:
+    samples = draw(arm, None)
+    entry = read("1.571 cos(theta1) - 0.866 theta2", arm.vocabulary)
+    cosine, angle = np.cos(samples.values["theta1"]), samples.values["theta2"]
+    expected = 1e-3 * (np.abs(cosine) + np.abs(angle)).max()
+    assert rounding_slack(entry, samples) == pytest.approx(expected)
+
+
 @together(
     ("effects", "error", "is_possible"),
     [
@@ -317,6 +377,8 @@ def test_the_slack_is_a_unit_of_each_decimal(
         ([[1.0, -2.0, 4.0]], [6.1], False),
         ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 0.8], True),
         ([[4.0, 2.0, 1.0], [0.0, 2.0, -1.0]], [6.5, 2.6], False),
+        # This needs many projections: the shifts 0.95, 0.95 and 0.9 explain it.
+        ([[4.0, -2.0, 1.0], [3.0, -2.0, -3.0]], [2.8, -1.75], True),
         # Each of two unknowns has an effect of its own.
         ([[1.0, 0.0], [0.0, 1.0]], [0.9, -0.4], True),
         ([[1.0, 0.0], [0.0, 1.0]], [-0.4, 0.9], True),
@@ -327,7 +389,16 @@ def test_the_slack_is_a_unit_of_each_decimal(
         ([[1.0, 1.0], [1.0, -1.0]], [1.4, 1.6], False),
         # More errors than unknowns can explain.
         ([[1.0], [1.0]], [0.5, 0.5], True), ([[1.0], [1.0]], [0.5, 0.4], False),
-        ([[1.0], [0.0]], [0.5, 1e-6], False),
+        ([[1.0], [0.0]], [0.5, 1e-5], False),
+        # Floating-point errors are left where no unknown has an effect.
+        ([[1.0], [0.0]], [0.5, 1e-16], True), ([[1.0], [0.0]], [0.5, 0.9e-9], True),
+        # The second unknown has a small effect, and is found in a later step.
+        ([[1.0, 0.0], [0.0, 0.02]], [0.0, 0.01], True),
+        ([[1.0, 0.0], [0.0, 3e-3]], [0.5, 1.5e-3], True),
+        ([[1.0, 0.0], [0.0, 3e-8]], [0.5, 1.5e-8], True),
+        ([[1.0, 0.0], [0.0, 3e-3]], [0.5, 3.2e-3], False),
+        # An effect as small as floating-point errors explains nothing: the shifts are 0.5 each.
+        ([[1.0, 1.0], [0.0, 1e-12]], [1.0, 5e-10], True),
     ],
 )  # fmt: skip
 def test_shifts_within_rounding_explain_an_error(
@@ -361,6 +432,14 @@ def test_a_fit_follows_a_bend_and_ends_where_nothing_is_finite() -> None:
     far = fitted_unknowns(lambda u: (u - [0.5, 7.0], np.eye(2)), sizes, 1, 1e-9)
     assert far == pytest.approx([0.5, 7.0])
     assert fitted_unknowns(lambda u: (u - [0.5, 7.0], np.eye(2)), sizes, 2, 1e-9) is None
+    far = fitted_unknowns(lambda u: (u - [0.5, 70.0], np.eye(2)), sizes, 1, 1e-9)
+    assert far == pytest.approx([0.5, 70.0])
+    # Three unknowns have the same effect, and two of them are bounded: the third takes the rest.
+    rates = np.array([[1.0, 1.0, 1.0]])
+    found = fitted_unknowns(lambda u: (rates @ u - 5.0, rates), np.ones(3), 2, 1e-9)
+    assert found is not None
+    assert found[:2].max() < 1.0
+    assert rates @ found == pytest.approx(5.0)
     for value in (np.nan, np.inf):
         hole, bad = np.array([[1.0, 0.0], [0.0, value]]), np.array([0.1, value])
         for error, rates in ((np.full(2, 0.1), hole), (bad, np.eye(2))):
@@ -379,16 +458,16 @@ def test_the_steps_of_derivatives_are_half_a_unit_or_half_the_digits() -> None:
 
 def test_the_decimals_of_several_entries_move_together(arm: Exercise) -> None:
     samples = draw(arm, None)
-    texts = ("pi", None, "1.571", "1.5", "0.866 + 0.50")
+    texts = ("pi", None, "15.71", "1.5", "0.866 + 0.50")
     entries = [None if text is None else read(text, arm.vocabulary) for text in texts]
     shared = SharedDecimals(entries, samples)
     assert shared.count == 2
-    assert shared.units == pytest.approx([1e-3, 1e-3])
+    assert shared.units == pytest.approx([1e-2, 1e-3])
     values = np.full((len(texts), SAMPLES), 7.0)
     moved = shared.shifted(np.array([[0.0, 0.0], [1.0, -0.5]]), values)
     assert moved.shape == (2, len(texts), SAMPLES)
     # Entries without a decimal keep the given values.
-    told = [[7.0, 7.0, 1.571, 7.0, 1.366], [7.0, 7.0, 1.572, 7.0, 1.3655]]
+    told = [[7.0, 7.0, 15.71, 7.0, 1.366], [7.0, 7.0, 15.72, 7.0, 1.3655]]
     assert moved[..., 0] == pytest.approx(np.array(told))
     assert np.ptp(moved, axis=-1).max() == 0.0
     assert (values == 7.0).all()
@@ -397,11 +476,13 @@ def test_the_decimals_of_several_entries_move_together(arm: Exercise) -> None:
 def test_too_many_decimals_are_not_tested_together(arm: Exercise) -> None:
     samples = Samples({})
     eight, one = (read(" + ".join(["1.001"] * n), arm.vocabulary) for n in (8, 1))
-    most = [eight] * (MAX_SHARED_DECIMALS // 8)
-    assert SharedDecimals(most, samples).count == MAX_SHARED_DECIMALS
+    most = [eight] * (MOST_TOGETHER // 8)
+    assert SharedDecimals(most, samples).count == MOST_TOGETHER
     more = SharedDecimals([*most, one], samples)
     assert (more.count, len(more.units)) == (0, 0)
     assert more.shifted(np.zeros((1, 0)), np.ones((5, 3))).tolist() == np.ones((1, 5, 3)).tolist()
+    sixteen = read(" + ".join(["1.001"] * MOST_ALONE), arm.vocabulary)
+    assert SharedDecimals([sixteen], samples).count == MOST_ALONE
     # An entry with more decimals than are tested alone is left out.
-    long = read(" + ".join(["1.001"] * (MAX_DECIMALS + 1)), arm.vocabulary)
+    long = read(" + ".join(["1.001"] * (MOST_ALONE + 1)), arm.vocabulary)
     assert SharedDecimals([long, one], samples).count == 1

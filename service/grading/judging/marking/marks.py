@@ -258,7 +258,8 @@ def _by_row(lost: int, charges: list[int], worth: CellWorth) -> list[int]:
 
 def _as_lost_by_rows(marks: _Marks) -> list[_Loss]:
     # No row is told to lose more than it really lost. Other rows lose the rest, which is told once.
-    whole = [loss for loss in marks.losses if loss.row is None]
+    whole = [loss for loss in marks.losses if loss.code == WHOLE]
+    outside = [loss for loss in marks.losses if loss.row is None and loss.code != WHOLE]
     rows, rest = [], 0
     for loss in marks.losses:
         if loss.row is not None:
@@ -269,7 +270,7 @@ def _as_lost_by_rows(marks: _Marks) -> list[_Loss]:
     if rest:
         rows.append(_Loss(SHARED, rest))
     # A slip of the whole answer comes first, an extra row last.
-    return [*whole, *rows] if whole and whole[0].code == WHOLE else [*rows, *whole]
+    return [*whole, *rows, *outside]
 
 
 def _told(loss: _Loss, marks: _Marks, rows: Sequence[RowReport]) -> LostPoints:

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from service.catalogue import Exercise, PartSpec
-from service.grading import CellReport, PartReport, RowReport, Verdict
+from service.grading import CellReport, Feedback, PartReport, RowReport, Severity, Verdict
 from service.grading.judging.marking.marks import (
     has_earned,
     least_lost,
@@ -217,6 +217,7 @@ LOSSES: list[tuple[str, dict[str, Any], list[float]]] = [
     ("---- ---- ---- ----", {}, [2, 3.75, 0.25, 2]),
     # A slip that no cell shows costs a unit, of the rows with a mistake first.
     ("++++ -+++ ++++ ++++", {"slips": 1}, [0, 3.5, 0, 0]),
+    ("+?++ ++++ ++++ ++++", {"slips": 1}, [2, 0, 0, 0]),
     # A slip of the whole answer costs its share, if its cells cost more.
     ("-+++ --++ ++++ ++-+", {"whole_cost": 0.25}, [0.5, 1.0, 0, 0.5]),
     (ONE, {"whole_cost": 0.25}, [1.75, 0, 0, 0]),
@@ -235,6 +236,8 @@ LOSSES: list[tuple[str, dict[str, Any], list[float]]] = [
     # With a row more than the limit, each wrong cell loses a unit at most.
     (ONE, {"at_most": judged(TWO), "needs_all": True}, [1.75, 0, 0, 0]),
     (TWO, {"at_most": judged(ONE), "needs_all": True}, [1.75, 1.75, 0, 0]),
+    ("--++ ++++ ++++ ++++", {"at_most": judged("---- ---- ---- ----"), "needs_all": True},
+     [2, 1, 0, 0.5]),
     # A wrong answer earns a unit at most for each cell that was written and is not lazy.
     (TWO, {"written": 2}, [1.75, 1.75, 0, 0]),
     (TWO, {"written": 4}, [1.75, 1.75, 0, 0]),
@@ -252,6 +255,8 @@ def test_the_points_that_each_row_loses(
     assert sum(found) == sum(lost) == 8 - report.points
     assert sum(each.points for each in report.lost) == sum(lost)
     assert 0.25 * steps_lost(table, answer) == sum(lost)
+    # Only the grading of later parts can say this.
+    assert not report.follow_through
     if "at_most" not in more:
         assert found == lost
 
@@ -279,11 +284,23 @@ def test_a_lazy_answer_keeps_only_the_fifths_of_its_rows(table: PartSpec) -> Non
             # The first row loses 1.25 of its 2 points, and the other rows the rest.
             [("whole", None, 2), ("cells", "1", 1.25), ("shared_by_rows", None, 0.5)],
         ),
+        (
+            # The slip of the whole answer comes first, an extra row last. The rows lose 4.25, of
+            # their 2 and 3.75: the first one 1.5 of its 1.75.
+            judged("---- ---- ++++ ++++", whole_cost=0.1, beside=judged(ONE, slips=1)),
+            [
+                ("whole", None, 0.75),
+                ("cells", "1", 1.5),
+                ("shared_by_rows", None, 0.25),
+                ("outside_cells", None, 1.75),
+            ],
+        ),
         (judged("---- ++++ ++++ ++++", whole_cost=0.25), [("cells", "1", 2)]),
         (judged(TWO, whole_cost=0.001), [("whole", None, 0.25)]),
         (judged(ONE, stands_still=True), [("no_motion", None, 8)]),
         (judged(RIGHT, slips=1, at_least=judged(RIGHT)), [("outside_cells", None, 0.25)]),
-        # A quarter of a point is lost in one row, and none in the other.
+        # A quarter of a point is lost in one row, and none elsewhere.
+        (judged(ONE, slips=1, at_least=judged(RIGHT)), [("cells", "1", 0.25)]),
         (judged(TWO, at_least=judged(RIGHT)), [("cells", "1", 0.25)]),
     ],
 )
@@ -327,6 +344,8 @@ def test_the_verdict_is_that_of_the_rows_and_the_points(table: PartSpec) -> None
         (judged("---- ---- ---- ----"), Verdict.INCORRECT),
         (judged("???? ???? ???? ????"), Verdict.UNREADABLE),
         (judged(".... .... .... ...."), Verdict.MISSING),
+        # No cell is right, though the answer earns points.
+        (judged("---- ---- ---- ----", whole_cost=0.25, slips=1), Verdict.INCORRECT),
         # Right cells that earn nothing make nothing partly right.
         (judged("-+++ --++ -+++ ++-+", stands_still=True), Verdict.INCORRECT),
     ):
@@ -342,13 +361,24 @@ def test_rows_of_zeros_are_named_if_points_are_lost(table: PartSpec) -> None:
     told = part_report(table, judged(ONE)).little_worth
     assert told is not None
     assert (told.rows, told.points) == (("3",), 0.25)
+    assert told.message.startswith("Row 3 is worth little: zeros")
+    other = table.model_copy(update={"kind": "matrix"})
+    assert part_report(other, judged(ONE)).little_worth is None
     assert part_report(table, judged(RIGHT)).little_worth is None
     assert part_report(table, judged("-+++ ++++ -+++ ++++")).little_worth is None
+    # Rows that need knowledge are not named, though each is worth a twelfth.
+    many = Content(((True, *(False,) * 3),) * 12, tuple((i,) * 4 for i in range(12)))
+    part = table.model_copy(update={"points": 24})
+    report = part_report(part, judged(" ".join(["-+++", *["++++"] * 11]), many))
+    assert (report.points, report.little_worth) == (22, None)
     big = [RowReport("1", Verdict.CORRECT, p, p, ()) for p in (0.0, 1.0, 1.001)]
     told = little_worth(big, 8)
     assert told is not None
     # A row that is worth nothing, or more than an eighth of 8 points, is not named.
     assert (told.rows, told.points) == (("1",), 1.0)
+    told = little_worth([big[1], replace(big[1], label="2")], 8)
+    assert told is not None
+    assert told.message.startswith("Rows 1 and 2 are worth little: zeros")
     wrong = [replace(big[1], verdict=Verdict.INCORRECT)]
     assert little_worth(wrong, 8) is None
 
@@ -389,6 +419,22 @@ def test_a_bottom_row_and_a_group_have_limits(table: PartSpec) -> None:
         assert sum(row.points for row in report.rows) == pytest.approx(points)
 
 
+def test_a_row_that_loses_all_it_is_worth_is_not_overdrawn(table: PartSpec) -> None:
+    # Each cell that needs knowledge is worth 2 points; rows 1 and 2 are a group. Rows 1 and 3 are
+    # wrong, and row 3 has 2 points left, which a slip without a cell costs.
+    known = tuple(tuple(cell == "x" for cell in row) for row in ("x...", "x...", "xx..", "x..."))
+    pairs = Content(known, tuple((i // 2,) * 4 for i in range(4)))
+    part = table.model_copy(update={"points": 10})
+    report = part_report(part, judged("-+++ ++++ -+++ ++++", pairs, slips=1))
+    assert [row.max_points - row.points for row in report.rows] == [2, 0, 4, 0]
+
+
+def test_a_given_row_costs_a_step_if_it_is_wrong(table: PartSpec) -> None:
+    part = table.model_copy(update={"marking": "rows"})
+    given = replace(TABLE, given=(True, False, False, False))
+    assert part_report(part, judged(ONE, given)).points == 8 - 0.25
+
+
 def test_additional_cells_of_own_frames_cost_what_the_usual_ones_do(table: PartSpec) -> None:
     # Only three of the four cells count: a unit is 2 points, and each row has another 0.5.
     fixed = replace(TABLE, most=3)
@@ -408,6 +454,9 @@ def test_an_answer_that_was_not_judged_loses_all(table: PartSpec) -> None:
         assert (report.verdict, report.points, report.max_points) == (verdict, 0, 8)
         assert [(each.code, each.points) for each in report.lost] == [(code, 8)]
         assert (report.rows, report.feedback, report.part) == ((), (), "table")
+        assert not report.follow_through
+        message = Feedback("empty", Severity.ERROR, "Write something.")
+        assert unjudged_report(table, verdict, (message,)) == replace(report, feedback=(message,))
 
 
 def test_a_student_who_sees_only_points_sees_one_sum(table: PartSpec) -> None:
@@ -424,5 +473,6 @@ def test_a_loss_names_its_cells() -> None:
 
     assert message("a alpha d theta", "+-+?") == "α and θ in row 2"
     assert message("a alpha d theta", "----") == "row 2"
+    assert message("a alpha d theta", "++++") == "row 2"
     assert message("1 2 3 4", "-+++") == "column 1 in row 2"
     assert message("1 2 3 4", "--+-") == "columns 1, 2 and 4 in row 2"

@@ -120,6 +120,19 @@ def test_additional_cells_do_not_make_a_mistake_cheaper() -> None:
     assert fixed.fifth(0) == 2
     usual = worth(content("x...", "xx..", "....", "..x.", besides=True, most=4), 8)
     assert (usual.is_fixed, usual.unit, usual.counted) == (False, 7, 4)
+    # The student's frames need fewer cells.
+    assert worth(content("x...", "xx..", besides=True, most=4), 8).counted == 3
+
+
+def test_cells_without_a_counterpart_cost_all_points() -> None:
+    # Nothing in the reference needs knowledge; the rows share all points evenly.
+    rows = worth(content("x...", "....", besides=True, most=0), 4)
+    assert (rows.is_fixed, rows.unit, rows.least_besides) == (True, 16, 8)
+    matrix = worth(content("x.", "..", groups="00", most=0), 4)
+    assert (matrix.is_fixed, matrix.unit, matrix.groups) == (True, 16, {0: 16})
+    # Of a single hundredth, nothing is left for the row.
+    tiny = worth(content("xx", besides=True, most=1), 0.01)
+    assert (tiny.unit, tiny.least_besides, tiny.groups) == (1, 0, {0: 2})
 
 
 def test_the_entries_of_a_matrix_share_its_points() -> None:
@@ -185,6 +198,9 @@ def test_a_hundredth_of_a_point_goes_to_one_cell() -> None:
     cells = worth(SCARA, 0.01, "cells")
     assert (cells.unit, cells.slip) == (1, 1)
     assert worth(SCARA, 0.01, "rows").slip == 1
+    # Two hundredths for three cells: nothing is left for the rows.
+    found = worth(content("x", "xx", besides=True), 0.02)
+    assert (sum(found.rows), found.besides, found.least_besides) == (2, (0, 0), 0)
     for equal in (True, False):
         pose = content("xx", ".x", groups="00", equal=equal)
         assert (worth(pose, 0.01).unit, worth(pose, 0.01).rows) == (1, (1, 0))
