@@ -226,9 +226,24 @@ def _judged(
         answer = hand_in.answer
         part = parts.get(answer.part)
         result = _result(hand_in, part, wanted.get(answer.part), grade)
-        said = [entry.get("error", ""), json.dumps(part, ensure_ascii=False)[:1500]]
+        said = [entry.get("error", ""), _said(part, wanted.get(answer.part))]
         place = f"{where}: {answer.part}, {answer.slip or 'right'}"
         yield Outcome(hand_in.kind, result, place, " | ".join(filter(None, said)))
+
+
+def _said(part: Mapping[str, Any] | None, wanted: Graded | None) -> str:
+    if part is None:
+        return "no report"
+    messages = [f"{message['code']}: {message['message']}" for message in part["feedback"]]
+    for row in part["rows"]:
+        messages += [f"row {row['label']}: {message['code']}" for message in row["feedback"]]
+        messages += [
+            f"row {row['label']}, {cell['label']}: {message['code']}: {message['message']}"
+            for cell in row["cells"]
+            for message in cell["feedback"]
+        ]
+    points = f"{part['verdict']}, {part['points']} points instead of {wanted and wanted.points}"
+    return " | ".join([points, *messages[:5]])
 
 
 def _result(

@@ -493,7 +493,7 @@ KINDS: Final = (
     Kind("xls, LibreOffice", _calculated("xls"), by_libreoffice="Calc"),
     Kind("ods, odfpy", _ods),
     Kind("ods, LibreOffice", _calculated("ods"), by_libreoffice="Calc"),
-    Kind("csv, LibreOffice", _calculated("csv"), by_libreoffice="Calc"),
+    Kind("csv, LibreOffice", _calculated("csv:Text - txt - csv (StarCalc):44,34,76,1"), by_libreoffice="Calc"),
     Kind("html of a sheet, LibreOffice", _calculated("html"), by_libreoffice="Calc"),
     Kind("docx, python-docx", _docx),
     Kind("docx, equations", _docx_equations),

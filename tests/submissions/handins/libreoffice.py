@@ -26,15 +26,14 @@ def converted(files: Mapping[int, Made], folder: Path) -> dict[int, Made]:
     found: dict[int, Made] = {}
     for target in sorted({each.target for each in files.values()}):
         own = {i: each for i, each in files.items() if each.target == target}
-        # A spreadsheet and a document become web pages in different ways, but by the same option.
-        sources, written = folder / f"from-{target}", folder / target
+        ending = target.partition(":")[0]
+        sources, written = folder / f"to-{ending}", folder / ending
         sources.mkdir(parents=True)
         for i, each in own.items():
             (sources / f"{i}{each.ending}").write_bytes(each.content)
         _convert(target, sorted(sources.iterdir()), written, folder / "profile")
         for i in own:
-            content = (written / f"{i}.{target}").read_bytes()
-            found[i] = Made(content, f".{target}")
+            found[i] = Made((written / f"{i}.{ending}").read_bytes(), f".{ending}")
     return found
 
 

@@ -102,7 +102,8 @@ class _Writer:
         is_plain: bool,
     ) -> None:
         robot = exercise.robot
-        self._joints = frozenset(it.variable for it in (robot.joints if robot is not None else ()))
+        joints = robot.joints if robot is not None else ()
+        self._angles = frozenset(joint.variable for joint in joints if not joint.prismatic)
         self._angle = angle
         self._is_table = answer.is_table
         self._variable = "plain" if is_plain else str(rng.choice(("plain", "q", "_", "θ", "θ_")))
@@ -119,7 +120,7 @@ class _Writer:
         if found[3] is None:
             return self._minus
         letters, index = found[3], found[4]
-        if found[0] in self._joints and letters in ("q", "theta"):
+        if found[0] in self._angles:
             return self._of_joint(letters, index)
         if letters in ("c", "s"):
             return found[0]
