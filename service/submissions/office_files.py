@@ -585,10 +585,8 @@ _BREAK: Final = re.compile(
     r"(?![A-Za-z0-9-])[^<>]{0,2000}>",
     re.IGNORECASE,
 )
-_HIDDEN: Final = re.compile(
-    r"<(style|script|title)(?![A-Za-z0-9-])[^<>]{0,2000}>[^<]*</\1\s{0,9}>|<!--[^<>]{0,2000}-->|<![^<>]{0,2000}>",
-    re.IGNORECASE,
-)
+# What begins a part of a page that nobody sees.
+_HIDDEN: Final = re.compile(r"<(head|style|script|title)(?![A-Za-z0-9-])|<!--|<!", re.IGNORECASE)
 _TAG: Final = re.compile(r"</?[A-Za-z][^<>]{0,2000}>")
 _RAISED: Final = re.compile(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)
 
@@ -600,7 +598,7 @@ def typed_text(page: str) -> str:
     '0, 0, 0, q1\nl1, 0, 0, q2'
     """
     is_preformatted = re.search("<pre(?![A-Za-z0-9-])", page, re.IGNORECASE) is not None
-    page = _HIDDEN.sub("", page)
+    page = _visible(page)
     if not is_preformatted and _BREAK.search(page):
         # Line ends in the source of a page mean no more than blanks.
         page = " ".join(page.split("\n"))
@@ -610,8 +608,29 @@ def typed_text(page: str) -> str:
     return "\n".join(line for line in lines if line.strip())
 
 
+def _visible(page: str) -> str:
+    """Return a web page without its head, styles, scripts and comments."""
+    lowered = page.lower()
+    pieces = []
+    start = position = 0
+    unclosed: set[str] = set()
+    while found := _HIDDEN.search(lowered, position):
+        opening = found[0]
+        closing = {"<!--": "-->", "<!": ">"}.get(opening, f"</{opening[1:]}")
+        close = -1 if opening in unclosed else lowered.find(closing, found.end())
+        end = lowered.find(">", close) + 1 if close >= 0 else 0
+        position = found.end()
+        if end:
+            pieces.append(page[start : found.start()])
+            start = position = end
+        else:
+            # Such an element is not searched for again, so that the time stays linear.
+            unclosed.add(opening)
+    return "".join(pieces) + page[start:]
+
+
 def _web_page(data: bytes) -> Iterator[Excerpt]:
-    page = decoded(data)
+    page = _visible(decoded(data))
     has_table = _TABLE.search(page) is not None
     if has_table:
         yield Excerpt(page)

@@ -6,8 +6,8 @@ the same text before the name of a file. Canvas (``lib/content_zipper.rb``) puts
 ``byronada_LATE_1234_56789_`` before the name of a file. A text that a student typed in Canvas has
 the name ``byronada_1234_text.html``, and a web address has the name ``byronada_1234_link.html``.
 For anonymous students, ``anon_x7Gh2`` replaces the name and the number. Brightspace names a folder
-``75842-1234567 - Ada Byron - Oct 3, 2026 405 PM``, or puts the same text and `` - `` before the name
-of a file. Blackboard names a file ``HW1_abyron_attempt_2026-10-03-16-05-33_table.csv``.
+``75842-1234567 - Ada Byron - Oct 3, 2026 405 PM``, or puts this text and `` - `` before the name of
+a file. Blackboard names a file ``HW1_abyron_attempt_2026-10-03-16-05-33_table.csv``.
 """
 
 import re
@@ -35,6 +35,8 @@ _BLACKBOARD: Final = re.compile(
 )
 # No file system takes a longer name; a zip file does.
 _LONGEST: Final = 255
+# The name of Blackboard's receipt of an attempt, which holds what the student typed.
+RECEIPT: Final = "attempt.txt"
 # The number of a second download or a resubmission: ``table-1.csv``, ``table (1).csv``.
 _COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
 
@@ -60,9 +62,10 @@ def platform_name(name: str) -> PlatformName | None:
         learner = f"Participant {found['id']}"
         return PlatformName(f"{found['student']}_{found['id']}", learner, found["file"] or "")
     if found := _BRIGHTSPACE.fullmatch(name):
-        return PlatformName(f"{found['student']}_{found['id']}", found["student"], found["file"] or "")
+        student = found["student"]
+        return PlatformName(f"{student}_{found['id']}", student, found["file"] or "")
     if found := _BLACKBOARD.fullmatch(name):
-        return PlatformName(found["student"], found["user"], found["file"] or "attempt.txt")
+        return PlatformName(found["student"], found["user"], found["file"] or RECEIPT)
     found = _CANVAS.fullmatch(name)
     if found is None or (found["student"] is None) == found["id"].isdigit():
         return None

@@ -5,6 +5,7 @@ import json
 import time
 import zipfile
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import date
 from pathlib import Path
 from typing import Any, Final
@@ -98,6 +99,26 @@ def test_scratch_sheets_and_blocks_beside_the_answer_do_not_matter(tmp_path: Pat
     assert grade_files(tmp_path, {"hw.xlsx": sheets}).points == 8
 
 
+@pytest.mark.parametrize("legend", [["l1", "length of link 1"], ["Name", "Ada Byron"], ["done"]])
+def test_a_legend_below_a_table_in_a_sheet_is_no_row(tmp_path: Path, legend: list[str]) -> None:
+    sheet = made.xlsx([*RIGHT, [], legend])
+    assert grade_files(tmp_path, {"hw.xlsx": sheet}).points == 8
+
+
+def test_a_piece_of_a_sheet_does_not_hide_its_wrong_rows(tmp_path: Path) -> None:
+    # The rows below the empty row can be read alone; they earn less.
+    rows: made.Rows = [RIGHT[0], [0, 0, 0, "q1 +"], [], *RIGHT[2:]]
+    found = grade_files(tmp_path, {"hw.xlsx": made.xlsx(rows)})
+    [part] = found.files[0].report.parts
+    assert [row.cells[3].verdict for row in part.rows] == ["unreadable", *["correct"] * 3]
+
+
+def test_two_tables_in_a_sheet_that_differ_are_left_to_a_person(tmp_path: Path) -> None:
+    wrong: made.Rows = [*RIGHT[:2], ["l1", 90, 0, "q2"], *RIGHT[3:]]
+    found = grade_files(tmp_path, {"hw.xlsx": made.xlsx([*wrong, [], *RIGHT])})
+    assert not found.is_complete
+
+
 def test_sheets_with_the_names_of_parts_answer_these_parts(tmp_path: Path) -> None:
     pose = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
     (tmp_path / "hw.xlsx").write_bytes(made.xlsx(RIGHT, pose, names=["Table", "pose"]))
@@ -181,10 +202,41 @@ def test_what_has_no_text_in_a_document_is_not_an_empty_cell() -> None:
         ("<pre>A = [1 2\n3 4]</pre>", "A = [1 2\n3 4]"),
         ("<style>p {}</style><!-- x --><ul><li>1</li><li>2</li></ul>", "1\n2"),
         ("l1 < 3 and q1 > 2", "l1 < 3 and q1 > 2"),
+        ("<head><style>p { x > y }\n<!-- a -->\n</style></head><p>1</p>", "1"),
+        ("<!-- [if gte mso 9]><xml><p>9</p></xml> --><p>1<!-- 2 --></p>", "1"),
+        ("<style>p<p>1</p><!-- 2", "p\n1\n<!-- 2"),
     ],
 )
 def test_typed_lines_are_the_lines_of_the_editor(page: str, lines: str) -> None:
     assert typed_text(page) == lines
+
+
+STYLES: Final = """
+    p { font-size: 1 } a:hover + b { c: d; e: f;  }
+    <!-- a comment } -->
+"""
+
+
+def test_styles_and_scripts_of_a_web_page_are_not_read(tmp_path: Path) -> None:
+    rows = "".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in RIGHT)
+    head = f"<head><title>T {{</title><style>{STYLES}</style></head>"
+    page = f"<html>{head}<body><script>if (a < b) {{</script><table>{rows}</table></body></html>"
+    assert grade_files(tmp_path, {"table.html": page.encode()}).points == 8
+
+
+def test_the_time_for_a_web_page_of_openings_is_linear() -> None:
+    pages = [("<style><!--<script><head><!" * count).encode() for count in (4_000, 40_000)]
+    seconds = []
+    for page in pages:
+        took = []
+        for _ in range(3):
+            start = time.process_time()
+            with suppress(UnusableFileError):
+                excerpts(page, ".html")
+            took.append(time.process_time() - start)
+        seconds.append(min(took))
+    # Ten times the length; a quadratic search takes a hundred times as long.
+    assert seconds[1] < 40 * max(seconds[0], 1e-4)
 
 
 def test_json_that_was_typed_into_an_editor_is_the_json_of_an_answer(tmp_path: Path) -> None:

@@ -137,6 +137,8 @@ def test_equations_that_are_all_rows_stay() -> None:
     assert cells("p_x = l1, 1\np_y = l2, 2\np1 = 0, 3")[-1][0] == "p1 = 0"
 
 
-@pytest.mark.parametrize("row", ["3\t\t\t\t", "e\t\t\t\t", "l2\t\t\t\t", "\t\t\t\tq3", "pi/2\t\t\t\t"])
+@pytest.mark.parametrize(
+    "row", ["3\t\t\t\t", "e\t\t\t\t", "l2\t\t\t\t", "\t\t\t\tq3", "pi/2\t\t\t\t"]
+)
 def test_a_last_row_with_one_entry_stays(row: str) -> None:
     assert len(cells(f"{TABLE}\n{row}")) == len(cells(TABLE)) + 1

@@ -98,9 +98,7 @@ def _right(exercise: str, part: str) -> tuple[tuple[str, ...], ...]:
             for check in checks
             if check["kind"] == "right" and isinstance(check["answers"].get(part), list)
         )
-    return tuple(
-        tuple(map(str, row)) if isinstance(row, list) else (str(row),) for row in rows
-    )
+    return tuple(tuple(map(str, row)) if isinstance(row, list) else (str(row),) for row in rows)
 
 
 def right(exercise: str, part: str) -> Answer:

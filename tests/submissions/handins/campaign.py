@@ -75,28 +75,39 @@ class SchoolClass:
         return f"{self.exercise} {self.part or 'whole'} {self.platform}".replace(", ", " ")
 
 
-def kinds() -> list[Kind]:
+def kinds(*, with_libreoffice: bool = True) -> list[Kind]:
     """Return the kinds that the programs on this machine can write."""
-    return [kind for kind in KINDS if not kind.by_libreoffice or is_installed(kind.by_libreoffice)]
+    return [
+        kind
+        for kind in KINDS
+        if not kind.by_libreoffice or (with_libreoffice and is_installed(kind.by_libreoffice))
+    ]
 
 
-def drawn(count: int, seed: int, folder: Path, *, class_size: int = _CLASS) -> list[SchoolClass]:
-    """Return classes with ``count`` files, each kind in turn."""
-    known = kinds()
+def drawn(
+    count: int,
+    seed: int,
+    folder: Path,
+    *,
+    class_size: int = _CLASS,
+    with_libreoffice: bool = True,
+) -> list[SchoolClass]:
+    """Return classes with ``count`` files, each kind in turn, made in ``folder``."""
+    known = kinds(with_libreoffice=with_libreoffice)
     rng = np.random.default_rng(seed)
-    waiting = [known[i % len(known)] for i in range(count)]
-    # A class would otherwise get one kind again and again.
-    waiting = [waiting[i] for i in rng.permutation(count)]
-    classes = []
+    # A class gets different kinds, and each sample of a campaign others.
+    places = [*rng.permutation(count)]
+    waiting = [known[(place + seed) % len(known)] for place in places]
     exercises = [(name, part) for name, parts in PARTS.items() for part in (*parts, None)]
     exercises = [each for each in exercises if each[1] or len(PARTS[each[0]]) > 1]
     order = rng.permutation(len(exercises))
-    for k in range(0, count, class_size):
-        exercise, part = exercises[order[k // class_size % len(exercises)]]
-        platform = list(PLATFORMS)[k // class_size % len(PLATFORMS)]
-        own = waiting[k : k + class_size]
+    classes = []
+    for k, start in enumerate(range(0, count, class_size)):
+        exercise, part = exercises[order[k % len(exercises)]]
+        platform = list(PLATFORMS)[(k + seed) % len(PLATFORMS)]
+        own = waiting[start : start + class_size]
         hand_ins = list(_hand_ins(exercise, part, own, rng))
-        is_zip = bool(k // class_size % 2)
+        is_zip = (k + seed) % 2 == 0
         classes.append(SchoolClass(exercise, part, platform, is_zip, hand_ins))
     return _with_conversions(classes, folder)
 
@@ -156,7 +167,7 @@ def _students(school_class: SchoolClass) -> list[Student]:
 def _written(school_class: SchoolClass, students: Sequence[Student], folder: Path) -> Path:
     platform = PLATFORMS[school_class.platform]
     files = {name: data for each in students for name, data in platform.files(each).items()}
-    files |= platform.others(students)
+    files |= platform.others
     path = folder / school_class.name
     if school_class.is_zip:
         path = path.with_name(f"{path.name}.zip")
@@ -195,8 +206,7 @@ def outcomes(school_class: SchoolClass, folder: Path) -> list[Outcome]:
     assert len(entries) == len(grades)
     platform = PLATFORMS[school_class.platform]
     by_learner = {
-        row["Identifier"]: (entry, row["Grade"])
-        for entry, row in zip(entries, grades, strict=True)
+        row["Identifier"]: (entry, row["Grade"]) for entry, row in zip(entries, grades, strict=True)
     }
     assert len(by_learner) == len(grades), "two submissions have one learner"
     found = []
@@ -287,7 +297,5 @@ def share_right(found: Sequence[Outcome]) -> float:
 def faults(found: Sequence[Outcome]) -> list[Outcome]:
     """Return the files that are misread, or that count as 0 though nobody read them."""
     return [
-        each
-        for each in found
-        if each.result in ("misread", "counted 0") and not each.kind.is_apart
+        each for each in found if each.result in ("misread", "counted 0") and not each.kind.is_apart
     ]

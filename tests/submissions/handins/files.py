@@ -12,7 +12,6 @@ from typing import Any, Final
 import docx
 import numpy as np
 import openpyxl
-import xlsxwriter
 from docx.oxml import OxmlElement
 from docx.oxml.ns import qn
 from openpyxl.cell.rich_text import CellRichText, TextBlock
@@ -69,8 +68,8 @@ def _numbers(typed_answer: Typed) -> list[list[str | float]]:
 
 def _xlsx(answer: Answer, rng: Rng) -> Made:
     rows = _numbers(typed(answer, rng))
-    titled = [["Name", "Ada Lovelace"], [], *rows] if rng.random() < 0.4 else rows
-    return Made(office.xlsx(titled), ".xlsx")
+    title: list[list[str | float]] = [["Name", "Ada Lovelace"], []] if rng.random() < 0.4 else []
+    return Made(office.xlsx([*title, *rows]), ".xlsx")
 
 
 def _xlsx_formatted(answer: Answer, rng: Rng) -> Made:
@@ -85,7 +84,7 @@ def _xlsx_indices(answer: Answer, rng: Rng) -> Made:
     for i, row in enumerate(typed(answer, rng).rows):
         for j, text in enumerate(row):
             cell = sheet.cell(i + 2, j + 2)
-            found = re.fullmatch(r"([a-zθα]+)_?(\d)", text)
+            found = re.fullmatch(r"([a-zθα]+)_?(\d+)", text)
             if found:
                 cell.value = CellRichText(found[1], TextBlock(lowered, found[2]))
             else:
@@ -96,8 +95,9 @@ def _xlsx_indices(answer: Answer, rng: Rng) -> Made:
 
 
 def _xlsx_notes(answer: Answer, rng: Rng) -> Made:
-    """Return a workbook with scratch work on another sheet and a remark below the table."""
-    rows = [*_numbers(typed(answer, rng)), [], ["checked twice"]]
+    """Return a workbook with scratch work on another sheet and a remark or legend below a table."""
+    remarks = [["checked twice"], ["Name", "Ada Lovelace"], ["L", "length of the link"]]
+    rows = [*_numbers(typed(answer, rng)), [], [*remarks[int(rng.integers(3))]]]
     names = ["DH", "Scratch"]
     sheets: list[office.Rows] = [rows, [["angles"], [90, 1.5708], [180, 3.1416]]]
     if rng.random() < 0.5:
@@ -147,9 +147,11 @@ def _document(typed_answer: Typed, rng: Rng, *, is_equation: bool = False) -> by
     rows = typed_answer.rows
     table = document.add_table(len(rows), len(rows[0]))
     lowered = rng.random() < 0.5
-    for row, cells in zip(rows, table.rows, strict=True):
-        for text, cell in zip(row, cells.cells, strict=True):
-            _write(cell.paragraphs[0], text, lowered=lowered, is_equation=is_equation)
+    for i, (row, cells) in enumerate(zip(rows, table.rows, strict=True)):
+        for j, (text, cell) in enumerate(zip(row, cells.cells, strict=True)):
+            # LibreOffice 7.4 loses an equation at the beginning of a table.
+            in_editor = is_equation and (i, j) != (0, 0)
+            _write(cell.paragraphs[0], text, lowered=lowered, is_equation=in_editor)
     for text in _AFTER if rng.random() < 0.6 else ():
         document.add_paragraph(text)
     written = io.BytesIO()
@@ -157,7 +159,7 @@ def _document(typed_answer: Typed, rng: Rng, *, is_equation: bool = False) -> by
     return written.getvalue()
 
 
-_INDEXED: Final = re.compile(r"([a-zαθ]+)_?(\d|\{i-1\}|i\b)")
+_INDEXED: Final = re.compile(r"([a-zαθ]+)_?(\d+|\{i-1\}|i\b)")
 
 
 def _write(paragraph: Any, text: str, *, lowered: bool, is_equation: bool) -> None:
@@ -179,7 +181,7 @@ def _equation(text: str) -> Any:
     """Return a text in the equation editor of Word: fractions, indices and degrees."""
     formula = OxmlElement("m:oMath")
     position = 0
-    for found in re.finditer(r"([πp]i?)/(\d)|([a-zαθ]+)_?(\d)|(\d+)°", text):
+    for found in re.finditer(r"([πp]i?)/(\d)|([a-zαθ]+)_?(\d+)|(\d+)°", text):
         _append(formula, text[position : found.start()])
         if found[2]:
             formula.append(_structure("m:f", ("m:num", found[1]), ("m:den", found[2])))
@@ -274,7 +276,8 @@ def _numpy(answer: Answer, rng: Rng) -> str:
 
 
 def _sympy(answer: Answer, rng: Rng) -> str:
-    names = sorted(set(re.findall(r"[a-z]+\d+", " ".join(sum(answer.cells, [])))))
+    words = " ".join(cell for row in answer.cells for cell in row)
+    names = sorted(set(re.findall(r"[a-z]+\d+", words)))
     symbols = f"{', '.join(names)} = symbols('{' '.join(names)}')\n"
     rows = _python_rows(answer, rng, "pi")
     return f"from sympy import *\n\n{symbols}\nM = Matrix({rows})\nM\n"
@@ -312,7 +315,7 @@ def _in_latex(answer: Answer, rng: Rng) -> str:
 
 
 def _latex(cell: str) -> str:
-    cell = re.sub(r"(\d\*)?pi/(\d)", lambda it: rf"\frac{{{(it[1] or '')[:-1]}\pi}}{{{it[2]}}}", cell)
+    cell = re.sub(r"(?:(\d)\*)?pi/(\d)", r"\\frac{\1\\pi}{\2}", cell)
     cell = re.sub(r"(?<!\\)\b(alpha|theta|pi|cos|sin)(?=[\d_(\b ]|$)", r"\\\1", cell)
     cell = re.sub(r"([α]|θ)", lambda it: {"α": r"\alpha", "θ": r"\theta"}[it[1]], cell)
     cell = re.sub(r"(?<=[a-z])(\d)\b", r"_\1", cell)
@@ -391,10 +394,10 @@ def _editor(name: str) -> Callable[[Answer, Rng], Made]:
 
 def _editor_table(answer: Answer, rng: Rng) -> Made:
     """Return a table as an editor inserts it, with empty paragraphs around it."""
-    rows = "".join(
-        f"<tr>{''.join(f'<td style={chr(34)}width: 20%{chr(34)}>{escape(cell)}</td>' for cell in row)}</tr>\n"
-        for row in typed(answer, rng).rows
-    )
+    rows = ""
+    for row in typed(answer, rng).rows:
+        cells = "".join(f'<td style="width: 20%">{escape(cell)}</td>' for cell in row)
+        rows += f"<tr>{cells}</tr>\n"
     page = f"<p>My answer:&nbsp;</p><table border='1'><tbody>\n{rows}</tbody></table><p>&nbsp;</p>"
     return Made(page.encode(), ".html")
 
@@ -433,8 +436,8 @@ def _png(_: Answer, rng: Rng) -> Made:
     return Made(b"\x89PNG\r\n\x1a\n" + written, ".png")
 
 
-def _always(content: Callable[[], bytes], ending: str) -> Callable[[Answer, Rng], Made]:
-    return lambda answer, rng: Made(content(), ending)
+def _jpg(_: Answer, rng: Rng) -> Made:
+    return Made(b"\xff\xd8\xff\xe0\0\x10JFIF\0" + rng.bytes(500), ".jpg")
 
 
 def _empty(_: Answer, rng: Rng) -> Made:
@@ -493,14 +496,18 @@ KINDS: Final = (
     Kind("xls, LibreOffice", _calculated("xls"), by_libreoffice="Calc"),
     Kind("ods, odfpy", _ods),
     Kind("ods, LibreOffice", _calculated("ods"), by_libreoffice="Calc"),
-    Kind("csv, LibreOffice", _calculated("csv:Text - txt - csv (StarCalc):44,34,76,1"), by_libreoffice="Calc"),
+    Kind(
+        "csv, LibreOffice",
+        _calculated("csv:Text - txt - csv (StarCalc):44,34,76,1"),
+        by_libreoffice="Calc",
+    ),
     Kind("html of a sheet, LibreOffice", _calculated("html"), by_libreoffice="Calc"),
     Kind("docx, python-docx", _docx),
     Kind("docx, equations", _docx_equations),
     Kind("docx, lines", _docx_lines),
     Kind("docx, LibreOffice", _converted(_docx, "docx"), by_libreoffice="Writer"),
     Kind(
-        "docx, equations, LibreOffice", _converted(_docx_equations, "docx"), by_libreoffice="Writer"
+        "docx, equations, LibreOffice", _converted(_docx_equations, "docx"), by_libreoffice="Math"
     ),
     Kind("rtf, WordPad", _rtf),
     Kind("rtf, LibreOffice", _converted(_docx, "rtf"), by_libreoffice="Writer"),
@@ -533,7 +540,7 @@ KINDS: Final = (
     Kind("odt, LibreOffice", _converted(_docx, "odt"), is_read=False, by_libreoffice="Writer"),
     Kind("doc, LibreOffice", _converted(_docx, "doc"), is_read=False, by_libreoffice="Writer"),
     Kind("png", _png, is_read=False),
-    Kind("jpg", _always(lambda: b"\xff\xd8\xff\xe0\0\x10JFIF\0" + bytes(500), ".jpg"), is_read=False),
+    Kind("jpg", _jpg, is_read=False),
     Kind("empty file", _empty, is_read=False),
     Kind("blank file", _blank, is_read=False),
     Kind("words only", _words, is_read=False),

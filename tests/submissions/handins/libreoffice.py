@@ -10,11 +10,11 @@ from tests.submissions.handins.files import Made
 PROGRAM = shutil.which("soffice")
 _SECONDS = 600
 # The libraries of its programs, beside the program that starts them.
-_LIBRARIES = {"Calc": "*sclo.*", "Writer": "*swlo.*"}
+_LIBRARIES = {"Calc": "*sclo.*", "Writer": "*swlo.*", "Math": "*smlo.*"}
 
 
 def is_installed(program: str) -> bool:
-    """True if LibreOffice is there with this program: "Calc" or "Writer"."""
+    """True if LibreOffice is there with this program: "Calc", "Writer" or "Math"."""
     if PROGRAM is None:
         return False
     folder = Path(PROGRAM).resolve().parent

@@ -2,11 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Final, Protocol
 
 _FIRST: Final = (
-    "Ada", "Ben", "Chloé", "Dušan", "Emmy", "Fatıma", "Grace", "Hedy", "Ida", "Jürgen", "Karl-Heinz",
-    "Lise", "María José", "Noether", "Ola", "Priya", "Quentin", "Rosalind", "Søren", "Tú", "Ursula",
+    "Ada", "Ben", "Chloé", "Dušan", "Emmy", "Fatıma", "Grace", "Hedy", "Ida", "Jürgen",
+    "Karl-Heinz", "Lise", "María José", "Noether", "Ola", "Priya", "Quentin", "Rosalind",
+    "Søren", "Tú", "Ursula",
     "Vera", "王", "Xènia", "Yuki", "Zoë",
 )  # fmt: skip
 _LAST: Final = (
@@ -50,19 +52,18 @@ class Student:
 class Platform(Protocol):
     """A platform that names the files of its students."""
 
+    # The files of the export that belong to no student.
+    others: Mapping[str, bytes]
+
     def files(self, student: Student) -> dict[str, bytes]:
         """Return the files of a student by their names in the export."""
 
     def learner(self, student: Student) -> str:
         """Return the identifier of a student in the gradebook."""
 
-    def others(self, students: Sequence[Student]) -> dict[str, bytes]:
-        """Return the files of the export that belong to no student."""
-
 
 class _Platform:
-    def others(self, students: Sequence[Student]) -> dict[str, bytes]:
-        return {}
+    others: Mapping[str, bytes] = MappingProxyType({})
 
 
 class Moodle(_Platform):
@@ -106,6 +107,10 @@ class Canvas(_Platform):
 class Brightspace(_Platform):
     """Folders, or flat files in other versions, and an index of the submissions."""
 
+    others: Mapping[str, bytes] = MappingProxyType(
+        {"index.html": b"<table><tr><td>Lovelace, Ada</td><td>Nov 20, 2026</td></tr></table>"}
+    )
+
     def __init__(self, *, in_folders: bool = True) -> None:
         self._in_folders = in_folders
 
@@ -119,10 +124,6 @@ class Brightspace(_Platform):
 
     def learner(self, student: Student) -> str:
         return student.name
-
-    def others(self, students: Sequence[Student]) -> dict[str, bytes]:
-        rows = "".join(f"<tr><td>{each.name}</td><td>Nov 20, 2026</td></tr>" for each in students)
-        return {"index.html": f"<html><body><table>{rows}</table></body></html>".encode()}
 
 
 class Blackboard(_Platform):

@@ -68,8 +68,7 @@ def typed(
 
 
 def _headers(exercise: Exercise, rng: np.random.Generator) -> dict[str, str]:
-    robot = exercise.robot
-    indexed = _MODIFIED if robot is not None and robot.convention == "modified" else _STANDARD
+    indexed = _MODIFIED if exercise.robot.convention == "modified" else _STANDARD
     return (_WORDS, _GREEK, indexed)[int(rng.integers(3))]
 
 
@@ -81,8 +80,7 @@ def _unit(name: str, angle: str) -> str:
 
 def _numbered(rows: Cells, exercise: Exercise, rng: np.random.Generator) -> Cells:
     # The joints of a wrist have numbers that do not begin with 1.
-    robot = exercise.robot
-    joints = robot.joints if robot is not None else ()
+    joints = exercise.robot.joints
     first = joints[0].index
     labels = [str(first + i) if i < len(joints) else "e" for i in range(len(rows) - 1)]
     head = str(rng.choice(_NUMBERED))
@@ -101,8 +99,7 @@ class _Writer:
         *,
         is_plain: bool,
     ) -> None:
-        robot = exercise.robot
-        joints = robot.joints if robot is not None else ()
+        joints = exercise.robot.joints
         self._angles = frozenset(joint.variable for joint in joints if not joint.prismatic)
         self._angle = angle
         self._is_table = answer.is_table
