@@ -97,7 +97,8 @@ def _xlsx_indices(answer: Answer, rng: Rng) -> Made:
 def _xlsx_notes(answer: Answer, rng: Rng) -> Made:
     """Return a workbook with scratch work on another sheet and a remark or legend below a table."""
     remarks = [["checked twice"], ["Name", "Ada Lovelace"], ["L", "length of the link"]]
-    rows = [*_numbers(typed(answer, rng)), [], [*remarks[int(rng.integers(3))]]]
+    rows: list[list[str | float]] = [*_numbers(typed(answer, rng)), []]
+    rows.append([*remarks[int(rng.integers(3))]])
     names = ["DH", "Scratch"]
     sheets: list[office.Rows] = [rows, [["angles"], [90, 1.5708], [180, 3.1416]]]
     if rng.random() < 0.5:
