@@ -7,6 +7,7 @@ All work is bounded: a file whose parts are too large or hostile is refused befo
 
 import io
 import re
+import struct
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -28,6 +29,8 @@ MAX_XML: Final = 2 * 1024 * 1024
 MAX_TAGS: Final = 60_000
 # The most cells of a sheet. A wide table with its title and scratch work has a few hundred.
 MAX_CELLS: Final = 10_000
+# Records of a workbook of Excel 97: a cell is one, and so are a row, a font and a style.
+MAX_RECORDS: Final = 2 * MAX_CELLS
 # Bytes of rich text without its pictures, and its braces and backslashes.
 MAX_RTF: Final = 512 * 1024
 MAX_RTF_SIGNS: Final = 30_000
@@ -227,6 +230,8 @@ def _require_few_cells(content: bytes) -> None:
 def _xls(data: bytes) -> Iterator[Excerpt]:
     import xlrd
 
+    if sum(_cells_in_records(data)) > MAX_RECORDS:
+        raise _too_much()
     book = xlrd.open_workbook(file_contents=data, ragged_rows=True, logfile=io.StringIO())
     sheets = []
     for sheet in book.sheets():
@@ -239,6 +244,33 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
             ]
             sheets.append((sheet.name, rows))
     yield from _of_sheets(sheets)
+
+
+def _cells_in_records(data: bytes) -> Iterator[int]:
+    """Yield the number of cells in each record of a workbook, or 1 for another record.
+
+    Stops after ``MAX_RECORDS``, so that a file of many cells is refused before it is parsed.
+    """
+    from xlrd.compdoc import SIGNATURE, CompDoc
+
+    position, end = 0, len(data)
+    if data.startswith(SIGNATURE):
+        streams = CompDoc(data, logfile=io.StringIO())
+        for name in ("Workbook", "Book"):
+            found, start, length = streams.locate_named_stream(name)
+            if found:
+                data, position, end = found, start, start + length
+                break
+    for _ in range(MAX_RECORDS + 1):
+        if position + 4 > end:
+            return
+        kind, length = struct.unpack_from("<HH", data, position)
+        yield max(1, (length - 6) // _CELLS_IN_RECORD[kind]) if kind in _CELLS_IN_RECORD else 1
+        position += 4 + length
+
+
+# The bytes of each cell in a record of several numbers or of several blank cells.
+_CELLS_IN_RECORD: Final = {0xBD: 6, 0xBE: 2}
 
 
 def _of_xls(cell: Any, datemode: int) -> str:
