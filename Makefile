@@ -13,6 +13,7 @@ SEED   ?= 1
 MINUTES ?= 10
 SECONDS ?= 60
 SAMPLE ?= 100
+HANDINS ?= 300
 
 python  := "$(VENV)/bin/python"
 install := $(python) -m pip install --quiet --disable-pip-version-check
@@ -27,7 +28,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips tables robots mutants durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips tables handins robots mutants durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -145,6 +146,9 @@ slips: $(dev) ## spoil the poses of all robots, and of random ones, by each slip
 
 tables: $(dev) ## import 500 tables, typed by people and by programs: is it the same robot? (SEED=)
 	$(python) -m tests.importing.tables --tables 500 --seed "$(SEED)"
+
+handins: $(dev) ## hand in HANDINS= files of all kinds as four platforms name them: are they graded right? (SEED=)
+	$(python) -m tests.submissions.handins --count "$(HANDINS)" --seed "$(SEED)"
 
 robots: $(dev) ## draw SEEDS= practice robots of each level: statement, marks, links, labels, forms
 	for level in 1 2 3 4; do $(python) -m tests.variants.robots --level $$level --seeds "$(SEEDS)" || exit; done

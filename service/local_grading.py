@@ -139,22 +139,40 @@ def _readable_excerpt(
     Raises UnusableFileError if several excerpts of one level can be graded and earn different
     points: no program knows which one the student means.
     """
+    whole: tuple[PartReport, str] | None = None
     for _, group in groupby(sorted(excerpts, key=lambda it: it.level), key=lambda it: it.level):
         graded = [
-            (report.points, excerpt.text)
+            (report, excerpt.text)
             for excerpt in group
             if (report := _part_report(excerpt.text, part, assigned, terms, report_on))
         ]
-        if len({points for points, _ in graded}) > 1:
+        if whole is not None:
+            # A legend beside a table belongs to the whole sheet, but not to one of its blocks.
+            graded = [each for each in graded if _is_better_piece(*each, *whole)]
+        if len({report.points for report, _ in graded}) > 1:
             raise UnusableFileError(
                 say(
                     "has several answers to {part}, which differ; leave only one of them",
                     part=part,
                 )
             )
-        if graded:
+        if graded and (whole is not None or _is_full(graded[0][0])):
             return graded[0][1]
-    return excerpts[0].text
+        if graded:
+            whole = graded[0]
+    return excerpts[0].text if whole is None else whole[1]
+
+
+def _is_better_piece(report: PartReport, text: str, whole: PartReport, whole_text: str) -> bool:
+    # True if a piece of a text has nothing unreadable, and earns more than all of the text.
+    is_piece = set(text.split()) <= set(whole_text.split())
+    return is_piece and _is_full(report) and report.points > whole.points
+
+
+def _is_full(report: PartReport) -> bool:
+    # True if each cell has an entry that could be read.
+    unread = (Verdict.UNREADABLE, Verdict.MISSING)
+    return not any(cell.verdict in unread for row in report.rows for cell in row.cells)
 
 
 def _part_report(

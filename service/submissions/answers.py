@@ -25,11 +25,17 @@ from service.submissions.file_content import (
     FileContent,
     ending,
     read_content,
+    typed_in_receipt,
 )
 from service.submissions.handed_in import HandedFile, HandedIn
 from service.submissions.lookup import nearest
-from service.submissions.office_files import Excerpt, UnusableFileError
-from service.submissions.platform_names import student_and_part, without_copy_number
+from service.submissions.office_files import Excerpt, UnusableFileError, decoded
+from service.submissions.platform_names import (
+    RECEIPT,
+    platform_name,
+    student_and_part,
+    without_copy_number,
+)
 from service.translations import Sentence, joined, say
 
 if TYPE_CHECKING:
@@ -42,6 +48,8 @@ _LONGEST_NAME: Final = 60
 _MOST_TRIED: Final = 5
 # The names of files that are not answers, unless the assignment asks for them.
 _NOT_ANSWERS: Final = frozenset({"readme", "license", "licence", "changelog"})
+# Files that a repository does not hold for other reasons.
+_NO_TEXTS: Final = frozenset({".xlsx", ".xls", ".ods", ".docx", ".rtf", ".csv", ".tsv", ".zip"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,7 +93,7 @@ def answers_in(
     If a file has several excerpts, such as the sheets of a workbook, ``choose`` chooses one.
     """
     try:
-        files = handed.files()
+        files = [file for file in handed.files() if not _is_empty_receipt(file)]
         claims, left = _claims(files, assignment)
     except UnusableFileError as error:
         entries = handed.entries
@@ -94,7 +102,7 @@ def answers_in(
         problem = of_file(name or PurePosixPath(handed.name).name, error.args[0])
         return (ExerciseAnswers(file, None, problem),) * len(assignment.exercises)
     found = [_combined(*each, choose) for each in zip(claims, assignment.exercises, strict=True)]
-    unread = [file for file in left if ending(file.name) in BY_HAND_ENDINGS]
+    unread = [file for file in left if _may_be_answer(file)]
     # A photo beside all answers is no answer; where an answer is missing, it may be the answer.
     return tuple(
         _with_unread(answers, unread, assigned)
@@ -106,14 +114,19 @@ def _with_unread(
     answers: ExerciseAnswers, unread: Sequence[HandedFile], assigned: AssignedExercise
 ) -> ExerciseAnswers:
     answered = answers.body.answers if answers.body else {}
+    known = {part.id.lower(): part.id for part in assigned.exercise.parts}
+    named = [student_and_part(file.name, known) for file in unread]
+    # The name of a file may name a part that another file answers.
+    unread = [
+        file
+        for file, found in zip(unread, named, strict=True)
+        if found is None or known[found[1]] not in answered
+    ]
     if not unread or all(part.id in answered for part in assigned.exercise.parts):
         return answers
     problems = dict(answers.unread)
     for file in unread:
-        try:
-            read_content(b"", file.name)
-        except UnusableFileError as error:
-            problems[file.own_name] = of_file(file.own_name, error.args[0])
+        problems[file.own_name] = of_file(file.own_name, _why_unread(file, assigned))
     return replace(
         answers,
         file=answers.file or str(unread[0].path),
@@ -121,6 +134,35 @@ def _with_unread(
         names=(*answers.names, *(file.own_name for file in unread)),
         unread=problems,
     )
+
+
+def _is_empty_receipt(file: HandedFile) -> bool:
+    # Blackboard writes a receipt for each attempt, also if the student typed nothing.
+    if file.name != RECEIPT or file.problem:
+        return False
+    try:
+        return typed_in_receipt(decoded(file.read())) == ""
+    except UnusableFileError:
+        return False
+
+
+def _may_be_answer(file: HandedFile) -> bool:
+    # True for a file that may hold an answer, though its name does not say to which part. A cloned
+    # repository has other texts and programs; on a platform, a student hands in only answers.
+    kind = ending(file.name)
+    if _stem(file) in _NOT_ANSWERS:
+        return False
+    if kind in BY_HAND_ENDINGS or kind in _NO_TEXTS:
+        return True
+    return kind in PASTED_ENDINGS and any(map(platform_name, file.path.parts))
+
+
+def _why_unread(file: HandedFile, assigned: AssignedExercise) -> str:
+    try:
+        read_content(b"" if ending(file.name) in BY_HAND_ENDINGS else file.read(), file.name)
+    except UnusableFileError as error:
+        return str(error.args[0])
+    return _unnamed(assigned, ending(file.name))
 
 
 def _claims(
@@ -200,13 +242,7 @@ def _stated(file: HandedFile, assignment: Assignment) -> int:
     content = read_content(file.read(), file.name)
     known = [each.exercise.id for each in assignment.exercises]
     if content.is_pasted:
-        raise UnusableFileError(
-            say(
-                "is a pasted answer, whose name does not say the exercise and the part: name it as "
-                "{example}",
-                example=_example(assignment.exercises[0], ending(file.name)),
-            )
-        )
+        raise UnusableFileError(_unnamed(assignment.exercises[0], ending(file.name)))
     if not isinstance(content.value, dict) or "answers" not in content.value:
         raise UnusableFileError(_no_answers())
     if len(known) == 1:
@@ -264,6 +300,14 @@ def _candidates(files: Sequence[HandedFile], assignment: Assignment) -> Sequence
 
 def _stem(file: HandedFile) -> str:
     return PurePosixPath(file.name.lower()).stem
+
+
+def _unnamed(assigned: AssignedExercise, suffix: str) -> str:
+    return say(
+        "is a pasted answer, whose name does not say the exercise and the part: name it as "
+        "{example}",
+        example=_example(assigned, suffix),
+    )
 
 
 def _example(assigned: AssignedExercise, suffix: str) -> str:

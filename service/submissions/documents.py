@@ -35,6 +35,17 @@ def pasted_from(text: str, suffix: str) -> str:
     return text if first is None or next(found, None) is not None else first
 
 
+# A line of a CSV file that is one cell in quotation marks.
+_QUOTED: Final = re.compile(r'\s{0,9}"((?:[^"]|"")*)"\s{0,9}')
+
+
+def _column(text: str) -> Iterator[str]:
+    # Spreadsheets put texts in quotation marks; a single column has no commas around them.
+    found = [_QUOTED.fullmatch(line) for line in text.splitlines() if line.strip()]
+    if found and all(found):
+        yield "\n".join(cell[1].replace('""', '"') for cell in found if cell)
+
+
 def _latex(text: str) -> Iterator[str]:
     at = 0
     while opening := _ENVIRONMENT.search(text, at):
@@ -100,6 +111,8 @@ def _closing(text: str, start: int) -> int:
 
 
 _TABLES: Final[Mapping[str, Callable[[str], Iterator[str]]]] = {
+    ".csv": _column,
+    ".tsv": _column,
     ".tex": _latex,
     ".md": _markdown,
     ".m": _matlab,

@@ -195,8 +195,26 @@ def _json_without_suffix(text: str, found: str) -> object:
         ) from error
 
 
+def typed_in_receipt(text: str) -> str | None:
+    """Return what a student typed, if the text is Blackboard's receipt of an attempt, else None.
+
+    The receipt names the student, the assignment and the files; the typed text may be empty.
+    """
+    head, field, rest = text.replace("\r\n", "\n").partition("\nSubmission Field:")
+    typed, comments, _ = rest.rpartition("\nComments:")
+    if not (head.lstrip("\ufeff").startswith("Name: ") and field and comments):
+        return None
+    return typed.replace(_NOTHING_TYPED, "").strip()
+
+
+_NOTHING_TYPED: Final = "There is no student submission text data for this assignment."
+
+
 def _recognised(text: str) -> FileContent:
-    text = text.strip()
+    typed = typed_in_receipt(text)
+    if typed == "":
+        raise UnusableFileError(say("is empty"))
+    text = (typed or text).strip()
     if _TAGS.search(text) and not _HAS_TABLE.search(text):
         # Text from the editor of a platform, saved under the name of a text file.
         text = typed_text(text)

@@ -30,6 +30,7 @@ MAX_UNPACKED: Final = 16 * 1024 * 1024
 # Zip files in zip files: that of a student, and one more in it.
 _MOST_ARCHIVES: Final = 2
 _ARCHIVE: Final = ".zip"
+_INDEX: Final = "index.html"
 
 _JUNK: Final = frozenset({"__macosx", "thumbs.db", "desktop.ini", "__pycache__", "node_modules"})
 
@@ -135,7 +136,7 @@ def _of_class(
         yield HandedIn(str(folder), folder.name, (), problem=error.args[0])
         return
     by_student: dict[str, list[str]] = {}
-    for name in names:
+    for name in _without_index(names):
         if not any(_is_same(folder / name, each) for each in left_out):
             by_student.setdefault(_student(folder, name, parts), []).append(name)
     for student, own in by_student.items():
@@ -179,9 +180,13 @@ def _unpacked_files(file: HandedFile) -> Iterator[HandedFile]:
         yield file
         return
     try:
-        yield from _Unpacking().files(file, _MOST_ARCHIVES)
+        found = _Unpacking().files(file, _MOST_ARCHIVES)
+        if not found:
+            raise UnusableFileError(say("holds no file"))
     except UnusableFileError as error:
         yield replace(file, problem=error.args[0])
+    else:
+        yield from found
 
 
 class _Unpacking:
@@ -237,18 +242,27 @@ def _of_class_archive(path: Path, parts: Collection[str]) -> Iterator[HandedIn]:
         return
     start = _common_folder(names)
     by_student: dict[str, list[HandedFile]] = {}
-    for name in names:
-        first, *steps = name[len(start) :].split("/")
+    tops = {name: name[len(start) :].split("/") for name in names}
+    own = frozenset(_without_index([first for first, *_ in tops.values()]))
+    for name, (first, *steps) in tops.items():
+        if first not in own:
+            continue
         found = platform_name(first)
         student = f"/{found.student}" if found else first
         if not steps and not found and (named := student_and_part(first, parts)):
             student = f"/{named[0]}"
-        own = "/".join(steps) if steps else (found.file if found and found.file else first)
-        file = HandedFile(path / name[len(start) :], own, archive=path, member=name)
+        inner = "/".join(steps) if steps else (found.file if found and found.file else first)
+        file = HandedFile(path / name[len(start) :], inner, archive=path, member=name)
         by_student.setdefault(student, []).append(file)
     for student, files in by_student.items():
         shown = path / student.lstrip("/")
         yield HandedIn(str(shown), _learner_in_archive(files, parts), tuple(files))
+
+
+def _without_index(names: Sequence[str]) -> list[str]:
+    # Brightspace puts a page with the list of all submissions beside them.
+    others = [name for name in names if name != _INDEX]
+    return others if others and all(map(platform_name, others)) else list(names)
 
 
 def _common_folder(names: Sequence[str]) -> str:

@@ -7,6 +7,7 @@ All work is bounded: a file whose parts are too large or hostile is refused befo
 
 import io
 import re
+import struct
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -23,8 +24,16 @@ from service.translations import say
 
 # Bytes of the XML in one file after unpacking. A table of a student needs a hundredth of that.
 MAX_XML: Final = 2 * 1024 * 1024
+# The most tags in one file. A document of two megabytes from Word has about as many; a hostile file
+# has a tag in every third byte, and each tag takes more time than a thousand letters.
+MAX_TAGS: Final = 60_000
 # The most cells of a sheet. A wide table with its title and scratch work has a few hundred.
-MAX_CELLS: Final = 20_000
+MAX_CELLS: Final = 10_000
+# Records of a workbook of Excel 97: a cell is one, and so are a row, a font and a style.
+MAX_RECORDS: Final = 2 * MAX_CELLS
+# Bytes of rich text without its pictures, and its braces and backslashes.
+MAX_RTF: Final = 512 * 1024
+MAX_RTF_SIGNS: Final = 30_000
 MAX_ROWS: Final = 500
 MAX_COLUMNS: Final = 64
 MAX_EXCERPTS: Final = 12
@@ -106,6 +115,7 @@ class _Package:
     def __init__(self, data: bytes) -> None:
         self._archive = open_archive(data)
         self._left = MAX_XML
+        self._tags = MAX_TAGS
         self.names = tuple(self._archive.namelist())
         for name in self.names:
             lowered = name.lower()
@@ -122,6 +132,9 @@ class _Package:
             raise _damaged()
         content = unpacked(self._archive, name, self._left)
         self._left -= len(content)
+        self._tags -= content.count(b"<")
+        if self._tags < 0:
+            raise _too_much()
         return content
 
     def parsed(self, name: str) -> ET.Element:
@@ -133,27 +146,15 @@ def parsed_xml(content: bytes) -> ET.Element:
     """Return the root element of XML without a document type. Raises UnusableFileError."""
     _require_plain(content)
     try:
-        return ET.fromstring(content, ET.XMLParser(target=_Shallow()))
+        root = ET.fromstring(content)
     except (ET.ParseError, ValueError, LookupError) as error:
         raise _damaged() from error
-
-
-class _Shallow(ET.TreeBuilder):
-    """Builds a tree of XML. Raises ValueError as soon as elements are nested too deep."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._depth = 0
-
-    def start(self, tag: str, attrs: dict[str, str]) -> ET.Element:
-        self._depth += 1
-        if self._depth > MAX_DEPTH:
-            raise ValueError("elements are nested too deep")
-        return super().start(tag, attrs)
-
-    def end(self, tag: str) -> ET.Element:
-        self._depth -= 1
-        return super().end(tag)
+    level = [root]
+    for _ in range(MAX_DEPTH):
+        level = [child for element in level for child in element]
+        if not level:
+            return root
+    raise _damaged()
 
 
 def _require_plain(content: bytes) -> None:
@@ -187,8 +188,7 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
             content = package.read(name)
             _require_plain(content)
             if "worksheets/" in name:
-                if len(_CELL_OF_XLSX.findall(content)) > MAX_CELLS:
-                    raise _too_much()
+                _require_few_cells(content)
                 if _WITHOUT_VALUE.search(content):
                     raise UnusableFileError(
                         say(
@@ -215,12 +215,23 @@ _OF_SHEETS: Final = re.compile(
     r"xl/(styles|sharedStrings)\.xml$|xl/worksheets/[^/]+\.xml$"
 )
 _CELL_OF_XLSX: Final = re.compile(rb"<(?:\w+:)?c[ >/]")
+_ROW_OF_XLSX: Final = re.compile(rb"<(?:\w+:)?row[ >/]")
 _WITHOUT_VALUE: Final = re.compile(rb"</(?:\w+:)?f>\s*(?:<v\s*/>|<v></v>|</(?:\w+:)?c>)")
+
+
+def _require_few_cells(content: bytes) -> None:
+    # A cell has four tags, and a row has two. A sheet has few other tags.
+    cells, rows = (len(each.findall(content)) for each in (_CELL_OF_XLSX, _ROW_OF_XLSX))
+    others = content.count(b"<") - 4 * cells - 2 * rows
+    if max(cells, rows, others) > MAX_CELLS:
+        raise _too_much()
 
 
 def _xls(data: bytes) -> Iterator[Excerpt]:
     import xlrd
 
+    if sum(_cells_in_records(data)) > MAX_RECORDS:
+        raise _too_much()
     book = xlrd.open_workbook(file_contents=data, ragged_rows=True, logfile=io.StringIO())
     sheets = []
     for sheet in book.sheets():
@@ -235,6 +246,33 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
     yield from _of_sheets(sheets)
 
 
+def _cells_in_records(data: bytes) -> Iterator[int]:
+    """Yield the number of cells in each record of a workbook, or 1 for another record.
+
+    Stops after ``MAX_RECORDS``, so that a file of many cells is refused before it is parsed.
+    """
+    from xlrd.compdoc import SIGNATURE, CompDoc
+
+    position, end = 0, len(data)
+    if data.startswith(SIGNATURE):
+        streams = CompDoc(data, logfile=io.StringIO())
+        for name in ("Workbook", "Book"):
+            found, start, length = streams.locate_named_stream(name)
+            if found:
+                data, position, end = found, start, start + length
+                break
+    for _ in range(MAX_RECORDS + 1):
+        if position + 4 > end:
+            return
+        kind, length = struct.unpack_from("<HH", data, position)
+        yield max(1, (length - 6) // _CELLS_IN_RECORD[kind]) if kind in _CELLS_IN_RECORD else 1
+        position += 4 + length
+
+
+# The bytes of each cell in a record of several numbers or of several blank cells.
+_CELLS_IN_RECORD: Final = {0xBD: 6, 0xBE: 2}
+
+
 def _of_xls(cell: Any, datemode: int) -> str:
     import xlrd
 
@@ -247,10 +285,18 @@ def _of_xls(cell: Any, datemode: int) -> str:
 
 def _ods(data: bytes) -> Iterator[Excerpt]:
     root = _Package(data).parsed("content.xml")
-    tables = [each for each in root.iter() if _local(each) == "table"]
     yield from _of_sheets(
-        [(_attribute(table, "name"), list(_rows_of_ods(table))) for table in tables]
+        [(_attribute(table, "name"), list(_rows_of_ods(table))) for table in _tables_of_ods(root)]
     )
+
+
+def _tables_of_ods(root: ET.Element) -> Iterator[ET.Element]:
+    # A table in another one belongs to it: its rows are read once.
+    for each in root:
+        if _local(each) == "table":
+            yield each
+        else:
+            yield from _tables_of_ods(each)
 
 
 def _rows_of_ods(table: ET.Element) -> Iterator[list[str]]:
@@ -530,11 +576,30 @@ def _rtf(data: bytes) -> Iterator[Excerpt]:
         raise _damaged()
     from striprtf.striprtf import rtf_to_text
 
+    if sum(map(data.count, (b"\\", b"{", b"}"))) > MAX_RTF_SIGNS:
+        raise _too_much()
+    data = b"{".join(
+        b"}".join(b"" if _is_picture(piece) else piece for piece in group.split(b"}"))
+        for group in data.split(b"{")
+    )
+    if len(data) > MAX_RTF:
+        raise _too_much()
     text: str = rtf_to_text(data.decode("cp1252", "replace"), errors="replace")  # type: ignore[no-untyped-call]
     table = pasted_from(text, ".md")
     if table != text:
         yield Excerpt(table)
     yield Excerpt(text, level=1 if table != text else 0)
+
+
+# Bytes between braces. With so few other signs beside hexadecimal digits, they are a picture.
+_LONG_PIECE: Final = 1_000
+_OTHER_SIGNS: Final = 200
+
+
+def _is_picture(piece: bytes) -> bool:
+    if len(piece) < _LONG_PIECE:
+        return False
+    return len(piece.translate(None, b"0123456789abcdefABCDEF\r\n")) < _OTHER_SIGNS
 
 
 def _notebook(data: bytes) -> Iterator[Excerpt]:
@@ -585,10 +650,8 @@ _BREAK: Final = re.compile(
     r"(?![A-Za-z0-9-])[^<>]{0,2000}>",
     re.IGNORECASE,
 )
-_HIDDEN: Final = re.compile(
-    r"<(style|script|title)(?![A-Za-z0-9-])[^<>]{0,2000}>[^<]*</\1\s{0,9}>|<!--[^<>]{0,2000}-->|<![^<>]{0,2000}>",
-    re.IGNORECASE,
-)
+# What begins a part of a page that nobody sees.
+_HIDDEN: Final = re.compile(r"<(head|style|script|title)(?![A-Za-z0-9-])|<!--|<!", re.IGNORECASE)
 _TAG: Final = re.compile(r"</?[A-Za-z][^<>]{0,2000}>")
 _RAISED: Final = re.compile(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)
 
@@ -600,7 +663,7 @@ def typed_text(page: str) -> str:
     '0, 0, 0, q1\nl1, 0, 0, q2'
     """
     is_preformatted = re.search("<pre(?![A-Za-z0-9-])", page, re.IGNORECASE) is not None
-    page = _HIDDEN.sub("", page)
+    page = _visible(page)
     if not is_preformatted and _BREAK.search(page):
         # Line ends in the source of a page mean no more than blanks.
         page = " ".join(page.split("\n"))
@@ -610,8 +673,32 @@ def typed_text(page: str) -> str:
     return "\n".join(line for line in lines if line.strip())
 
 
+def _visible(page: str) -> str:
+    """Return a web page without its head, styles, scripts and comments."""
+    lowered = page.lower()
+    pieces = []
+    start = position = 0
+    unclosed: set[str] = set()
+    while found := _HIDDEN.search(lowered, position):
+        opening = found[0]
+        closing = {"<!--": "-->", "<!": ">"}.get(opening, f"</{opening[1:]}")
+        close = -1 if opening in unclosed else lowered.find(closing, found.end())
+        end = lowered.find(">", close) + 1 if close >= 0 else 0
+        position = found.end()
+        if end:
+            pieces.append(page[start : found.start()])
+            start = position = end
+        else:
+            # Such an element is not searched for again, so that the time stays linear.
+            unclosed.add(opening)
+    return "".join(pieces) + page[start:]
+
+
 def _web_page(data: bytes) -> Iterator[Excerpt]:
     page = decoded(data)
+    if page.count("<") + page.count("&") > MAX_TAGS:
+        raise _too_much()
+    page = _visible(page)
     has_table = _TABLE.search(page) is not None
     if has_table:
         yield Excerpt(page)

@@ -6,8 +6,8 @@ the same text before the name of a file. Canvas (``lib/content_zipper.rb``) puts
 ``byronada_LATE_1234_56789_`` before the name of a file. A text that a student typed in Canvas has
 the name ``byronada_1234_text.html``, and a web address has the name ``byronada_1234_link.html``.
 For anonymous students, ``anon_x7Gh2`` replaces the name and the number. Brightspace names a folder
-``75842-1234567 - Ada Byron - Oct 3, 2026 405 PM``, and Blackboard a file
-``HW1_abyron_attempt_2026-10-03-16-05-33_table.csv``.
+``75842-1234567 - Ada Byron - Oct 3, 2026 405 PM``, or puts this text and `` - `` before the name of
+a file. Blackboard names a file ``HW1_abyron_attempt_2026-10-03-16-05-33_table.csv``.
 """
 
 import re
@@ -24,11 +24,19 @@ _CANVAS: Final = re.compile(
     r"(?:(?P<student>[^\s.,()-]+?)_)??(?:LATE_)?(?P<id>\d{2,}|anon_[A-Za-z0-9]+)"
     r"_(?:\d{3,}_(?P<file>.+)|(?P<entry>(?:text|link)(?:-\d+)?\.html))"
 )
-_BRIGHTSPACE: Final = re.compile(r"(?P<id>\d+-\d+) ?- ?(?P<student>.+?) ?- .*\d{4}.*")
+# The date has a year, and no `` - ``.
+_DATE: Final = r"(?:(?! - ).)*\d{4}(?:(?! - ).)*"
+_BRIGHTSPACE: Final = re.compile(
+    rf"(?P<id>\d+-\d+) ?- ?(?P<student>.+?) ?- {_DATE}(?: - (?P<file>.+))?"
+)
 # The text that a student typed has the name of the attempt, without a name of a file.
 _BLACKBOARD: Final = re.compile(
     r"(?P<student>.+_(?P<user>[^_]+))_attempt_\d{4}(?:-\d\d){5}(?:_(?P<file>.+)|(?P<text>\.txt))"
 )
+# No file system takes a longer name; a zip file does.
+_LONGEST: Final = 255
+# The name of Blackboard's receipt of an attempt, which holds what the student typed.
+RECEIPT: Final = "attempt.txt"
 # The number of a second download or a resubmission: ``table-1.csv``, ``table (1).csv``.
 _COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
 
@@ -47,14 +55,17 @@ class PlatformName:
 
 def platform_name(name: str) -> PlatformName | None:
     """Split a name that a learning platform has given; return None for other names."""
+    if len(name) > _LONGEST:
+        return None
     if found := _MOODLE.fullmatch(name):
         # Moodle's grading worksheet has this in the column "Identifier".
         learner = f"Participant {found['id']}"
         return PlatformName(f"{found['student']}_{found['id']}", learner, found["file"] or "")
     if found := _BRIGHTSPACE.fullmatch(name):
-        return PlatformName(f"{found['student']}_{found['id']}", found["student"], "")
+        student = found["student"]
+        return PlatformName(f"{student}_{found['id']}", student, found["file"] or "")
     if found := _BLACKBOARD.fullmatch(name):
-        return PlatformName(found["student"], found["user"], found["file"] or "attempt.txt")
+        return PlatformName(found["student"], found["user"], found["file"] or RECEIPT)
     found = _CANVAS.fullmatch(name)
     if found is None or (found["student"] is None) == found["id"].isdigit():
         return None

@@ -11,10 +11,13 @@ import pytest
 import typer
 
 from service.cli.program import COMMANDS, commands_of
+from tests.submissions import office_documents as office
 
 ROOT = Path(__file__).parents[2]
 DATABASES = {"sqlalchemy", "alembic", "psycopg", "sqlite3"}
 TABLE = {"answers": {"table": {"rows": [{"a": "l1 +", "alpha": 0, "d": 0, "theta": "q1"}]}}}
+# Libraries that read files of office programs.
+OFFICE = {"openpyxl", "xlrd", "striprtf", "docx", "odf", "lxml", "defusedxml", "xlsxwriter"}
 
 
 def process(
@@ -80,7 +83,23 @@ def test_grading_imports_no_unneeded_packages(answer: Path) -> None:
     # http.client would import the whole email package.
     slow = {"http.client", "jinja2", "rich.markdown", "rich.table", "scipy", "unittest"}
     unused = {"service.api", "service.authoring", "service.server", "service.solutions"}
-    assert modules & (heavy | slow | unused) == set()
+    assert modules & (heavy | slow | unused | OFFICE) == set()
+
+
+@pytest.mark.long
+def test_a_library_for_office_files_is_loaded_only_for_such_a_file(tmp_path: Path) -> None:
+    rows: office.Rows = [["a", "alpha", "d", "theta"], ["l1", 0, 0, "q1"]]
+    own: dict[str, set[str]] = {
+        "xlsx": {"openpyxl"}, "xls": {"xlrd"}, "ods": set(), "docx": set(), "rtf": {"striprtf"},
+    }  # fmt: skip
+    for ending, libraries in own.items():
+        file = tmp_path / f"table.{ending}"
+        file.write_bytes(office.KINDS[ending][1](rows))
+        asked = ("--exercise", "planar-rr", "--part", "table", "--format", "json")
+        modules, output = loaded("grade", file, *asked)
+        assert json.loads(output)[0]["report"]["points"] > 0
+        # openpyxl loads lxml where it is installed, as in the environment of the tests.
+        assert modules & (OFFICE - {"lxml", "defusedxml"}) == libraries
 
 
 @pytest.mark.long
@@ -94,7 +113,7 @@ def test_the_program_help_repeats_the_help_of_each_command() -> None:
 
 @pytest.mark.long
 def test_the_service_does_not_import_optional_packages() -> None:
-    unwanted = {"sympy", "scipy", "jinja2", "prometheus_client", *DATABASES}
+    unwanted = {"sympy", "scipy", "jinja2", "prometheus_client", *DATABASES, *OFFICE}
     probe = f"import sys, service.app; print(sorted({unwanted} & set(sys.modules)))"
     assert process(python=("-c", probe)).stdout.decode().strip() == "[]"
 

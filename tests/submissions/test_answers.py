@@ -162,3 +162,79 @@ def test_an_empty_folder_is_a_problem(tmp_path: Path) -> None:
     [found] = handed(tmp_path, {}, RRR)
     assert (found.body, found.problem) == (None, "anna holds no file")
     assert told(found.problem, LANGUAGES["de"].translation) == "anna enthält keine Datei"
+
+
+@pytest.mark.parametrize(
+    "file",
+    [
+        "homework.xlsx",
+        "hw.docx",
+        "scan.pdf",
+        "all.csv",
+        "hw.zip",
+        "x_1_assignsubmission_file_/a.txt",
+    ],
+)
+def test_an_unnamed_file_beside_a_named_one_may_be_the_missing_answer(
+    tmp_path: Path, file: str
+) -> None:
+    [found] = handed(tmp_path, {"table.csv": CSV, file: b"x"}, RRR)
+    assert found.problem.startswith(f"{file} ")
+    assert answers_of(found) == {"table": CSV}
+    [full] = handed(tmp_path / "2", {"table.csv": CSV, "pose.csv": "I", file: b"x"}, RRR)
+    assert full.problem == ""
+
+
+@pytest.mark.parametrize(
+    "file", ["requirements.txt", "helper.py", "README.docx", "readme.pdf", "x.c"]
+)
+def test_other_files_of_a_repository_are_no_answers(tmp_path: Path, file: str) -> None:
+    [found] = handed(tmp_path, {"table.csv": CSV, file: b"x"}, RRR)
+    assert (found.problem, answers_of(found)) == ("", {"table": CSV})
+
+
+RECEIPT = """Name: Ada Byron (abyron)
+Assignment: HW1
+Date Submitted: Friday, November 20, 2026 5:31:02 PM CET
+Current Grade: Needs Grading
+
+Submission Field:
+{typed}
+
+Comments:
+There are no student comments for this assignment.
+
+Files:
+\tOriginal filename: hw.csv
+\tFilename: HW1_abyron_attempt_2026-11-20-17-31-02_hw.csv
+"""
+NOTHING = "There is no student submission text data for this assignment."
+ATTEMPT = "HW1_abyron_attempt_2026-11-20-17-31-02"
+
+
+def in_blackboard(folder: Path, typed: str, files: Mapping[str, str], part: str | None) -> Any:
+    folder.mkdir()
+    receipt = RECEIPT.format(typed=typed).replace("\n", "\r\n")
+    (folder / f"{ATTEMPT}.txt").write_bytes(receipt.encode())
+    for name, content in files.items():
+        (folder / f"{ATTEMPT}_{name}").write_text(content, encoding="utf-8")
+    [handed_file] = all_handed_in([folder])
+    [found] = answers_in(handed_file, of_one(shipped_exercises()["planar-rrr"], part))
+    return found
+
+
+def test_the_receipt_of_blackboard_is_no_answer(tmp_path: Path) -> None:
+    found = in_blackboard(tmp_path / "1", NOTHING, {"hw.csv": CSV}, "table")
+    assert (found.problem, answers_of(found)) == ("", {"table": CSV})
+    found = in_blackboard(tmp_path / "2", NOTHING, {"table.csv": CSV}, None)
+    assert (found.problem, answers_of(found)) == ("", {"table": CSV})
+    found = in_blackboard(tmp_path / "3", NOTHING, {}, "table")
+    assert (found.problem.endswith("holds no file"), found.body) == (True, None)
+
+
+def test_what_a_student_typed_in_blackboard_is_the_answer(tmp_path: Path) -> None:
+    typed = "".join(f"<p>{line}</p>" for line in CSV.splitlines())
+    found = in_blackboard(tmp_path / "1", typed, {}, "table")
+    assert (found.problem, answers_of(found)) == ("", {"table": CSV.strip()})
+    found = in_blackboard(tmp_path / "2", "my table", {"table.csv": CSV}, None)
+    assert found.problem.startswith("attempt.txt is a pasted answer")

@@ -19,6 +19,7 @@ MATRIX = "DH = [a1 0 0 q1;\n      a2 0 0 q2]"
             "T = eye(4);\nfor i = 1:2\n  T = T * A(DH(i, :));\nend\ndisp(T)"),
             ".m", MATRIX,
         ),
+        ('"a1 c1"\r\n\r\n"-d3"\r\n', ".csv", "a1 c1\n-d3"),
         # The values of its variables precede the matrix.
         (
             f"b = 2; a1 = 0.4; % m\nq1 = pi/2\n{MATRIX};\ndisp(DH)",
@@ -38,6 +39,8 @@ def test_text_around_a_table_is_removed(text: str, suffix: str, pasted: str) -> 
         (f"{BARS}\n\n{BARS}", ".md"),
         ("a, d\n0, 1", ".md"),
         (f"x\n{BARS}\n\ny", ".csv"),
+        ('"a1","a2"\n"0","1"', ".csv"),
+        ('"a1"\na2', ".csv"),
         (f"{MATRIX};\nB = [1 2; 3 4];", ".m"),
         # The matrix is changed later, or its variables have other values.
         (f"{MATRIX};\nDH(1, 3) = d1;", ".m"),

@@ -3,6 +3,7 @@
 import io
 import os
 import sys
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -78,6 +79,29 @@ def test_files_named_by_a_platform_are_grouped_by_student(tmp_path: Path) -> Non
     ]
     names = [Path(each.name).name for each in all_handed_in([tmp_path])]
     assert names == ["Ada Lovelace_12", "Ada Lovelace_13", "boolegeorge_100"]
+
+
+def test_the_index_of_a_platform_is_no_student(tmp_path: Path) -> None:
+    export, other = tmp_path / "export", tmp_path / "other"
+    name = "12-345 - Ada Lovelace - Nov 20, 2026 5.31 PM"
+    save(export, f"{name} - table.csv", f"{name} - pose.csv", "index.html")
+    save(other, f"{name} - table.csv", "anna.csv", "index.html")
+    assert students(export) == [("Ada Lovelace", ["pose.csv", "table.csv"])]
+    assert [learner for learner, _ in students(other)] == ["Ada Lovelace", "anna", "index"]
+    with zipfile.ZipFile(tmp_path / "export.zip", "w") as archive:
+        for file in export.iterdir():
+            archive.write(file, file.name)
+    assert students(tmp_path / "export.zip") == students(export)
+
+
+def test_a_zip_file_without_a_file_is_a_problem(tmp_path: Path) -> None:
+    save(tmp_path, "anna/table.csv")
+    with zipfile.ZipFile(tmp_path / "anna/pose.zip", "w") as archive:
+        archive.writestr("folder/", "")
+        archive.writestr("__MACOSX/._pose.csv", "")
+    [found] = all_handed_in([tmp_path])
+    files = [(file.name, file.problem) for file in found.files()]
+    assert files == [("pose.zip", "holds no file"), ("table.csv", "")]
 
 
 def test_a_folder_may_belong_to_one_student(tmp_path: Path) -> None:

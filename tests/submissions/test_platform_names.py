@@ -43,6 +43,10 @@ from service.submissions.platform_names import PlatformName, platform_name
             "75842-1234567 - Ann-Marie Lee - Oct 3, 2026 405 PM",
             "Ann-Marie Lee_75842-1234567", "Ann-Marie Lee", "",
         ),
+        (
+            "75842-1234567 - Ada Byron - Nov 20, 2026 5.31 PM - dh - table.xlsx",
+            "Ada Byron_75842-1234567", "Ada Byron", "dh - table.xlsx",
+        ),
         # Blackboard.
         (
             "HW1_abyron_attempt_2026-10-03-16-05-33_dh_table.csv",
@@ -69,6 +73,7 @@ def test_the_student_in_a_platform_name_is_found(
         "2024_lab_text.html",
         "anon_text.html",
         "my_text.html",
+        f"Ada_{'1' * 300}_assignsubmission_file_",
         "",
     ],
 )

@@ -142,8 +142,9 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     """
     lines = [line for line in source.lines() if line.text.strip()]
     is_row = _row_test(source.text, lines)
-    titles = next((i for i, line in enumerate(lines) if not _is_padded(line.text)), 0)
-    rows = [i for i, line in enumerate(lines) if i >= titles and is_row(line.text)]
+    # In a spreadsheet, a title or a remark is followed by empty cells.
+    inner = [i for i, line in enumerate(lines) if not _is_padded(line.text)] or range(len(lines))
+    rows = [i for i, line in enumerate(lines) if inner[0] <= i <= inner[-1] and is_row(line.text)]
     if not rows or len(rows) == len(lines):
         return source, ()
     first, last = rows[0], rows[-1]

@@ -16,6 +16,7 @@ def cells(text: str) -> list[list[str]]:
     [
         f"Table 1: parameters of the arm\n{TABLE}",
         f"Table of the arm\t\t\t\t\n{TABLE}",
+        f"{TABLE}\n\t\t\t\t\nI checked it twice\t\t\t\t",
         f"My robot with 3 degrees of freedom\n\n{TABLE}\nI hope this helps.",
         f"机械臂参数\n{TABLE}",
         f"```\n{TABLE}\n```",
@@ -139,3 +140,10 @@ def test_other_equations_around_a_table_stay(line: str) -> None:
 
 def test_equations_that_are_all_rows_stay() -> None:
     assert cells("p_x = l1, 1\np_y = l2, 2\np1 = 0, 3")[-1][0] == "p1 = 0"
+
+
+@pytest.mark.parametrize(
+    "row", ["3\t\t\t\t", "e\t\t\t\t", "l2\t\t\t\t", "\t\t\t\tq3", "pi/2\t\t\t\t"]
+)
+def test_a_last_row_with_one_entry_stays(row: str) -> None:
+    assert len(cells(f"{TABLE}\n{row}")) == len(cells(TABLE)) + 1
