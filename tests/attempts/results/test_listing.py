@@ -3,12 +3,18 @@ from datetime import UTC, datetime, timedelta
 from itertools import count
 
 import pytest
-from sqlalchemy import event, select
+from sqlalchemy import ColumnElement, event, insert, select
 
 from service.attempts.attempt import AttemptFilter, ListedAttempt
 from service.attempts.errors import BadCursorError
-from service.attempts.results.listing import history, page, place_of
-from service.attempts.storage.tables import assignments
+from service.attempts.results.listing import (
+    earlier_than,
+    history,
+    later_than,
+    page,
+    place_of,
+)
+from service.attempts.storage.tables import assignments, attempts, earlier_reports, overrides
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise
 from service.contract.courses import NewAssignment, NewCourse
@@ -47,6 +53,32 @@ def test_pages_list_every_attempt_once_while_more_are_recorded(
     with store.engine.connect() as connection:
         following, _ = page(connection, EVERY, cursor, 3)
     assert [each.id for each in following] == written[3:0:-1]
+
+
+def test_a_late_arrival_is_in_the_place_of_its_time(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    hours = {recorded(store, scara, f"l{i}", RIGHT, hours=i).id: i for i in (2, 0, 1)}
+    listed = [[hours[each.id] for each in shown] for shown in all_pages(store, EVERY, 1)]
+    assert listed == [[2], [1], [0]]
+
+
+def test_attempts_are_divided_by_a_time_and_a_number(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    hours = (1, 0, 1, 1, 2)
+    numbers = [recorded(store, scara, "ada", RIGHT, i, hours=h).number for i, h in enumerate(hours)]
+    place = (NOON + timedelta(hours=1), numbers[2])
+
+    def found(chosen: ColumnElement[bool]) -> list[int]:
+        rows = select(attempts.c.number).where(chosen).order_by(attempts.c.number)
+        with store.engine.connect() as connection:
+            return list(connection.scalars(rows))
+
+    assert found(earlier_than(place)) == numbers[:2]
+    assert found(later_than(place)) == numbers[3:]
 
 
 @pytest.mark.long
@@ -146,6 +178,26 @@ def test_an_attempt_has_its_answers(store: AttemptStore, catalogue: Mapping[str,
     assert found is not None
     assert (found.submission, found.report) == (written.submission, written.report)
     assert (found.attempt.learner, found.attempt.earned) == ("ada", written.points)
+
+
+def test_an_attempt_has_its_own_overrides_and_earlier_reports_in_their_order(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    one, other = (recorded(store, catalogue["scara"], learner, LAZY) for learner in ("ada", "x"))
+    common = {"version": "v", "grader": "g", "max_points": 24.0}
+    with store.engine.execution_options(writes=True).begin() as connection:
+        for number, points in ((one.number, 3.0), (other.number, 9.0), (one.number, 1.0)):
+            fields = {"attempt": number, "points": points}
+            changed = {**fields, "reason": "", "author": "tutor", "at": NOON}
+            connection.execute(insert(overrides).values(changed))
+            replaced = {**fields, **common, "report": f"{points}", "replaced_at": NOON}
+            connection.execute(insert(earlier_reports).values(replaced))
+    with store.engine.connect() as connection:
+        found = history(connection, one.id)
+    assert found is not None
+    assert [each.points for each in found.overrides] == [3.0, 1.0]
+    assert [each.report for each in found.earlier] == ["3.0", "1.0"]
+    assert (found.course, found.hints) == (None, [])
 
 
 def test_a_list_reads_no_report(store: AttemptStore) -> None:
