@@ -2,6 +2,7 @@
 
 import asyncio
 import math
+import socket
 import subprocess
 import time
 from collections.abc import Iterator
@@ -9,6 +10,7 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from limits.strategies import SlidingWindowCounterRateLimiter
 
 from service.access.caller import NOBODY, Caller
 from service.access.rates import Rates, UnusableRatesError, rates_in
@@ -72,6 +74,25 @@ def test_without_redis_each_process_counts_on_its_own(caplog: pytest.LogCaptureF
     rates = Rates("", "1/day", "redis+unix:///nowhere")
     assert waits(rates, (NOBODY, "a"), (NOBODY, "a"), (COURSE, "a")) == [False, True, False]
     assert "does not respond" in caplog.text
+    rates.close()
+
+
+def test_a_silent_redis_does_not_hold_a_request(caplog: pytest.LogCaptureFixture) -> None:
+    # The system accepts the connection, and nobody answers.
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        rates = Rates("", "1/day", f"redis://127.0.0.1:{silent.getsockname()[1]}")
+        assert waits(rates, (NOBODY, "a")) == [False]
+    assert "does not respond: TimeoutError" in caplog.text
+    rates.close()
+
+
+def test_a_request_that_another_process_has_preceded_waits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # The limit was not reached a moment ago, and is now.
+    monkeypatch.setattr(SlidingWindowCounterRateLimiter, "hit", lambda *_, **__: False)
+    rates = Rates("2/day")
+    assert asyncio.run(rates.seconds_to_wait(COURSE, "10.0.0.1")) == 1
     rates.close()
 
 
