@@ -1,6 +1,5 @@
 from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
-from itertools import count
 
 import pytest
 from sqlalchemy import ColumnElement, event, insert, select
@@ -28,12 +27,12 @@ EVERY = AttemptFilter()
 def all_pages(store: AttemptStore, wanted: AttemptFilter, most: int) -> list[list[ListedAttempt]]:
     pages, cursor = [], None
     with store.engine.connect() as connection:
-        for _ in count():
+        for _ in range(99):
             shown, cursor = page(connection, wanted, cursor, most)
             pages.append(shown)
             if cursor is None:
-                break
-    return pages
+                return pages
+    raise AssertionError("the pages do not end")
 
 
 def test_pages_list_every_attempt_once_while_more_are_recorded(
@@ -154,11 +153,12 @@ def test_an_invalid_cursor_is_refused(store: AttemptStore) -> None:
             "1." * 9,
             "1_0.0x1",
             "1.٣",
-            # A time or a number that is larger than those of a database: 2 to the power of 62.
+            # A number that is larger than those of a database: 2 to the power of 62.
             "0.4000000000000000",
+            "0." + 300 * "f",
+            # Times after the year 9999.
             "4000000000000000.0",
-            # The largest time: it is after the year 9999.
-            "3fffffffffffffff.0",
+            300 * "f" + ".0",
         ):
             with pytest.raises(BadCursorError):
                 page(connection, EVERY, cursor, 3)
