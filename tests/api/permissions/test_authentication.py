@@ -1,0 +1,159 @@
+"""Test what the authentication tells the layers behind it, and which requests it counts."""
+
+import asyncio
+import math
+from collections.abc import Iterator
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi import Request
+
+from service.access.caller import Caller, Scope
+from service.access.key_ring import KeyRing
+from service.access.key_table import add_key
+from service.access.key_text import new_key_text
+from service.access.rates import Rates
+from service.api.http.problems import ProblemError
+from service.api.permissions.access import Access
+from service.api.permissions.authentication import AuthenticationMiddleware, count_submissions
+from service.api.turns import CLIENT, Client
+from service.attempts.storage.database import in_transaction, open_database
+from tests.access.kept_services import SECRET
+
+
+class Served:
+    """A middleware with keys, before an application that notes the requests that it gets."""
+
+    def __init__(self, database: Path) -> None:
+        self.engine = open_database(str(database))
+        self.credentials = {"": "", **{each: self._key(each) for each in Scope}}
+        self.ring = KeyRing(self.engine, SECRET)
+        self.scopes: list[Any] = []
+        self.access = Access(keys=self.ring)
+
+    def _key(self, scope: Scope) -> str:
+        text, now = new_key_text(), datetime.now(UTC)
+        digest, until = SECRET.key_digest(text), now + timedelta(days=1)
+        in_transaction(self.engine, lambda it: add_key(it, "", digest, {scope}, None, now, until))
+        return text
+
+    def token(self) -> str:
+        """Return a token of the key that may record."""
+        [holder] = self.callers("record")
+        learner = Caller(holder.scopes, None, "ada", holder.key_id)
+        return self.ring.token(learner, datetime.now(UTC) + timedelta(hours=1))
+
+    def callers(self, *names: str) -> list[Caller]:
+        async def ask() -> list[Caller]:
+            return [await self.ring.caller(self.credentials[each]) for each in names]
+
+        return asyncio.run(ask())
+
+    def ask(self, rates: Rates | None, path: str, credential: str = "", **more: Any) -> list[Any]:
+        """Return what the client gets."""
+        sent: list[Any] = []
+
+        async def app(scope: Any, receive: Any, send: Any) -> None:
+            self.scopes.append(scope)
+            await send("answered")
+
+        async def send(message: Any) -> None:
+            sent.append(message)
+
+        headers = [(b"authorization", f"Bearer {credential}".encode())] if credential else []
+        scope = {"type": "http", "path": path, "headers": headers, "method": "GET",
+                 "scheme": "http", "client": ("10.0.0.1", 1), "query_string": b"", **more}  # fmt: skip
+        asyncio.run(AuthenticationMiddleware(app, self.access, rates)(scope, None, send))  # type: ignore[arg-type]
+        return sent
+
+    def is_answered(self, *given: Any, **more: Any) -> bool:
+        return self.ask(*given, **more) == ["answered"]
+
+
+@pytest.fixture
+def served(tmp_path: Path) -> Iterator[Served]:
+    served = Served(tmp_path / "keys.db")
+    yield served
+    served.ring.close()
+    served.engine.dispose()
+
+
+def test_students_share_less_of_the_processor_than_course_sites(served: Served) -> None:
+    [grade, record, tutor] = served.callers("grade", "record", "tutor")
+    expected = {
+        # A key that may record is that of a course site, which acts for many students.
+        served.credentials["grade"]: Client(grade.owner, 8.0),
+        served.credentials["tutor"]: Client(tutor.owner, 8.0),
+        served.credentials["record"]: Client(record.owner, math.inf),
+        # Without a key, the client is the address.
+        "": None,
+    }
+    for credential, client in expected.items():
+        assert served.is_answered(None, "/v1/grade", credential)
+        assert served.scopes[-1].get(CLIENT) == client
+    assert served.is_answered(None, "/v1/grade", served.token())
+    learner = served.scopes[-1][CLIENT]
+    assert learner.most_shares == 1.0
+    assert learner.name not in ("", record.owner)
+
+
+@pytest.mark.parametrize(
+    ("path", "is_counted"),
+    [
+        ("/v1/grade", True), ("/grader/v1/grade", True), ("/tutor", True), ("/lti/login", True),
+        ("/", False), ("/static/page.css", False), ("/exercises/scara", False),
+        ("/healthz", False), ("/grader/readyz", False),
+    ],
+)  # fmt: skip
+def test_pages_and_files_are_not_counted(served: Served, path: str, is_counted: bool) -> None:
+    rates = Rates("", "1/day")
+    assert served.is_answered(rates, path)
+    assert served.is_answered(rates, path) is not is_counted
+    # An address of its own.
+    assert served.is_answered(rates, path, client=("10.0.0.2", 1))
+    rates.close()
+
+
+def test_requests_without_an_address_count_together(served: Served) -> None:
+    rates = Rates("", "1/day")
+    assert served.is_answered(rates, "/v1/grade", client=None)
+    start, body = served.ask(rates, "/v1/grade", client=None)
+    assert start["status"] == 429
+    assert b"too-often" in body["body"]
+    assert len(served.scopes) == 1
+    rates.close()
+
+
+def test_other_connections_pass_as_they_are(served: Served) -> None:
+    scope = {"type": "lifespan", "path": "/v1/grade"}
+    assert served.is_answered(None, "/v1/grade", type="lifespan")
+    assert served.scopes[-1].items() >= scope.items()
+    assert "dh_grader.identity" not in served.scopes[-1]
+    # Supervisors do not wait for the keys.
+    assert served.is_answered(None, "/readyz", "not a key")
+    assert "dh_grader.identity" not in served.scopes[-1]
+
+
+def test_a_batch_counts_as_its_submissions(served: Served) -> None:
+    rates = Rates("", "4/day")
+
+    def outcome(number: int) -> str:
+        assert served.is_answered(rates, "/v1/grade")
+        try:
+            asyncio.run(count_submissions(Request(served.scopes[-1]), number))
+        except ProblemError as error:
+            return f"{error.status} {error.name}"
+        return "counted"
+
+    assert outcome(5) == "422 batch-too-large"
+    # One request has been counted, and another one is now.
+    assert outcome(4) == "429 too-often"
+    assert outcome(0) == "counted"
+    assert outcome(1) == "counted"
+    assert served.ask(rates, "/v1/grade")[0]["status"] == 429
+    # Without limits, nothing is counted.
+    assert served.is_answered(None, "/v1/grade")
+    asyncio.run(count_submissions(Request(served.scopes[-1]), 1000))
+    rates.close()
