@@ -63,8 +63,10 @@ class Served:
             sent.append(message)
 
         headers = [(b"authorization", f"Bearer {credential}".encode())] if credential else []
-        scope = {"type": "http", "path": path, "headers": headers, "method": "GET",
-                 "scheme": "http", "client": ("10.0.0.1", 1), "query_string": b"", **more}  # fmt: skip
+        scope = {
+            "type": "http", "method": "GET", "scheme": "http", "path": path, "query_string": b"",
+            "headers": headers, "client": ("10.0.0.1", 1), **more,
+        }  # fmt: skip
         asyncio.run(AuthenticationMiddleware(app, self.access, rates)(scope, None, send))  # type: ignore[arg-type]
         return sent
 

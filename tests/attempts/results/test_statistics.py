@@ -108,6 +108,16 @@ def test_a_learning_curve_has_twelve_attempts_of_each_learner(
     ]
 
 
+def test_the_first_attempt_is_the_one_that_was_made_first(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara = catalogue["scara"]
+    # The second attempt arrived before the first one.
+    record_outcome(store, scara, (2,), codes="value")
+    record_outcome(store, scara, (1,))
+    assert [each.by_attempt for each in statistics(store).misconceptions] == [[0, 1]]
+
+
 def test_equally_common_misconceptions_are_in_alphabetical_order(
     store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
