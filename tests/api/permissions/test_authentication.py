@@ -1,8 +1,12 @@
 """Test what the authentication tells the layers behind it, and which requests it counts."""
 
 import asyncio
+import base64
 import math
+import threading
 from collections.abc import Iterator
+from contextlib import nullcontext
+from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Any
@@ -10,13 +14,13 @@ from typing import Any
 import pytest
 from fastapi import Request
 
-from service.access.caller import Caller, Scope
+from service.access.caller import NOBODY, Caller, Scope
 from service.access.key_ring import KeyRing
 from service.access.key_table import add_key
 from service.access.key_text import new_key_text
 from service.access.rates import Rates
 from service.api.http.problems import ProblemError
-from service.api.permissions.access import Access
+from service.api.permissions.access import IDENTITY, Access, Identity
 from service.api.permissions.authentication import AuthenticationMiddleware, count_submissions
 from service.api.turns import CLIENT, Client
 from service.attempts.storage.database import in_transaction, open_database
@@ -34,10 +38,10 @@ class Served:
         self.access = Access(keys=self.ring)
 
     def _key(self, scope: Scope) -> str:
-        text, now = new_key_text(), datetime.now(UTC)
-        digest, until = SECRET.key_digest(text), now + timedelta(days=1)
+        key, now = new_key_text(), datetime.now(UTC)
+        digest, until = SECRET.key_digest(key), now + timedelta(days=1)
         in_transaction(self.engine, lambda it: add_key(it, "", digest, {scope}, None, now, until))
-        return text
+        return key
 
     def token(self) -> str:
         """Return a token of the key that may record."""
@@ -65,7 +69,7 @@ class Served:
         headers = [(b"authorization", f"Bearer {credential}".encode())] if credential else []
         scope = {
             "type": "http", "method": "GET", "scheme": "http", "path": path, "query_string": b"",
-            "headers": headers, "client": ("10.0.0.1", 1), **more,
+            "headers": headers, "client": ("10.0.0.1", 1), "server": ("127.0.0.1", 8000), **more,
         }  # fmt: skip
         asyncio.run(AuthenticationMiddleware(app, self.access, rates)(scope, None, send))  # type: ignore[arg-type]
         return sent
@@ -74,9 +78,9 @@ class Served:
         return self.ask(*given, **more) == ["answered"]
 
 
-@pytest.fixture
-def served(tmp_path: Path) -> Iterator[Served]:
-    served = Served(tmp_path / "keys.db")
+@pytest.fixture(scope="module")
+def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
+    served = Served(tmp_path_factory.mktemp("authentication") / "keys.db")
     yield served
     served.ring.close()
     served.engine.dispose()
@@ -101,6 +105,99 @@ def test_students_share_less_of_the_processor_than_course_sites(served: Served) 
     assert learner.name not in ("", record.owner)
 
 
+def basic(password: str | bytes) -> str:
+    given = password.encode() if isinstance(password, str) else password
+    return "Basic " + base64.b64encode(b"anybody:" + given).decode()
+
+
+def test_the_key_is_a_bearer_token_or_the_password_of_a_browser(served: Served) -> None:
+    key = served.credentials["record"]
+    [caller] = served.callers("record")
+    known, in_browser = Identity(caller, by_key=True), Identity(caller, True, in_browser=True)
+    nobody = Identity(NOBODY, by_key=True)
+    expected = {
+        "": nobody, f"Bearer {key}": known, f"bearer  {key} ": known, f"BEARER {key}": known,
+        basic(key): in_browser, basic(key).replace("Basic", "basic"): in_browser,
+        # These are not for this service.
+        basic("secret"): nobody, basic(b"\xff"): nobody, f"Basic {key}": nobody, "Basic": nobody,
+        f"Digest {key}": nobody, key: nobody, "Bearer": nobody, "Bearer  ": nobody,
+    }  # fmt: skip
+    for header, identity in expected.items():
+        assert served.is_answered(None, "/v1/grade", headers=[(b"authorization", header.encode())])
+        assert served.scopes[-1][IDENTITY] == identity, header
+        # Nobody has signed in, so no page shows a button to sign out.
+        is_signed_in = served.access.is_signed_in(Request(served.scopes[-1]))
+        assert is_signed_in is identity.in_browser, header
+
+
+def test_a_key_that_cannot_be_checked_gives_no_rights(
+    served: Served, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    served.callers("record")
+
+    def outcome(credential: str) -> tuple[Identity, str]:
+        assert served.is_answered(None, "/v1/grade", credential)
+        found: Identity = served.scopes[-1][IDENTITY]
+        assert found.refusal is not None
+        return replace(found, refusal=None), f"{found.refusal.status} {found.refusal.name}"
+
+    nobody = Identity(NOBODY, by_key=True)
+    assert outcome("dhg_x") == outcome(new_key_text()) == (nobody, "401 key-not-valid")
+    monkeypatch.setattr("service.access.key_lookups.MAX_WAITING", 0)
+    assert outcome(new_key_text()) == (nobody, "503 busy")
+    monkeypatch.undo()
+    # The database does not answer.
+    monkeypatch.setattr("service.access.key_lookups.TIMEOUT", 0.0)
+    assert outcome(new_key_text()) == (nobody, "503 store-down")
+
+
+def test_only_a_session_or_a_password_is_a_browser_s(served: Served) -> None:
+    [caller] = served.callers("tutor")
+    now = datetime.now(UTC)
+    valid, expired = (served.ring.session(caller, now + timedelta(hours=n)) for n in (1, -1))
+    record = served.credentials["record"].encode()
+
+    def identity(session: str, *more: tuple[bytes, bytes]) -> Identity:
+        headers = [(b"cookie", f"dh-grader={session}".encode()), *more]
+        assert served.is_answered(None, "/tutor", headers=headers)
+        found: Identity = served.scopes[-1][IDENTITY]
+        return found
+
+    assert identity(valid) == Identity(caller, by_key=True, in_browser=True)
+    # A session that has ended is that of nobody, and no error.
+    assert identity(expired) == identity("x") == Identity(NOBODY, by_key=True)
+    # A key comes first.
+    found = identity(valid, (b"authorization", b"Bearer " + record))
+    assert found == Identity(*served.callers("record"), by_key=True)
+
+
+@pytest.mark.parametrize(
+    ("credential", "in_browser", "passes"),
+    [("record", False, True), ("record", True, False), ("", False, False)],
+)
+def test_a_program_with_a_key_records_from_any_origin(
+    served: Served, credential: str, in_browser: bool, passes: bool
+) -> None:
+    key = served.credentials[credential]
+    sent = (basic(key) if in_browser else f"Bearer {key}").encode()
+    headers = [(b"authorization", sent), (b"origin", b"https://evil.example")]
+    assert served.is_answered(None, "/v1/x/attempts", headers=headers, method="POST")
+    request = Request(served.scopes[-1])
+    with nullcontext() if passes else pytest.raises(ProblemError, match="may not record"):
+        served.access.require_allowed_origin(request, ["https://course.example"])
+
+
+def test_closing_ends_the_threads_of_the_keys(tmp_path: Path) -> None:
+    served = Served(tmp_path / "keys.db")
+    before = {each for each in threading.enumerate() if each.name.startswith("keys")}
+    served.callers("record")
+    served.access.close()
+    after = {each for each in threading.enumerate() if each.name.startswith("keys")}
+    assert after <= before
+    Access().close()
+    served.engine.dispose()
+
+
 @pytest.mark.parametrize(
     ("path", "is_counted"),
     [
@@ -121,10 +218,11 @@ def test_pages_and_files_are_not_counted(served: Served, path: str, is_counted: 
 def test_requests_without_an_address_count_together(served: Served) -> None:
     rates = Rates("", "1/day")
     assert served.is_answered(rates, "/v1/grade", client=None)
+    served.scopes.clear()
     start, body = served.ask(rates, "/v1/grade", client=None)
     assert start["status"] == 429
     assert b"too-often" in body["body"]
-    assert len(served.scopes) == 1
+    assert served.scopes == []
     rates.close()
 
 
