@@ -61,10 +61,10 @@ def test_each_key_is_asked_for_once_and_all_that_wait_together(
     monkeypatch.setattr(key_lookups, "BATCH", 3)
     table = Table()
     lookups = KeyLookups(table.find)
+    keys = {each: f"{each:08x}" for each in (2, 4, 6)}
     for _ in range(2):  # also in another event loop
         table.asked.clear()
         told = asyncio.run(results(lookups, 2, 1, 2, 4, 3, 6, 2))
-        keys = {each: f"{each:08x}" for each in (2, 4, 6)}
         assert told == [keys[2], None, keys[2], keys[4], None, keys[6], keys[2]]
         assert table.asked == [[place(i) for i in (2, 1, 4)], [place(i) for i in (3, 6)]]
 
@@ -115,7 +115,9 @@ def test_an_error_of_the_database_is_told_to_all_who_wait(
     lookups.close()
 
 
-def test_the_look_ups_work_after_the_end_of_an_event_loop() -> None:
+def test_the_look_ups_work_after_the_end_of_an_event_loop(
+    caplog: pytest.LogCaptureFixture,
+) -> None:
     table = Table()
     lookups = KeyLookups(table.find)
 
@@ -130,6 +132,7 @@ def test_the_look_ups_work_after_the_end_of_an_event_loop() -> None:
         return begun
 
     assert all(each.cancelled() for each in asyncio.run(begin()))
+    assert "exception" not in caplog.text.lower()
     table.answers.set()
     assert asyncio.run(results(lookups, 2, 1)) == ["00000002", None]
     lookups.close()

@@ -281,6 +281,33 @@ def test_a_known_key_is_looked_up_every_five_seconds(
     ring.close()
 
 
+def test_the_first_key_is_looked_for_every_five_seconds(
+    engine: Engine, clock: SimpleNamespace
+) -> None:
+    ring, statements = KeyRing(engine, SECRET), Statements(engine)
+    looked_for = []
+    for seconds in (0.0, 4.99, 5.0, 5.0, 9.99, 10.0):
+        clock.now = 1000 + seconds
+        assert not asyncio.run(ring.are_needed())
+        looked_for.append(statements.taken())
+    assert looked_for == [0, 0, 1, 0, 0, 1]
+    # While the database is down, there are no keys as before.
+    hide(engine)
+    clock.now = 1015.0
+    assert not asyncio.run(ring.are_needed())
+    hide(engine, back=True)
+    made(engine)
+    assert not asyncio.run(ring.are_needed())
+    clock.now = 1020.0
+    assert asyncio.run(ring.are_needed())
+    statements.taken()
+    # Keys stay needed, so nobody asks again.
+    clock.now = 2000.0
+    assert asyncio.run(ring.are_needed())
+    assert statements.taken() == 0
+    ring.close()
+
+
 @pytest.mark.parametrize(("memoized", "until"), [(5.0, 2.0), (1.0, 1.0)])
 def test_an_unknown_key_is_looked_up_every_two_seconds(
     engine: Engine, clock: SimpleNamespace, memoized: float, until: float

@@ -32,7 +32,7 @@ class Served:
 
     def __init__(self, database: Path) -> None:
         self.engine = open_database(str(database))
-        self.credentials = {"": "", **{each: self._key(each) for each in Scope}}
+        self.credentials = {each.value: self._key(each) for each in Scope} | {"": ""}
         self.ring = KeyRing(self.engine, SECRET)
         self.scopes: list[Any] = []
         self.access = Access(keys=self.ring)
@@ -167,8 +167,9 @@ def test_only_a_session_or_a_password_is_a_browser_s(served: Served) -> None:
     # A session that has ended is that of nobody, and no error.
     assert identity(expired) == identity("x") == Identity(NOBODY, by_key=True)
     # A key comes first.
+    [recorder] = served.callers("record")
     found = identity(valid, (b"authorization", b"Bearer " + record))
-    assert found == Identity(*served.callers("record"), by_key=True)
+    assert found == Identity(recorder, by_key=True)
 
 
 @pytest.mark.parametrize(
