@@ -135,6 +135,19 @@ def test_after_the_seconds_to_wait_a_batch_is_allowed(
     rates.close()
 
 
+@pytest.mark.parametrize("earlier", [0, 1, 10])
+def test_a_batch_beyond_the_limit_is_never_allowed(earlier: int) -> None:
+    rates = Rates("10/minute")
+    assert asked(rates, *[1] * earlier, 11, 12, 1) == [True] * earlier + [
+        False,
+        False,
+        earlier < 10,
+    ]
+    for batch in (11, 12):
+        assert 1 <= asyncio.run(rates.seconds_to_wait(COURSE, "10.0.0.1", batch)) <= 120
+    rates.close()
+
+
 @pytest.mark.parametrize("rate", ["often", "1", "1/fortnight", ""])
 def test_an_invalid_rate_is_refused(rate: str) -> None:
     with pytest.raises(UnusableRatesError, match="is not a rate"):
