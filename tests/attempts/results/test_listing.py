@@ -111,9 +111,12 @@ def test_filters_combine(store: AttemptStore, catalogue: Mapping[str, Exercise])
         (AttemptFilter(course="robots", assignment="second"), {2}),
         (AttemptFilter(course="others"), {3}),
         (AttemptFilter(course="others", assignment="second"), set()),
+        (AttemptFilter(since=NOON + timedelta(hours=1)), {1, 2, 3}),
+        (AttemptFilter(until=NOON + timedelta(hours=2)), {0, 1}),
+        (AttemptFilter(since=NOON + timedelta(hours=2), until=NOON + timedelta(hours=3)), {2}),
     ],
 )
-def test_attempts_are_chosen_by_course_variant_and_whether_they_count(
+def test_attempts_are_chosen_by_course_variant_time_and_whether_they_count(
     store: AttemptStore,
     catalogue: Mapping[str, Exercise],
     wanted: AttemptFilter,
@@ -132,9 +135,9 @@ def test_attempts_are_chosen_by_course_variant_and_whether_they_count(
         numbers = [row.number for row in rows]
     new_attempts = [
         new_attempt(scara, "ada", "?!", None),
-        new_attempt(scara, "ada", RIGHT, 1, assignment=numbers[0], variant="s"),
-        new_attempt(scara, "ada", RIGHT, 2, assignment=numbers[1]),
-        new_attempt(scara, "ada", RIGHT, 3, assignment=numbers[2]),
+        new_attempt(scara, "ada", RIGHT, 1, 1, assignment=numbers[0], variant="s"),
+        new_attempt(scara, "ada", RIGHT, 2, 2, assignment=numbers[1]),
+        new_attempt(scara, "ada", RIGHT, 3, 3, assignment=numbers[2]),
     ]
     written = [each.id for each in recorded_all(store, new_attempts)]
     (found,) = all_pages(store, wanted, 4)
