@@ -29,7 +29,7 @@ from service.access.key_table import (
 from service.access.key_text import new_key_text
 from service.access.keys import CredentialError, Key, KeysBusyError, KeysUnreachableError, Secret
 from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.tables import keys
+from service.attempts.storage.tables import key_secrets, keys
 from tests.guards import ANSWER
 
 SECRET = Secret("0123456789abcdef" * 4)
@@ -172,6 +172,9 @@ def test_keys_belong_to_one_secret(engine: Engine) -> None:
     # After the last one has ended, another secret may begin.
     assert in_transaction(engine, lambda it: settle(it, other, known.expires_at))
     assert [has_secret(each) for each in (SECRET, other)] == [False, True]
+    # There is one row, in which every version of the program looks for it.
+    with engine.connect() as connection:
+        assert connection.execute(select(key_secrets)).all() == [(1, other.check)]
 
 
 def test_a_revoked_key_holds_no_secret(engine: Engine) -> None:
