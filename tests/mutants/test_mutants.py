@@ -169,3 +169,11 @@ def test_the_runner_kills_a_mutant_and_lets_an_equivalent_one_live() -> None:
     equal = "exact = total / (cells + groups * min(BESIDES, MOST_BESIDES * cells * groups))"
     assert ends[equal].end == "survived"
     assert {each.end for each in results} == {"killed", "survived"}
+
+
+@pytest.mark.long
+def test_the_runner_changes_files_that_load_a_plugin_of_pytest() -> None:
+    home = "tests/api/permissions"
+    package = Package(["service/api/permissions/access.py"], [f"{home}/test_access.py"], [home])
+    results = tried(package, functions=["is_loopback"])
+    assert {each.end for each in results} == {"killed"}
