@@ -13,6 +13,7 @@ from typing import Any
 
 import pytest
 from fastapi import Request
+from starlette.routing import Route
 
 from service.access.caller import NOBODY, Caller, Scope
 from service.access.key_ring import KeyRing
@@ -25,6 +26,7 @@ from service.api.permissions.authentication import AuthenticationMiddleware, cou
 from service.api.turns import CLIENT, Client
 from service.attempts.storage.database import in_transaction, open_database
 from tests.access.kept_services import SECRET
+from tests.together import together
 
 
 class Served:
@@ -35,7 +37,7 @@ class Served:
         self.credentials = {each.value: self._key(each) for each in Scope} | {"": ""}
         self.ring = KeyRing(self.engine, SECRET)
         self.scopes: list[Any] = []
-        self.access = Access(keys=self.ring)
+        self.access = Access(solutions=None, read_attempts=None, keys=self.ring)
 
     def _key(self, scope: Scope) -> str:
         key, now = new_key_text(), datetime.now(UTC)
@@ -170,6 +172,44 @@ def test_only_a_session_or_a_password_is_a_browser_s(served: Served) -> None:
     [recorder] = served.callers("record")
     found = identity(valid, (b"authorization", b"Bearer " + record))
     assert found == Identity(recorder, by_key=True)
+
+
+@together(
+    ("credential", "route", "refused"),
+    [
+        ("", "GET /v1/exercises", ""),
+        ("", "POST /v1/grade", "This needs a key."),
+        ("", "POST /v1/tokens", "This needs a key."),
+        ("", "GET /v1/attempts", "This needs a key."),
+        ("grade", "POST /v1/grade", ""),
+        ("grade", "POST /v1/exercises/{exercise_id}/attempts", "may not record attempts"),
+        ("record", "POST /v1/exercises/{exercise_id}/attempts", ""),
+        ("record", "POST /v1/tokens", ""),
+        ("record", "GET /v1/attempts", "may not see what tutors see"),
+        ("tutor", "GET /v1/attempts", ""),
+        ("tutor", "GET /tutor", ""),
+        # A learner with a token reads what is recorded of them, and nothing else.
+        ("token", "POST /v1/exercises/{exercise_id}/attempts", ""),
+        ("token", "GET /v1/attempts", ""),
+        ("token", "GET /v1/courses", "may not see what tutors see"),
+        ("token", "GET /tutor", "may not see what tutors see"),
+        ("token", "POST /v1/tokens", "A token makes no tokens"),
+    ],
+)
+def test_each_route_needs_its_right(
+    served: Served, credential: str, route: str, refused: str
+) -> None:
+    method, path = route.split(" ")
+    key = served.token() if credential == "token" else served.credentials[credential]
+    assert served.is_answered(None, path, key)
+    request = Request({**served.scopes[-1], "method": method, "route": Route(path, print)})
+    with pytest.raises(ProblemError, match=refused) if refused else nullcontext():
+        asyncio.run(served.access.permit(request))
+    # Solutions and attempts may be hidden, also from tutors.
+    hidden = Access(solutions=False, read_attempts=False, keys=served.ring)
+    if credential == "tutor":
+        with pytest.raises(ProblemError, match="are for tutors"):
+            asyncio.run(hidden.permit(request))
 
 
 @pytest.mark.parametrize(
