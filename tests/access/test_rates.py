@@ -4,6 +4,7 @@ import asyncio
 import math
 import socket
 import subprocess
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -14,6 +15,7 @@ from limits.strategies import SlidingWindowCounterRateLimiter
 
 from service.access.caller import NOBODY, Caller
 from service.access.rates import Rates, UnusableRatesError, rates_in
+from tests.guards import ANSWER
 
 COURSE = Caller(frozenset(), key_id="course")
 ADA, GRACE = (Caller(frozenset(), None, learner, "course") for learner in ("ada", "grace"))
@@ -75,6 +77,21 @@ def test_without_redis_each_process_counts_on_its_own(caplog: pytest.LogCaptureF
     assert waits(rates, (NOBODY, "a"), (NOBODY, "a"), (COURSE, "a")) == [False, True, False]
     assert "does not respond" in caplog.text
     rates.close()
+
+
+def test_closing_ends_the_threads(store: str) -> None:
+    def threads() -> set[threading.Thread]:
+        return {each for each in threading.enumerate() if each.name.startswith("rates")}
+
+    before = threads()
+    rates = Rates("2/day", store=store)
+    assert waits(rates, (COURSE, "a")) == [False]
+    own = threads() - before
+    assert bool(own) == store.startswith("redis")
+    rates.close()
+    for each in own:
+        each.join(ANSWER)
+        assert not each.is_alive()
 
 
 def test_a_silent_redis_does_not_hold_a_request(caplog: pytest.LogCaptureFixture) -> None:
