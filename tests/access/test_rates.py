@@ -152,9 +152,22 @@ def test_after_the_seconds_to_wait_a_batch_is_allowed(
     rates.close()
 
 
-@pytest.mark.parametrize("earlier", [0, 1, 10])
-def test_a_batch_beyond_the_limit_is_never_allowed(earlier: int) -> None:
+def test_the_wait_at_the_end_of_a_window_is_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    # All ten requests of the last minute still count, and each moment later fewer of them do.
+    clock = SimpleNamespace(now=6e8 + 30)
+    monkeypatch.setattr(time, "time", lambda: clock.now)
     rates = Rates("10/minute")
+    assert asked(rates, 10) == [True]
+    clock.now = 6e8 + 60
+    assert asyncio.run(rates.seconds_to_wait(COURSE, "10.0.0.1")) == 1
+    clock.now += 1
+    assert asked(rates, 1) == [True]
+    rates.close()
+
+
+@pytest.mark.parametrize("earlier", [0, 1, 10])
+def test_a_batch_beyond_the_limit_is_never_allowed(store: str, earlier: int) -> None:
+    rates = Rates("10/minute", store=store)
     assert asked(rates, *[1] * earlier, 11, 12, 1) == [True] * earlier + [
         False,
         False,
