@@ -6,15 +6,16 @@ from collections.abc import Callable, Mapping
 import httpx
 import pytest
 from fastapi import APIRouter, FastAPI, Request
+from starlette.routing import Route
 
 from service.access.caller import Scope
 from service.api.application import application
 from service.api.permissions.access_problems import ACCESS_PROBLEMS, access_problem, scope_missing
-from service.api.permissions.rights import Reach
+from service.api.permissions.rights import RIGHTS, Reach, right_of
 from service.api.web_pages import WebPages
 from service.catalogue import Exercise
 from service.catalogue.drafts import Drafts
-from tests.api.permissions.rights_table import PAGE, with_table
+from tests.api.permissions.rights_table import PAGE, row, with_table
 
 # Values for the texts of all problems.
 VALUES: dict[str, str | int] = {
@@ -28,6 +29,18 @@ def test_the_page_has_the_table_of_rights() -> None:
     assert page == with_table(page), (
         "The rights have changed; run python -m tests.api.permissions.rights_table"
     )
+
+
+def test_each_route_needs_the_right_on_the_page() -> None:
+    lines = PAGE.read_text(encoding="utf-8").splitlines(keepends=True)
+    listed = 0
+    for route in RIGHTS:
+        method, path = route.split(" ")
+        right = right_of(Request({"type": "http", "method": method, "route": Route(path, print)}))
+        # Routes that everybody may use are not on the page.
+        assert (row(route, right) in lines) is (right.scope is not None), route
+        listed += right.scope is not None
+    assert sum(line.startswith(("| `GET /", "| `POST /")) for line in lines) == listed
 
 
 def test_the_page_lists_every_problem_of_access() -> None:
