@@ -121,7 +121,8 @@ def test_the_key_is_a_bearer_token_or_the_password_of_a_browser(served: Served) 
         "": nobody, f"Bearer {key}": known, f"bearer  {key} ": known, f"BEARER {key}": known,
         basic(key): in_browser, basic(key).replace("Basic", "basic"): in_browser,
         # These are not for this service.
-        basic("secret"): nobody, basic(b"\xff"): nobody, f"Basic {key}": nobody, "Basic": nobody,
+        basic("secret"): nobody, basic(key).replace(" ", " !"): nobody,
+        basic(b"\xff"): nobody, f"Basic {key}": nobody, "Basic": nobody,
         f"Digest {key}": nobody, key: nobody, "Bearer": nobody, "Bearer  ": nobody,
     }  # fmt: skip
     for header, identity in expected.items():
@@ -130,6 +131,28 @@ def test_the_key_is_a_bearer_token_or_the_password_of_a_browser(served: Served) 
         # Nobody has signed in, so no page shows a button to sign out.
         is_signed_in = served.access.is_signed_in(Request(served.scopes[-1]))
         assert is_signed_in is identity.in_browser, header
+
+
+def test_until_the_first_key_everybody_may_record_and_nothing_is_shown(tmp_path: Path) -> None:
+    engine = open_database(str(tmp_path / "keys.db"))
+    ring = KeyRing(engine, SECRET)
+    here = {"server": ("127.0.0.1", 8000), "client": ("127.0.0.1", 1), "http_version": "1.1"}
+    headers = [(b"host", b"127.0.0.1"), (b"authorization", b"Bearer of a proxy")]
+    scope = {"type": "http", "scheme": "http", "method": "GET", "headers": headers, **here}
+    access = Access(keys=ring)
+    everybody = Caller(frozenset({Scope.GRADE, Scope.RECORD}))
+    identity = asyncio.run(access.identify(scope))
+    assert identity == Identity(everybody)
+    for path in ("/v1/attempts", "/tutor"):
+        request = Request({**scope, IDENTITY: identity, "route": Route(path, print)})
+        # The operator has to allow it, also on the machine itself.
+        with pytest.raises(ProblemError, match="does not show them"):
+            asyncio.run(access.permit(request))
+        asyncio.run(Access(solutions=None, read_attempts=None, keys=ring).permit(request))
+    ring.expect_keys()
+    assert asyncio.run(access.identify(scope)).caller == NOBODY
+    ring.close()
+    engine.dispose()
 
 
 def test_a_key_that_cannot_be_checked_gives_no_rights(
