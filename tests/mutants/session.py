@@ -160,7 +160,8 @@ class Mutating:
                 names = reached.tests(
                     file, mutant.line if ran else None, self._wanted.homes, self._wanted.seconds
                 )
-                items = [by_node[n] for n in names]
+                # A test that was measured before may have another name now.
+                items = [by_node[n] for n in names if n in by_node]
                 if not items:
                     end = "unreached"
                 elif mutant.place == "definition":
