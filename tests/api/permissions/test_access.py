@@ -7,6 +7,7 @@ from typing import Any
 import httpx
 import pytest
 from fastapi import FastAPI, Request
+from starlette.routing import Route
 
 from service.access.caller import Caller, Scope
 from service.access.open_access import OPEN_HERE, open_access
@@ -247,6 +248,31 @@ def test_without_keys_everybody_has_the_rights_of_the_setting(
     assert access.caller(sent) == everybody
     assert asyncio.run(access.identify(sent.scope)) == Identity(everybody)
     assert not access.is_signed_in(sent)
+
+
+@together(
+    ("setting", "read_here", "read_elsewhere", "changed_here"),
+    [(True, True, True, True), (None, True, False, True), (False, False, False, False)],
+)
+def test_only_tutors_change_attempts_that_everybody_reads(
+    setting: bool | None, read_here: bool, read_elsewhere: bool, changed_here: bool
+) -> None:
+    access = Access(read_attempts=setting)
+
+    def permits(method: str, path: str, client: str) -> bool:
+        sent = request({"host": "127.0.0.1"}, method)
+        ends = {"server": HERE, "client": (client, 9), "http_version": "1.1"}
+        sent.scope.update({**ends, "route": Route(path, print)})
+        try:
+            asyncio.run(access.permit(sent))
+        except ProblemError:
+            return False
+        return True
+
+    assert permits("GET", "/v1/attempts", "127.0.0.1") is read_here
+    assert permits("GET", "/v1/attempts", "10.0.0.7") is read_elsewhere
+    assert permits("POST", "/v1/learners/forget", "127.0.0.1") is changed_here
+    assert not permits("POST", "/v1/learners/forget", "10.0.0.7")
 
 
 @together(
