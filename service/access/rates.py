@@ -120,8 +120,8 @@ def _wait(storage: object, rate: RateLimitItem, counted: tuple[str, str], reques
 
 def _storage(address: str) -> Storage:
     try:
-        # Both are options of the Redis client: no request waits long for a count.
-        storage = storage_from_string(address, socket_timeout=1, socket_connect_timeout=1)
+        # The time limit of the Redis client (seconds), also for connecting: no request waits long.
+        storage = storage_from_string(address, socket_timeout=1)
     except ConfigurationError as error:
         raise UnusableRatesError(
             say("is not a store of counts; write redis://host:6379/0, or leave it out")

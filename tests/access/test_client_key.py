@@ -20,3 +20,14 @@ from service.access.client_key import client_key
 )
 def test_the_addresses_of_an_ipv6_network_are_one_client(one: str, other: str, same: bool) -> None:
     assert (client_key(one) == client_key(other)) is same
+
+
+@pytest.mark.parametrize(
+    ("address", "client"),
+    [
+        ("10.0.0.1", "10.0.0.1"), ("2001:db8:1:2:3::4%eth0", "2001:db8:1:2::/64"),
+        ("::ffff:10.0.0.1", "10.0.0.1"), ("no:address", "no:address"), ("", ""),
+    ],
+)  # fmt: skip
+def test_a_client_is_named_by_its_address_or_network(address: str, client: str) -> None:
+    assert client_key(address) == client

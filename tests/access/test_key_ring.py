@@ -6,24 +6,37 @@ from collections.abc import Collection, Iterator
 from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
 
 import pytest
-from sqlalchemy import Connection, Engine, event, select, text
+from sqlalchemy import Connection, Engine, delete, event, select, text
 
-from service.access import key_lookups
+from service.access import key_lookups, key_ring
 from service.access.caller import Caller, Scope
 from service.access.key_lookups import KeyPlace
 from service.access.key_ring import KeyRing
-from service.access.key_table import add_key, all_keys, keys_at, revoke_key, settle
+from service.access.key_table import (
+    add_key,
+    all_keys,
+    insert_key,
+    keys_at,
+    link_keys,
+    note_use,
+    revoke_key,
+    settle,
+)
 from service.access.key_text import new_key_text
 from service.access.keys import CredentialError, Key, KeysBusyError, KeysUnreachableError, Secret
 from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.tables import keys
+from service.attempts.storage.tables import key_secrets, keys
 from tests.guards import ANSWER
 
 SECRET = Secret("0123456789abcdef" * 4)
 # How long the key rings of these tests memoize keys (seconds).
 MEMOIZED_SECONDS = 0.05
+# How often a test tries again, each time after these seconds.
+TRIES = 400
 TICK = timedelta(microseconds=1)
 
 
@@ -65,18 +78,21 @@ def test_new_and_revoked_keys_take_effect_within_seconds(engine: Engine) -> None
     assert not asyncio.run(ring.are_needed())
     key, known = made(engine)
 
-    async def until_needed() -> None:
-        while not await ring.are_needed():
+    async def becomes_needed() -> bool:
+        for _ in range(TRIES):
+            if await ring.are_needed():
+                return True
             await asyncio.sleep(MEMOIZED_SECONDS)
+        return False
 
-    asyncio.run(until_needed())
+    assert asyncio.run(becomes_needed())
     assert asked(ring, key, key) == 2 * [Caller(frozenset({Scope.GRADE}), key_id=known.id)]
     now = datetime.now(UTC)
     assert in_transaction(engine, lambda connection: revoke_key(connection, known.id, now))
     assert not in_transaction(engine, lambda connection: revoke_key(connection, known.id, now))
 
     async def until_refused() -> None:
-        while True:
+        for _ in range(TRIES):
             await ring.caller(key)
             await asyncio.sleep(MEMOIZED_SECONDS)
 
@@ -156,6 +172,9 @@ def test_keys_belong_to_one_secret(engine: Engine) -> None:
     # After the last one has ended, another secret may begin.
     assert in_transaction(engine, lambda it: settle(it, other, known.expires_at))
     assert [has_secret(each) for each in (SECRET, other)] == [False, True]
+    # There is one row, in which every version of the program looks for it.
+    with engine.connect() as connection:
+        assert connection.execute(select(key_secrets)).all() == [(1, other.check)]
 
 
 def test_a_revoked_key_holds_no_secret(engine: Engine) -> None:
@@ -217,6 +236,212 @@ def test_a_known_key_works_while_the_database_is_down(engine: Engine) -> None:
     ring.close()
     with pytest.raises(KeysUnreachableError):
         KeyRing(engine, SECRET)
+
+
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> SimpleNamespace:
+    """A clock for the memoized keys (``now``, in seconds) and for their use (``date``)."""
+    clock = SimpleNamespace(now=1000.0, date=datetime.now(UTC))
+    monkeypatch.setattr(key_ring, "monotonic", lambda: clock.now)
+    monkeypatch.setattr(key_ring, "datetime", SimpleNamespace(now=lambda _: clock.date))
+    return clock
+
+
+class Statements:
+    """Counts the statements on the keys of a database."""
+
+    def __init__(self, engine: Engine) -> None:
+        self._written: list[str] = []
+        event.listen(engine, "before_cursor_execute", lambda *given: self._written.append(given[2]))
+
+    def taken(self, word: str = "SELECT") -> int:
+        """Return the number of statements with this word since the last time."""
+        found = [each for each in self._written if each.startswith(word) and "keys" in each]
+        self._written.clear()
+        return len(found)
+
+
+def outcome(ring: KeyRing, credential: str) -> str:
+    try:
+        return asked(ring, credential)[0].key_id
+    except (CredentialError, KeysUnreachableError) as error:
+        return type(error).__name__
+
+
+def hide(engine: Engine, *, back: bool = False) -> None:
+    """Rename the table of keys, so that every statement fails; or rename it back."""
+    names = ("hidden", "keys") if back else ("keys", "hidden")
+    with engine.execution_options(writes=True).begin() as connection:
+        connection.execute(text("ALTER TABLE {} RENAME TO {}".format(*names)))
+
+
+def test_a_known_key_is_looked_up_every_five_seconds(
+    engine: Engine, clock: SimpleNamespace
+) -> None:
+    key, known = made(engine)
+    ring, statements = KeyRing(engine, SECRET), Statements(engine)
+    looked_up = []
+    for seconds in (0.0, 0.0, 4.99, 5.0, 9.99, 10.0):
+        clock.now = 1000 + seconds
+        assert outcome(ring, key) == known.id
+        looked_up.append(statements.taken())
+    assert looked_up == [1, 0, 0, 1, 0, 1]
+    ring.close()
+
+
+def test_the_first_key_is_looked_for_every_five_seconds(
+    engine: Engine, clock: SimpleNamespace
+) -> None:
+    ring, statements = KeyRing(engine, SECRET), Statements(engine)
+    looked_for = []
+    for seconds in (0.0, 4.99, 5.0, 5.0, 9.99, 10.0):
+        clock.now = 1000 + seconds
+        assert not asyncio.run(ring.are_needed())
+        looked_for.append(statements.taken())
+    assert looked_for == [0, 0, 1, 0, 0, 1]
+    # While the database is down, there are no keys as before.
+    hide(engine)
+    clock.now = 1015.0
+    assert not asyncio.run(ring.are_needed())
+    hide(engine, back=True)
+    made(engine)
+    assert not asyncio.run(ring.are_needed())
+    clock.now = 1020.0
+    assert asyncio.run(ring.are_needed())
+    statements.taken()
+    # Keys stay needed, so nobody asks again.
+    clock.now = 2000.0
+    assert asyncio.run(ring.are_needed())
+    assert statements.taken() == 0
+    ring.close()
+
+
+@pytest.mark.parametrize(("memoized", "until"), [(5.0, 2.0), (1.0, 1.0)])
+def test_an_unknown_key_is_looked_up_every_two_seconds(
+    engine: Engine, clock: SimpleNamespace, memoized: float, until: float
+) -> None:
+    key = new_key_text()
+    ring, statements = KeyRing(engine, SECRET, memoized), Statements(engine)
+    looked_up = []
+    for seconds in (0.0, until - 0.01, until, 2 * until - 0.01):
+        clock.now = 1000 + seconds
+        assert outcome(ring, key) == "CredentialError"
+        looked_up.append(statements.taken())
+    assert looked_up == [1, 0, 1, 0]
+    ring.close()
+
+
+def test_a_database_that_is_down_is_asked_every_fifteen_seconds(
+    engine: Engine, clock: SimpleNamespace
+) -> None:
+    key, known = made(engine)
+    ring, statements = KeyRing(engine, SECRET), Statements(engine)
+    asked(ring, key)
+    hide(engine)
+    statements.taken()
+    looked_up = []
+    for seconds in (5.0, 5.0, 19.99, 20.0, 34.99):
+        clock.now = 1000 + seconds
+        assert outcome(ring, key) == known.id
+        looked_up.append(statements.taken())
+    assert looked_up == [1, 0, 0, 1, 0]
+    # The key was revoked in the meantime.
+    hide(engine, back=True)
+    in_transaction(engine, lambda it: revoke_key(it, known.id, datetime.now(UTC)))
+    assert outcome(ring, key) == known.id
+    clock.now = 1035.0
+    assert outcome(ring, key) == "CredentialError"
+    ring.close()
+
+
+def test_a_deleted_key_is_forgotten(engine: Engine, clock: SimpleNamespace) -> None:
+    key, known = made(engine)
+    ring = KeyRing(engine, SECRET)
+    assert outcome(ring, key) == known.id
+    with engine.execution_options(writes=True).begin() as connection:
+        connection.execute(delete(keys))
+    clock.now += 5
+    assert outcome(ring, key) == "CredentialError"
+    # It does not work again while the database is down.
+    hide(engine)
+    assert outcome(ring, key) == "CredentialError"
+    clock.now += 2
+    assert outcome(ring, key) == "KeysUnreachableError"
+    ring.close()
+
+
+@pytest.mark.parametrize("limit", ["_MOST", "_MOST_UNKNOWN"])
+def test_the_key_that_was_looked_up_first_is_forgotten_first(
+    engine: Engine, clock: SimpleNamespace, monkeypatch: pytest.MonkeyPatch, limit: str
+) -> None:
+    monkeypatch.setattr(key_ring, limit, 2)
+    texts = [made(engine)[0] if limit == "_MOST" else new_key_text() for _ in range(3)]
+    ring, statements = KeyRing(engine, SECRET), Statements(engine)
+
+    def looked_up(*numbers: int) -> list[int]:
+        found = []
+        for i in numbers:
+            outcome(ring, texts[i])
+            found.append(statements.taken())
+        return found
+
+    assert looked_up(0, 1, 0, 1) == [1, 1, 0, 0]
+    clock.now += 5
+    assert looked_up(1, 0, 2) == [1, 1, 1]
+    # Key 1 has been forgotten, and then key 0.
+    assert looked_up(0, 2, 1, 2, 0) == [0, 0, 1, 0, 1]
+    ring.close()
+
+
+def test_the_use_of_a_key_is_written_after_a_minute(engine: Engine, clock: SimpleNamespace) -> None:
+    key, _ = made(engine)
+    first = clock.date
+    uses = []
+    for seconds in (0, 59.9, 60, 119.9, 120):
+        # Another process has noted the uses before.
+        ring = KeyRing(engine, SECRET)
+        clock.date = first + timedelta(seconds=seconds)
+        asked(ring, key)
+        ring.close()
+        with engine.connect() as connection:
+            uses += [each.last_used_at for each in all_keys(connection)]
+    assert [(each - first).total_seconds() for each in uses if each] == [0, 0, 60, 60, 120]
+    # A process whose clock is late does not move the time back.
+    in_transaction(engine, lambda it: note_use(it, all_keys(it)[0].id, first))
+    with engine.connect() as connection:
+        assert all_keys(connection)[0].last_used_at == uses[-1]
+
+
+def test_a_closed_ring_leaves_no_thread(engine: Engine) -> None:
+    def threads() -> set[threading.Thread]:
+        return {each for each in threading.enumerate() if each.name.startswith("keys")}
+
+    before = threads()
+    key, _ = made(engine)
+    ring = KeyRing(engine, SECRET, 0.0)
+    asked(ring, key, key)
+    assert threads() > before
+    ring.close()
+    assert threads() <= before
+
+
+def test_keys_and_links_are_listed_apart_and_the_oldest_key_first(engine: Engine) -> None:
+    now = datetime.now(UTC)
+
+    def added(number: int, age: int, **more: Any) -> Key:
+        created = now - timedelta(hours=age)
+        key = Key(f"{number:08x}", "", frozenset(), None, created, now, **more)
+        in_transaction(engine, lambda it: insert_key(it, key, f"{number}"))
+        return key
+
+    young, old = added(1, 1), added(2, 2)
+    course = added(3, 0, course="robots")
+    link = added(4, 3, course="robots", learner="ada")
+    added(5, 3, course="robots", learner="grace", revoked_at=now)
+    added(6, 3, course="others", learner="ada")
+    with engine.connect() as connection:
+        assert all_keys(connection) == [old, young, course]
+        assert link_keys(connection, "robots") == [link]
 
 
 def flooded(ring: KeyRing, invented: int, *keys: str) -> list[Caller]:
@@ -295,10 +520,11 @@ def test_an_unknown_key_is_looked_up_again_within_seconds(engine: Engine) -> Non
     )
 
     async def until_known() -> Caller:
-        while True:
+        for _ in range(TRIES):
             with suppress(CredentialError):
                 return await ring.caller(key)
             await asyncio.sleep(MEMOIZED_SECONDS)
+        raise AssertionError("the key stays unknown")
 
     assert asyncio.run(until_known()).scopes == {Scope.GRADE}
     ring.close()

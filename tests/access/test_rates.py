@@ -2,16 +2,20 @@
 
 import asyncio
 import math
+import socket
 import subprocess
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from limits.strategies import SlidingWindowCounterRateLimiter
 
 from service.access.caller import NOBODY, Caller
 from service.access.rates import Rates, UnusableRatesError, rates_in
+from tests.guards import ANSWER
 
 COURSE = Caller(frozenset(), key_id="course")
 ADA, GRACE = (Caller(frozenset(), None, learner, "course") for learner in ("ada", "grace"))
@@ -75,6 +79,40 @@ def test_without_redis_each_process_counts_on_its_own(caplog: pytest.LogCaptureF
     rates.close()
 
 
+def test_closing_ends_the_threads(store: str) -> None:
+    def threads() -> set[threading.Thread]:
+        return {each for each in threading.enumerate() if each.name.startswith("rates")}
+
+    before = threads()
+    rates = Rates("2/day", store=store)
+    assert waits(rates, (COURSE, "a")) == [False]
+    own = threads() - before
+    assert bool(own) == store.startswith("redis")
+    rates.close()
+    for each in own:
+        each.join(ANSWER)
+        assert not each.is_alive()
+
+
+def test_a_silent_redis_does_not_hold_a_request(caplog: pytest.LogCaptureFixture) -> None:
+    # The system accepts the connection, and nobody answers.
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        rates = Rates("", "1/day", f"redis://127.0.0.1:{silent.getsockname()[1]}")
+        assert waits(rates, (NOBODY, "a")) == [False]
+    assert "does not respond: TimeoutError" in caplog.text
+    rates.close()
+
+
+def test_a_request_that_another_process_has_preceded_waits(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    # The limit was not reached a moment ago, and is now.
+    monkeypatch.setattr(SlidingWindowCounterRateLimiter, "hit", lambda *_, **__: False)
+    rates = Rates("2/day")
+    assert asyncio.run(rates.seconds_to_wait(COURSE, "10.0.0.1")) == 1
+    rates.close()
+
+
 def asked(rates: Rates, *numbers: int) -> list[bool]:
     async def ask() -> list[bool]:
         return [await rates.seconds_to_wait(COURSE, "10.0.0.1", number) == 0 for number in numbers]
@@ -111,6 +149,32 @@ def test_after_the_seconds_to_wait_a_batch_is_allowed(
             assert wait == 1 or asked(rates, batch) == [False]
             clock.now += 1.1
             assert asked(rates, batch) == [True]
+    rates.close()
+
+
+def test_the_wait_at_the_end_of_a_window_is_a_second(monkeypatch: pytest.MonkeyPatch) -> None:
+    # All ten requests of the last minute still count, and each moment later fewer of them do.
+    clock = SimpleNamespace(now=6e8 + 30)
+    monkeypatch.setattr(time, "time", lambda: clock.now)
+    rates = Rates("10/minute")
+    assert asked(rates, 10) == [True]
+    clock.now = 6e8 + 60
+    assert asyncio.run(rates.seconds_to_wait(COURSE, "10.0.0.1")) == 1
+    clock.now += 1
+    assert asked(rates, 1) == [True]
+    rates.close()
+
+
+@pytest.mark.parametrize("earlier", [0, 1, 10])
+def test_a_batch_beyond_the_limit_is_never_allowed(store: str, earlier: int) -> None:
+    rates = Rates("10/minute", store=store)
+    assert asked(rates, *[1] * earlier, 11, 12, 1) == [True] * earlier + [
+        False,
+        False,
+        earlier < 10,
+    ]
+    for batch in (11, 12):
+        assert 1 <= asyncio.run(rates.seconds_to_wait(COURSE, "10.0.0.1", batch)) <= 120
     rates.close()
 
 

@@ -6,14 +6,18 @@ import json
 import random
 import time
 from collections.abc import Callable, Mapping
+from contextlib import nullcontext
 from datetime import UTC, datetime, timedelta
+from pathlib import Path
 from typing import Any, Final
 
 import pytest
 
 from service.access.caller import Caller, Scope
 from service.access.keys import CredentialError, Key, Secret
+from service.access.sessions import key_of_session, signed_session
 from service.access.tokens import LearnerToken, signed, verified
+from service.settings import SettingsError, load_settings
 
 SECRET: Final = Secret("0123456789abcdef" * 4).token_secret
 HEADER: Final[Mapping[str, Any]] = {"alg": "HS256", "typ": "JWT"}
@@ -74,6 +78,29 @@ def test_a_signed_token_is_verified() -> None:
     )
     assert outcome(signed(told, until - timedelta(minutes=2), SECRET)) == "The token has expired."
     assert "nor a token" in str(outcome(token(text(HEADER), text(CLAIMS))[:-2] + "AA"))
+
+
+@pytest.mark.parametrize("kind", ["token", "session"])
+def test_a_token_and_a_session_are_valid_until_the_second_in_which_they_expire(
+    monkeypatch: pytest.MonkeyPatch, kind: str
+) -> None:
+    until = datetime(2026, 11, 22, 12, tzinfo=UTC)
+    told = LearnerToken("0011aaff", "ada", frozenset({Scope.RECORD}), None)
+    text = (
+        signed(told, until, SECRET)
+        if kind == "token"
+        else signed_session("0011aaff", until, SECRET)
+    )
+
+    def key() -> str:
+        return verified(text, SECRET).key_id if kind == "token" else key_of_session(text, SECRET)
+
+    monkeypatch.setattr(time, "time", lambda: until.timestamp() - 0.001)
+    assert key() == "0011aaff"
+    for moment in (until.timestamp(), until.timestamp() + 1):
+        monkeypatch.setattr(time, "time", lambda moment=moment: moment)
+        with pytest.raises(CredentialError, match=f"The {kind} has expired"):
+            key()
 
 
 @pytest.mark.parametrize("claim", [*CLAIMS, "nbf", "iat", "aud", "jti", "other", "\ud800"])
@@ -196,6 +223,18 @@ def test_all_secrets_follow_from_one_and_differ() -> None:
     assert len({*derived(one), *derived(other)}) == 2 * len(derived(one))
     # What signs must not be what is stored.
     assert one.check != one.token_secret.hex()
+
+
+def test_a_secret_has_at_least_32_characters(tmp_path: Path) -> None:
+    # As docs/settings.md has it.
+    file = tmp_path / "secret"
+    for text, is_long in (("x" * 31, False), ("x" * 32, True)):
+        file.write_text(f" {text}\n", encoding="utf-8")
+        for option in ({"secret": text}, {"secret_file": file}):
+            with nullcontext() if is_long else pytest.raises(SettingsError, match="is short"):
+                secret = load_settings(**option).known_secret()
+                assert secret is not None
+                assert secret.check == Secret(text).check
 
 
 def test_stored_keys_stay_valid() -> None:

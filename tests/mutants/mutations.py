@@ -25,8 +25,12 @@ _STORED: Final = {
     "dataclass", "field", "lru_cache", "cached_property", "property", "staticmethod",
     "classmethod", "TypeVar", "ConfigDict",
 }  # fmt: skip
-# Functions whose arguments have no order.
-_UNORDERED: Final = {"and_", "or_", "min", "max", "minimum", "maximum"}
+# Functions whose arguments have no order. The columns of ``select`` and ``order_by`` have one.
+_UNORDERED: Final = {
+    "and_", "or_", "where", "group_by", "union_all", "min", "max", "minimum", "maximum",
+}  # fmt: skip
+# Of a join, the first two arguments are tables; their order counts in an outer join only.
+_OUTER: Final = {"isouter", "full"}
 # Floats smaller than this are tolerances: only another order of magnitude is another tolerance.
 _SMALL: Final = 0.01
 
@@ -196,14 +200,21 @@ def _removals(node: ast.AST) -> Iterator[_Change]:
 
 
 def _calls(node: ast.Call) -> Iterator[_Change]:
-    is_ordered = len(node.args) > 1 and _called(node) not in _UNORDERED
-    if is_ordered and not any(isinstance(each, ast.Starred) for each in node.args[:2]):
+    if _is_ordered(node) and not any(isinstance(each, ast.Starred) for each in node.args[:2]):
         first, second, *rest = node.args
         yield _set(node, "args", [second, first, *rest])
     for i, each in enumerate(node.keywords):
         if each.arg == "strict" and _called(node) == "zip":
             continue  # like an assertion
         yield _set(node, "keywords", [*node.keywords[:i], *node.keywords[i + 1 :]])
+
+
+def _is_ordered(node: ast.Call) -> bool:
+    # True if the first two arguments cannot change places.
+    name = _called(node)
+    if name == "join_from" and not any(each.arg in _OUTER for each in node.keywords):
+        return False
+    return len(node.args) > 1 and name not in _UNORDERED
 
 
 def _other_values(node: ast.AST) -> Iterator[ast.AST]:

@@ -94,6 +94,12 @@ class Mutating:
         self._wanted = wanted
         self._out = Path(wanted.out).open("a", encoding="utf-8")  # noqa: SIM115 (until the end)
 
+    def pytest_sessionstart(self) -> None:
+        """Load the files that are changed, also those that no test imports."""
+        # Not before pytest has found its plugins: some of them are loaded by these files.
+        for file in self._wanted.files:
+            importlib.import_module(file.removesuffix(".py").replace("/", "."))
+
     @pytest.hookimpl(trylast=True)
     def pytest_collection_modifyitems(self, items: list[pytest.Item]) -> None:
         items[:] = [
@@ -157,7 +163,8 @@ class Mutating:
                 names = reached.tests(
                     file, mutant.line if ran else None, self._wanted.homes, self._wanted.seconds
                 )
-                items = [by_node[n] for n in names]
+                # A test that was measured before may have another name now.
+                items = [by_node[n] for n in names if n in by_node]
                 if not items:
                     end = "unreached"
                 elif mutant.place == "definition":
@@ -457,8 +464,6 @@ def _called_by_module(tree: ast.Module) -> set[str]:
 def main() -> int:
     """Read what is wanted from standard input, and try the mutants."""
     wanted = Wanted(**json.load(sys.stdin))
-    for file in wanted.files:
-        importlib.import_module(file.removesuffix(".py").replace("/", "."))
     return int(
         pytest.main(
             [*OPTIONS, "-q", "--no-header", "--capture=fd", *wanted.tests],

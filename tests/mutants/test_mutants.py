@@ -38,7 +38,11 @@ def changed(source: str) -> set[str]:
         ("@a\ndef f(): pass", {"def f():"}),
         ("def f(a):\n match a:\n  case 1: return\n  case _: pass",
          {"match a: 1", "match a: _", "match a: 2 | _", "match a: 0 | _"}),
+        ("s.join_from(a, b, full=True)", {"s.join_from(b, a, full=True)", "s.join_from(a, b)",
+                                          "s.join_from(a, b, full=False)", "pass"}),
+        ("s.order_by(a, b)", {"s.order_by(b, a)", "pass"}),
         # What changes no answer is left alone.
+        ("s.where(a, b)\ns.group_by(a, b)\ns.join_from(a, b)", {"pass"}),
         ("@dataclass(frozen=True)\nclass A:\n 'A text.'\n x: Literal[1] | None", set()),
         ("def f() -> int:\n assert True, 1\n _log.info('%s', 1)", set()),
     ],
@@ -185,3 +189,11 @@ def test_the_runner_kills_a_mutant_and_lets_an_equivalent_one_live() -> None:
     equal = "exact = total / (cells + groups * min(BESIDES, MOST_BESIDES * cells * groups))"
     assert ends[equal].end == "survived"
     assert {each.end for each in results} == {"killed", "survived"}
+
+
+@pytest.mark.long
+def test_the_runner_changes_files_that_load_a_plugin_of_pytest() -> None:
+    home = "tests/api/permissions"
+    package = Package(["service/api/permissions/access.py"], [f"{home}/test_access.py"], [home])
+    results = tried(package, functions=["is_loopback"])
+    assert {each.end for each in results} == {"killed"}

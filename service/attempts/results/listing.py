@@ -147,8 +147,8 @@ def place_of(cursor: str) -> TimePlace:
         raise BadCursorError(cursor)
     try:
         ticks, number = (int(part, 16) for part in cursor.split("."))
-        if not (0 <= number < _LARGEST and 0 <= ticks < _LARGEST):
+        if number >= _LARGEST:
             raise BadCursorError(cursor)
         return _EPOCH + ticks * _TICK, number
-    except OverflowError as error:
+    except OverflowError as error:  # after the year 9999
         raise BadCursorError(cursor) from error

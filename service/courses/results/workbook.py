@@ -44,7 +44,7 @@ def _hand_ins(
     place = (of.learner, assignments.c.id, of.exercise)
     chosen = true() if assignment is None else assignments.c.id == assignment
     rows = connection.execute(
-        select(*place, func.count(), func.max(of.at, type_=of.at.type))
+        select(*place, func.count(), func.max(of.at))
         .join_from(attempts, assignments)
         .where(assignments.c.course == course, chosen, of.assignment.is_not(None), COUNTS)
         .group_by(*place)

@@ -21,11 +21,12 @@ _START: Final = f"| {' | '.join(_HEADINGS)} |\n"
 
 
 def table() -> str:
-    rows = [_row(route, right) for route, right in RIGHTS.items() if right.scope is not None]
+    rows = [row(route, right) for route, right in RIGHTS.items() if right.scope is not None]
     return "".join([_START, f"|{'---|' * len(_HEADINGS)}\n", *rows])
 
 
-def _row(route: str, right: Right) -> str:
+def row(route: str, right: Right) -> str:
+    """Return the line of the table for a route."""
     tokens = "yes" if right.tokens else "no"
     in_course = "yes" if right.in_course else "no"
     without = right.without_keys.value

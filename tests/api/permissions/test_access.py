@@ -1,20 +1,26 @@
 """Test whose requests have a tutor's rights, and which pages may send them."""
 
 import asyncio
+from contextlib import nullcontext
 from typing import Any
 
 import httpx
 import pytest
 from fastapi import FastAPI, Request
+from starlette.routing import Route
 
-from service.access.open_access import OPEN_HERE
+from service.access.caller import Caller, Scope
+from service.access.open_access import OPEN_HERE, open_access
 from service.api.http.problems import ProblemError
 from service.api.permissions.access import (
     PLAIN_COOKIE,
     SECURE_COOKIE,
     Access,
+    Identity,
+    is_at_the_machine,
     is_loopback,
     is_same_origin,
+    require_reach,
     session_in,
 )
 from tests.together import together
@@ -197,6 +203,92 @@ def test_the_session_is_in_the_cookie_that_counts(
     cookie = "; ".join(f"{name}={value}" for name, value in cookies.items())
     sent = request({**headers, "cookie": cookie}, scheme=scheme)
     assert session_in(sent.scope) == expected
+
+
+HERE = ("127.0.0.1", 8000)
+
+
+@together(
+    ("server", "client", "expected"),
+    [
+        (HERE, HERE, True), (("::1", 8000), ("::1", 9), True),
+        # A socket in the file system has no address: the client may be a proxy.
+        (None, None, False), (None, HERE, False), (HERE, None, False),
+        (HERE, ("10.0.0.7", 9), False), (("10.0.0.7", 8000), HERE, False),
+    ],
+)  # fmt: skip
+def test_a_client_at_the_machine_uses_its_loopback_address(
+    server: tuple[str, int] | None, client: tuple[str, int] | None, expected: bool
+) -> None:
+    sent = request({"host": "localhost"})
+    sent.scope.update({"server": server, "client": client, "http_version": "1.1"})
+    assert is_at_the_machine(sent) is expected
+    for changed in ({"http_version": "1.0"}, {"headers": [(b"host", b"a.example")]}):
+        assert not is_at_the_machine(Request({**sent.scope, **changed}))
+
+
+@together(
+    ("setting", "server", "expected"),
+    [
+        (None, HERE, "grade record"), (None, ("::1", 8000), "grade record"),
+        (None, None, "grade record"),
+        (None, ("/run/grader.sock", None), "grade record"), (None, ("192.0.2.1", 8000), ""),
+        ("until-keys", ("192.0.2.1", 8000), "grade record"),
+        ("grade", ("192.0.2.1", 8000), "grade"), ("record", HERE, "grade record"),
+        ("none", HERE, ""),
+    ],
+)  # fmt: skip
+def test_without_keys_everybody_has_the_rights_of_the_setting(
+    setting: str | None, server: tuple[str, int | None] | None, expected: str
+) -> None:
+    access = Access(open_access(setting))
+    sent = request({})
+    sent.scope["server"] = server
+    everybody = Caller(frozenset(map(Scope, expected.split())))
+    assert access.caller(sent) == everybody
+    assert asyncio.run(access.identify(sent.scope)) == Identity(everybody)
+    assert not access.is_signed_in(sent)
+
+
+@together(
+    ("setting", "read_here", "read_elsewhere", "changed_here"),
+    [(True, True, True, True), (None, True, False, True), (False, False, False, False)],
+)
+def test_only_tutors_change_attempts_that_everybody_reads(
+    setting: bool | None, read_here: bool, read_elsewhere: bool, changed_here: bool
+) -> None:
+    access = Access(read_attempts=setting)
+
+    def permits(method: str, path: str, client: str) -> bool:
+        sent = request({"host": "127.0.0.1"}, method)
+        ends = {"server": HERE, "client": (client, 9), "http_version": "1.1"}
+        sent.scope.update({**ends, "route": Route(path, print)})
+        try:
+            asyncio.run(access.permit(sent))
+        except ProblemError:
+            return False
+        return True
+
+    assert permits("GET", "/v1/attempts", "127.0.0.1") is read_here
+    assert permits("GET", "/v1/attempts", "10.0.0.7") is read_elsewhere
+    assert permits("POST", "/v1/learners/forget", "127.0.0.1") is changed_here
+    assert not permits("POST", "/v1/learners/forget", "10.0.0.7")
+
+
+@together(
+    ("exercises", "exercise", "reaches"),
+    [
+        (None, "scara", True), (None, None, True), (["scara"], "scara", True),
+        (["scara"], None, True),
+        (["scara"], "scara~k7", True), (["scara"], "puma", False),
+    ],
+)  # fmt: skip
+def test_another_exercise_than_those_of_the_caller_is_refused(
+    exercises: list[str] | None, exercise: str | None, reaches: bool
+) -> None:
+    caller = Caller(frozenset(), None if exercises is None else frozenset(exercises))
+    with nullcontext() if reaches else pytest.raises(ProblemError, match="certain exercises"):
+        require_reach(caller, exercise)
 
 
 @pytest.mark.parametrize(

@@ -6,14 +6,22 @@ from collections.abc import Callable, Mapping
 import httpx
 import pytest
 from fastapi import APIRouter, FastAPI, Request
+from starlette.routing import Route
 
+from service.access.caller import Scope
 from service.api.application import application
-from service.api.permissions.access_problems import ACCESS_PROBLEMS
-from service.api.permissions.rights import Reach
+from service.api.permissions.access_problems import ACCESS_PROBLEMS, access_problem, scope_missing
+from service.api.permissions.rights import RIGHTS, Reach, right_of
 from service.api.web_pages import WebPages
 from service.catalogue import Exercise
 from service.catalogue.drafts import Drafts
-from tests.api.permissions.rights_table import PAGE, with_table
+from tests.api.permissions.rights_table import PAGE, row, with_table
+
+# Values for the texts of all problems.
+VALUES: dict[str, str | int] = {
+    "reason": "The key has expired.", "allowed": "record attempts", "scope": "record",
+    "seconds": 7, "number": 100, "most": 64,
+}  # fmt: skip
 
 
 def test_the_page_has_the_table_of_rights() -> None:
@@ -23,11 +31,50 @@ def test_the_page_has_the_table_of_rights() -> None:
     )
 
 
+def test_each_route_needs_the_right_on_the_page() -> None:
+    lines = PAGE.read_text(encoding="utf-8").splitlines(keepends=True)
+    listed = 0
+    for route in RIGHTS:
+        method, path = route.split(" ")
+        right = right_of(Request({"type": "http", "method": method, "route": Route(path, print)}))
+        # Routes that everybody may use are not on the page.
+        assert (row(route, right) in lines) is (right.scope is not None), route
+        listed += right.scope is not None
+    assert sum(line.startswith(("| `GET /", "| `POST /")) for line in lines) == listed
+
+
 def test_the_page_lists_every_problem_of_access() -> None:
     section = PAGE.read_text(encoding="utf-8").partition("## Errors\n")[2].partition("\n## ")[0]
     listed = {name: int(code) for code, name in re.findall(r"\| (\d+) \| `([a-z-]+)` \|", section)}
     assert listed.pop("store-down") == 503
-    assert listed == {name: problem.status for name, problem in ACCESS_PROBLEMS.items()}
+    problems = {name: access_problem(name, **VALUES) for name in ACCESS_PROBLEMS}
+    assert listed == {name: problem.status for name, problem in problems.items()}
+    assert {problem.name for problem in problems.values()} == problems.keys()
+    assert len({problem.title for problem in problems.values()}) == len(problems)
+    assert len({problem.detail for problem in problems.values()}) == len(problems)
+
+
+def test_a_refusal_says_how_to_be_authenticated_and_when_to_come_again() -> None:
+    for name in ACCESS_PROBLEMS:
+        answer = access_problem(name, **VALUES).response("/v1/grade")
+        # RFC 6750, section 3: without a key, the challenge says nothing about an error.
+        challenge = {"key-needed": "Bearer", "key-not-valid": 'Bearer error="invalid_token"'}
+        assert answer.headers.get("WWW-Authenticate") == challenge.get(name)
+        again = {"too-often": "7", "busy": "1"}
+        assert answer.headers.get("Retry-After") == again.get(name)
+
+
+@pytest.mark.parametrize(
+    ("scope", "allowed"),
+    [
+        (Scope.GRADE, "have answers graded"), (Scope.RECORD, "record attempts"),
+        (Scope.TUTOR, "see what tutors see"),
+    ],
+)  # fmt: skip
+def test_the_missing_scope_is_named(scope: Scope, allowed: str) -> None:
+    problem = scope_missing(scope)
+    assert (problem.status, problem.name) == (403, "scope-missing")
+    assert problem.detail == f"This key may not {allowed}: it has not the scope {scope.value}."
 
 
 def test_a_route_without_an_entry_prevents_startup(catalogue: Mapping[str, Exercise]) -> None:

@@ -61,6 +61,32 @@ def test_the_best_or_the_last_attempt_counts(
         assert counts == [i == expected for i in range(len(points))]
 
 
+def test_attempts_are_sorted_by_exercise_learner_and_time(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    # In the order in which they were recorded.
+    given = [
+        ("scara", "ada", 2, 1), ("planar-rr", "grace", 1, 1), ("scara", "ada", 1, 0),
+        ("scara", "grace", 2, 2), ("planar-rr", "ada", 1, 2), ("scara", "grace", 1, 2),
+    ]  # fmt: skip
+    table = {"scara": RIGHT, "planar-rr": "a1 0 0 θ1\na2 0 0 θ2"}
+    recorded_all(
+        store,
+        [
+            new_attempt(catalogue[exercise], learner, table[exercise], ordinal, hours)
+            for exercise, learner, ordinal, hours in given
+        ],
+    )
+    with store.engine.connect() as connection:
+        graded = list(graded_attempts(connection, AttemptFilter(), lambda _: "last"))
+    # Of two attempts at the same time, the one that was recorded first is first.
+    assert [(it.attempt.exercise, it.attempt.learner, it.attempt.ordinal) for it in graded] == [
+        ("planar-rr", "ada", 1), ("planar-rr", "grace", 1),
+        ("scara", "ada", 1), ("scara", "ada", 2), ("scara", "grace", 2), ("scara", "grace", 1),
+    ]  # fmt: skip
+    assert [it.counts for it in graded] == [True, True, False, True, True, False]
+
+
 def test_each_format_has_its_own_lines(
     store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:

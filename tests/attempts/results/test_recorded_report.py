@@ -11,7 +11,7 @@ from service.catalogue import Exercise
 from service.formats.documents.json import read_report, rendered
 from service.formats.told_report import report_in
 from service.grading import Correction, Feedback, Place, Report, Severity, Submission, grade
-from service.translations import ENGLISH, say, say_count
+from service.translations import ENGLISH, Sentence, say, say_count
 from tests.translations.german import german
 
 GERMAN = german({
@@ -45,6 +45,15 @@ def test_english_readers_get_the_report_byte_by_byte(report: Report) -> None:
     recorded = recorded_report(report)
     assert shown_report(recorded, ENGLISH) == rendered(report).decode()
     assert read_report(recorded.encode()) == report
+    # Also if this version would write the report in another way.
+    assert shown_report(recorded[:-1] + " }", ENGLISH) == rendered(report).decode()[:-1] + " }"
+
+
+def test_a_report_without_sentences_is_recorded_as_it_is(report: Report) -> None:
+    numbers_only = replace(report, parts=())
+    recorded = recorded_report(numbers_only)
+    assert recorded == rendered(numbers_only).decode()
+    assert shown_report(recorded, GERMAN) == recorded
 
 
 def test_another_reader_gets_another_language(report: Report) -> None:
@@ -62,12 +71,11 @@ def test_another_reader_gets_another_language(report: Report) -> None:
 
 
 def test_a_sentence_without_values_takes_no_room(report: Report) -> None:
-    sentences = json.loads(recorded_report(report))["sentences"]
-    assert [each[0] for each in sentences] == [
-        "Exchange {cells}.",
-        "one row",
-        "Frame {{0}} is given.",
-    ]
+    first = '["Exchange {cells}.",{"cells":["{first} and {last}",{"first":"a","last":"α"}]}]'
+    second = '["one row",{"count":2},"{count} rows in frame {{0}}"]'
+    third = '["Frame {{0}} is given.",{}]'
+    start = f'{{"sentences":[{first},{second},{third}],'
+    assert recorded_report(report) == start + rendered(report).decode()[1:]
 
 
 def test_reports_of_earlier_versions_stay_in_english(report: Report) -> None:
@@ -81,4 +89,9 @@ def test_one_sentence_of_a_recorded_report(report: Report) -> None:
     recorded = json.loads(recorded_report(report))
     found = sentence_in(recorded, "Exchange a and α.")
     assert getattr(found, "template", "") == "Exchange {cells}."
+    assert type(sentence_in(recorded, "no answer")) is Sentence
+    # Translations of the empty text and of braces are none of these texts.
+    for text in ("", "c_{12}"):
+        found = sentence_in(recorded, text)
+        assert (type(found), found) == (str, text)
     assert type(sentence_in({}, "Exchange a and α.")) is str

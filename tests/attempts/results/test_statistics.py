@@ -1,11 +1,12 @@
 import json
 from collections.abc import Mapping, Sequence
 from datetime import timedelta
+from itertools import count
 
 import pytest
 from sqlalchemy import insert
 
-from service.attempts.attempt import AttemptFilter
+from service.attempts.attempt import AttemptFilter, NewAttempt
 from service.attempts.outcome import Outcome
 from service.attempts.results.statistics import exercise_statistics
 from service.attempts.storage.tables import hints
@@ -67,7 +68,7 @@ def test_the_statistics_of_no_attempts_are_zero(store: AttemptStore) -> None:
 
 def record_outcome(
     store: AttemptStore, scara: Exercise, ordinals: Sequence[int | None], learner: str = "ada",
-    part: str = "table", codes: str = "", cells: str = "",
+    part: str = "table", codes: str = "", cells: str = "", hours: float | None = None,
 ) -> None:  # fmt: skip
     """Record attempts whose part has these codes and right cells."""
     told = {
@@ -78,7 +79,10 @@ def record_outcome(
     outcome = Outcome("scara", json.dumps({part: told}))
     recorded_all(
         store,
-        [(new_attempt(scara, learner, RIGHT, n, hours=n or 0)[0], outcome) for n in ordinals],
+        [
+            (new_attempt(scara, learner, RIGHT, n, hours=hours or n or 0)[0], outcome)
+            for n in ordinals
+        ],
     )
 
 
@@ -107,6 +111,16 @@ def test_a_learning_curve_has_twelve_attempts_of_each_learner(
     ]
 
 
+def test_the_first_attempt_is_the_one_that_was_made_first(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    # Neither the order of arrival nor the ordinals decide, but the times.
+    record_outcome(store, catalogue["scara"], (1,), codes="value", hours=3)
+    record_outcome(store, catalogue["scara"], (2,), codes="half_turn", hours=2)
+    found = {each.code: each.by_attempt for each in statistics(store).misconceptions}
+    assert found == {"value": [0, 1], "half_turn": [1, 0]}
+
+
 def test_equally_common_misconceptions_are_in_alphabetical_order(
     store: AttemptStore, catalogue: Mapping[str, Exercise]
 ) -> None:
@@ -114,6 +128,63 @@ def test_equally_common_misconceptions_are_in_alphabetical_order(
         record_outcome(store, catalogue["scara"], (i,), codes=code)
     found = [each.code for each in statistics(store).misconceptions]
     assert found == ["half_turn", "sign", "value"]
+
+
+# Ordinals that no other attempt of a learner has.
+_ORDINALS = count(1)
+
+
+def with_wrong_cell(
+    scara: Exercise, digest: str, times_of: Mapping[str, int], verdict: str = "incorrect"
+) -> list[tuple[NewAttempt, Outcome]]:
+    """Return equal attempts, so many of each learner, whose cell 1/a has this verdict."""
+    told = {"verdict": "partial", "cells": {"1/a": verdict, "1/d": "correct"}, "codes": []}
+    outcome = Outcome("scara", json.dumps({"table": told}))
+    return [
+        (new_attempt(scara, learner, RIGHT, next(_ORDINALS), answers_digest=digest)[0], outcome)
+        for learner, times in times_of.items()
+        for _ in range(times)
+    ]
+
+
+def test_equal_wrong_answers_are_in_the_order_of_learners_and_of_attempts(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    groups = {
+        "a": {"ada": 1, "grace": 1},
+        "b": {"ada": 3, "grace": 1},
+        "c": {"linus": 1, "grace": 1, "ada": 1},
+        "d": {"ada": 1, "linus": 1},
+        # One learner alone has copied nothing.
+        "e": {"ada": 5},
+    }
+    new = [with_wrong_cell(catalogue["scara"], *each) for each in groups.items()]
+    new.append(with_wrong_cell(catalogue["scara"], "f", {"ada": 3, "grace": 3}, "correct"))
+    recorded_all(store, (each for group in new for each in group))
+    found = [(each.learners, each.attempts, each.among) for each in statistics(store).identical]
+    assert found == [
+        (3, 3, ["ada", "grace", "linus"]),
+        (2, 4, ["ada", "grace"]),
+        (2, 2, ["ada", "grace"]),
+        (2, 2, ["ada", "linus"]),
+    ]
+    assert {str(each.wrong) for each in statistics(store).identical} == {"['table/1/a']"}
+
+
+def test_the_statistics_name_the_first_of_very_many(
+    store: AttemptStore, catalogue: Mapping[str, Exercise]
+) -> None:
+    scara, numbers = catalogue["scara"], range(101)
+    record_outcome(store, scara, (1,), codes=" ".join(f"code_{i:03}" for i in numbers))
+    learners = [f"learner {i:03}" for i in numbers[:51]]
+    new = with_wrong_cell(scara, "0", dict.fromkeys(learners, 1))
+    for i in numbers[:50]:
+        new += with_wrong_cell(scara, f"digest {i}", {"ada": 1, "grace": 1})
+    recorded_all(store, new)
+    told = statistics(store)
+    assert [each.code for each in told.misconceptions] == [f"code_{i:03}" for i in numbers[:100]]
+    assert [each.learners for each in told.identical] == [51, *[2] * 49]
+    assert told.identical[0].among == learners[:50]
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,7 @@
 
 import io
 import re
+import tempfile
 import zipfile
 from collections.abc import Mapping
 from dataclasses import replace
@@ -141,6 +142,46 @@ def test_the_titles_and_the_learners_stay_in_view(class_: Class) -> None:
             assert pane is not None
             # One row of titles, and the learner's name, full name and address.
             assert (pane.attrib["ySplit"], pane.attrib["xSplit"]) == ("1", "3")
+
+
+def test_the_workbook_is_laid_out_to_be_read(
+    class_: Class, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # Without a disk for temporary files, as in a container that may only read.
+    monkeypatch.setattr(tempfile, "tempdir", "/nowhere")
+    fill(class_, catalogue)
+    content = class_.do(lambda it: gradebook_workbook(it, "robots"))
+    texts = sheets(content)
+    with zipfile.ZipFile(io.BytesIO(content)) as file:
+        styles = ElementTree.fromstring(file.read("xl/styles.xml"))
+        numbers = {each.attrib["numFmtId"]: each.attrib["formatCode"]
+                   for each in styles.iterfind(".//m:numFmt", _NAMES)}  # fmt: skip
+        is_bold = [font.find("m:b", _NAMES) is not None for font in
+                   styles.iterfind("m:fonts/m:font", _NAMES)]  # fmt: skip
+        formats = list(styles.iterfind("m:cellXfs/m:xf", _NAMES))
+        for i, (name, rows) in enumerate(texts.items(), start=1):
+            sheet = ElementTree.fromstring(file.read(f"xl/worksheets/sheet{i}.xml"))
+            head, *others = (
+                [formats[int(cell.get("s", "0"))] for cell in row.iterfind("m:c", _NAMES)]
+                for row in sheet.iterfind(".//m:row", _NAMES)
+            )
+            assert all(is_bold[int(each.attrib["fontId"])] for each in head)
+            told = [[numbers.get(each.attrib["numFmtId"]) for each in row] for row in others]
+            # Two assignments, each with a number and a time.
+            times = [None, "yyyy-mm-dd hh:mm"] * 2 if name == "Hand-ins" else [None] * 3
+            assert told == [[None, None, *times]] * 2
+            # Each title fits into its column; the names of persons have more room.
+            columns = [
+                (int(each.attrib["min"]), int(each.attrib["max"]), float(each.attrib["width"]))
+                for each in sheet.iterfind("m:cols/m:col", _NAMES)
+            ]
+            widths = [width for first, last, width in columns for _ in range(first, last + 1)]
+            assert len(widths) == len(rows[0])
+            assert all(
+                max(12, len(str(text))) <= width < max(32, len(str(text)) + 1)
+                for text, width in zip(rows[0], widths, strict=True)
+            )
+            assert widths[0] < widths[1] < widths[2]
 
 
 def test_only_tutors_of_the_course_get_the_workbook(graded: Class) -> None:
