@@ -14,6 +14,7 @@ MINUTES ?= 10
 SECONDS ?= 60
 SAMPLE ?= 100
 HANDINS ?= 300
+BASE ?= HEAD
 
 python  := "$(VENV)/bin/python"
 install := $(python) -m pip install --quiet --disable-pip-version-check
@@ -28,7 +29,7 @@ dev     := $(stamps)/.dev-installed
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips tables handins robots mutants durability attempts clients wheel image lock clean
+.PHONY: help install run test long thorough browser screenshots coverage lint format pages bench fuzz attack probe load sizing worst campaign rows sums policies prints slips tables handins same robots mutants durability attempts clients wheel image lock clean
 
 help: ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' Makefile
@@ -149,6 +150,9 @@ tables: $(dev) ## import 500 tables, typed by people and by programs: is it the 
 
 handins: $(dev) ## hand in HANDINS= files of all kinds as four platforms name them: are they graded right? (SEED=)
 	$(python) -m tests.submissions.handins --count "$(HANDINS)" --seed "$(SEED)"
+
+same: $(dev) ## ask this checkout and the commit BASE= the same: reports, previews, pages, commands
+	$(python) -m tests.same --base "$(BASE)"
 
 robots: $(dev) ## draw SEEDS= practice robots of each level: statement, marks, links, labels, forms
 	for level in 1 2 3 4; do $(python) -m tests.variants.robots --level $$level --seeds "$(SEEDS)" || exit; done

@@ -69,7 +69,9 @@ def main() -> int:
     sys.stdout.write(f"{search.tried} bodies, seed {options.seed}\n")
     for entry in ENTRIES:
         for i, found in enumerate(search.costliest(entry, options.most)):
-            again = search.measured(found.attack, 3)
+            # The cost of one measurement varies by a half; the least of several counts.
+            ratio, status = target.ratio(found.attack, enough=promised(found.attack))
+            again = Found(ratio, found.attack, status)
             is_within &= again.ratio <= promised(again.attack)
             text = line_of(again, target)
             sys.stdout.buffer.write(f"{text}\n".encode("utf-8", "replace"))

@@ -1,0 +1,1 @@
+"""Ask two checkouts the same, and compare what they answer, byte for byte."""
