@@ -5,7 +5,7 @@ import tempfile
 import time
 import zipfile
 import zlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -34,28 +34,42 @@ _LONGEST_PATH: Final = 1_000
 # The most characters of JSON outside texts, including the quotation marks around texts. Each may
 # take a hundred bytes of memory when it is parsed. The page sends 15 for each file.
 _MOST_MARKS: Final = 50 * MAX_FILES
+# The most files in a file of an office program. The page sends four marks for each.
+_MOST_MEMBERS: Final = 100
+_Member = Annotated[str, Field(min_length=1, max_length=200)]
 # In bytes of UTF-8; no common file system allows more.
 _LONGEST_NAME: Final = 255
 
 
 class UploadedFile(BaseModel):
-    """A file of a student, as a text or as bytes."""
+    """A file of a student: as a text, as bytes, or as the texts in a file of an office program."""
 
-    # Bytes if it is not text. Too large a file has neither.
+    # Bytes if it is not text. Too large a file has none of these.
 
     model_config = ConfigDict(extra="forbid")
 
     path: Annotated[str, Field(min_length=1, max_length=_LONGEST_PATH)]
     text: str | None = None
     base64: Base64Bytes | None = None
+    members: Annotated[dict[_Member, str], Field(max_length=_MOST_MEMBERS)] | None = None
 
     @property
     def content(self) -> bytes:
         """Return the bytes of the file."""
         # If the file is too large, zeros that exceed the limit.
+        if self.members is not None:
+            return _office_file(self.members)
         if self.text is not None:
             return self.text.encode(errors="replace")
         return b"\0" * (MAX_BODY_SIZE + 1) if self.base64 is None else self.base64
+
+
+def _office_file(members: Mapping[str, str]) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name, text in members.items():
+            archive.writestr(name, text.encode(errors="replace"))
+    return packed.getvalue()
 
 
 class ClassUpload(BaseModel):

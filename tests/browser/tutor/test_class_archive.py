@@ -1,11 +1,14 @@
 """Upload a platform's zip file of a class, and see the report."""
 
 import csv
+import io
+import random
 import re
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
 
+import openpyxl
 import pytest
 from playwright.sync_api import Page, expect
 
@@ -61,3 +64,40 @@ def test_a_platforms_zip_file_gives_gradebook_and_feedback_pages(
     broken.write_bytes(chosen.read_bytes()[:-100])
     page.get_by_label("Zip file").set_input_files(broken)
     expect(state).to_have_text("The zip file is damaged. Download it again.")
+
+
+def workbook(rows: list[str], dice: random.Random) -> bytes:
+    """Return a workbook with a picture: 12 kB that no compression makes smaller."""
+    book = openpyxl.Workbook()
+    for row in rows:
+        book.active.append([cell.strip() for cell in row.split(",")])
+    packed = io.BytesIO()
+    book.save(packed)
+    with zipfile.ZipFile(packed, "a") as archive:
+        archive.writestr("xl/media/image1.png", dice.randbytes(12_000))
+    return packed.getvalue()
+
+
+@pytest.mark.long
+def test_a_class_of_120_workbooks_with_pictures_is_graded(
+    visit: Callable[..., Visit], service: str, tmp_path: Path
+) -> None:
+    dice = random.Random(5)
+    chosen = tmp_path / "submissions.zip"
+    with zipfile.ZipFile(chosen, "w", zipfile.ZIP_DEFLATED) as archive:
+        for number in range(120):
+            name = f"Student {number}_{1000 + number}_assignsubmission_file/table.xlsx"
+            archive.writestr(name, workbook(RIGHT.splitlines(), dice))
+    page = visit().page
+    page.goto(f"{service}/tutor/class")
+    page.get_by_label("Exercise").select_option("planar-rr")
+    expect(page.get_by_label("Part").locator("option")).not_to_have_count(1)
+    page.get_by_label("Part").select_option("table")
+    page.get_by_label("Zip file").set_input_files(chosen)
+    state = page.get_by_role("status")
+    expect(state).to_have_text("120 submissions. The service does not keep them.", timeout=60_000)
+    with saved(page, "Gradebook", tmp_path).open(encoding="utf-8") as book:
+        grades = [line["Grade"] for line in csv.DictReader(book)]
+    assert len(grades) == 120
+    assert len(set(grades)) == 1
+    assert float(grades[0]) > 0

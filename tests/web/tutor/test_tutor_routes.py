@@ -1,6 +1,7 @@
 """Test the tutor's pages: access, limits and results."""
 
 import asyncio
+import csv
 import gzip
 import io
 import json
@@ -11,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
+import openpyxl
 import pytest
 from typer.testing import CliRunner
 
@@ -82,7 +84,7 @@ class Tutor:
         assert answer.status_code == 200
         return dict(answer.json())
 
-    def grade(self, files: list[dict[str, str]], **more: Any) -> httpx.Response:
+    def grade(self, files: list[dict[str, Any]], **more: Any) -> httpx.Response:
         body = gzip.compress(json.dumps({"exercise": "planar-rr", "files": files, **more}).encode())
         return self.ask("POST", "/tutor/class", content=body)
 
@@ -318,6 +320,33 @@ def test_a_class_is_graded_as_on_the_command_line(tutor: Tutor, tmp_path: Path) 
     assert {name: archive.read(name).decode() for name in archive.namelist()} == written
 
 
+def test_the_texts_of_an_office_file_are_the_file(tutor: Tutor) -> None:
+    book = openpyxl.Workbook()
+    for row in RIGHT.splitlines():
+        book.active.append(row.split("\t"))
+    packed = io.BytesIO()
+    book.save(packed)
+    archive = zipfile.ZipFile(packed)
+    members = {
+        name: "" if "theme" in name else archive.read(name).decode() for name in archive.namelist()
+    }
+    macros = members | {"xl/vbaProject.bin": ""}
+    answer = tutor.grade(
+        [
+            {"path": "Ada_1_assignsubmission_file/hw.xlsx", "members": members},
+            {"path": "Bob_2_assignsubmission_file/hw.xlsx", "members": macros},
+            {"path": "Eve_3_assignsubmission_file/hw.xlsx", "members": {"a": ""}},
+            {"path": "Mia_4_assignsubmission_file/hw.tsv", "text": RIGHT},
+        ],
+        part="table",
+    )
+    grades = zipfile.ZipFile(io.BytesIO(answer.content)).read("grades.csv").decode()
+    found = {line["Identifier"]: line["Grade"] for line in csv.DictReader(io.StringIO(grades))}
+    text = found.pop("Participant 4")
+    assert float(text) > 0
+    assert found == {"Participant 1": text, "Participant 2": "", "Participant 3": ""}
+
+
 def test_an_unusable_upload_is_refused(tutor: Tutor) -> None:
     refused = [
         tutor.ask("POST", "/tutor/class", content=b"no gzip"),
@@ -332,6 +361,8 @@ def test_an_unusable_upload_is_refused(tutor: Tutor) -> None:
         ),
         tutor.grade([{"path": "a", "text": ""}, {"path": "a/b", "text": ""}]),
         tutor.grade([{"path": f"{i}.json", "text": ""} for i in range(501)]),
+        tutor.grade([{"path": "a.xlsx", "members": {f"{i}.xml": "" for i in range(101)}}]),
+        tutor.grade([{"path": "a.xlsx", "members": {"a" * 201: ""}}]),
     ]
     assert {each.status_code for each in refused} == {422}
     assert {each.headers["content-type"] for each in refused} == {"application/problem+json"}

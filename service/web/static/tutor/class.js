@@ -10,6 +10,12 @@ import { archiveOf, bytesOf, entries, textOf } from "./zip.js";
 const MOST_PACKED = 256 * 1024;
 const LARGEST_FILE = 256 * 1024;
 const MOST_FILES = 2000;
+// Files of office programs are zip files, which may have pictures in them. The limits on one of them and on the texts
+// in it, in bytes, and on the number of texts.
+const OFFICE = /\.(?:xlsx|docx|ods)$/i;
+const LARGEST_OFFICE = 8 * 1024 * 1024;
+const LARGEST_TEXTS = 512 * 1024;
+const MOST_TEXTS = 100;
 // The limits, in bytes, on a chosen archive, and on all its unpacked files together.
 const LARGEST_ARCHIVE = 200 * 1024 * 1024;
 const MOST_UNPACKED = 8 * 1024 * 1024;
@@ -92,7 +98,8 @@ async function unpacked(file) {
 }
 
 /**
- * Return the files in the form that the service takes: as text if they are UTF-8, otherwise as bytes.
+ * Return the files in the form that the service takes: as text if they are UTF-8, as the texts in a file of an
+ * office program, otherwise as bytes.
  *
  * @param {ClassFile[]} files
  */
@@ -100,14 +107,43 @@ async function sent(files) {
   let left = MOST_UNPACKED;
   const all = [];
   for (const { path, read } of files) {
-    const bytes = await read(LARGEST_FILE).catch(() => {
+    const isOffice = OFFICE.test(path);
+    const bytes = await read(isOffice ? LARGEST_OFFICE : LARGEST_FILE).catch(() => {
       throw new UnusableFilesError(worded("The file {path} cannot be read.", { path }));
     });
-    left -= bytes?.length ?? 0;
+    const members = bytes && isOffice ? await texts(bytes.slice().buffer) : null;
+    const known = members ? { members } : bytes && bytes.length <= LARGEST_FILE ? content(bytes) : {};
+    left -= Object.values(members ?? known).reduce((length, each) => length + each.length, 0);
     if (left < 0) throw new UnusableFilesError(TOO_LARGE);
-    all.push({ path, ...(bytes && content(bytes)) });
+    all.push({ path, ...known });
   }
   return all;
+}
+
+/**
+ * Return the texts in a file of an office program, by their names, or null if it is none. What students write is in
+ * them; packed together, they need a tenth of the files, so that those of a whole class fit. Pictures and themes stay
+ * empty: only their names tell the service what is in the file.
+ *
+ * @param {ArrayBuffer} file
+ * @returns {Promise<Record<string, string> | null>}
+ */
+async function texts(file) {
+  try {
+    /** @type {Record<string, string>} */
+    const found = {};
+    let left = LARGEST_TEXTS;
+    for (const [name, entry] of entries(file)) {
+      const isText = /(?:\.xml|\.rels|^mimetype)$/.test(name) && !name.includes("theme/");
+      const bytes = isText && entry.isReadable ? await bytesOf(file, entry, left) : new Uint8Array();
+      if (!bytes || (isText && !entry.isReadable)) return null;
+      left -= bytes.length;
+      found[name] = new TextDecoder("utf-8", { fatal: true, ignoreBOM: true }).decode(bytes);
+    }
+    return Object.keys(found).length > MOST_TEXTS ? null : found;
+  } catch {
+    return null;
+  }
 }
 
 /** @param {Uint8Array<ArrayBuffer>} bytes */
