@@ -86,8 +86,17 @@ def _matlab(text: str) -> Iterator[str]:
         ):
             # The script changes a matrix or a variable in a way that this function cannot follow.
             return
-        matrices.append("\n".join([*values, matrix]))
+        matrices.append("\n".join([*values, *_comments_above(text[:before]), matrix]))
     yield from matrices
+
+
+def _comments_above(text: str) -> list[str]:
+    # The comment directly above a matrix may say the order and the units of its columns.
+    lines = text.rstrip("\r\n").splitlines()
+    first = len(lines)
+    while first and lines[first - 1].lstrip().startswith("%"):
+        first -= 1
+    return lines[first:]
 
 
 def _values_given(text: str, letters: set[str]) -> list[str] | None:

@@ -42,6 +42,17 @@ def test_a_named_identity_is_read(text: str, size: int) -> None:
     assert values(text.replace("#", str(size)), size) == unit(size)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import numpy as np\nT = np.eye(4)", "T = np.eye(4)\nprint(T)",
+        "T = eye(4); % pose\ndisp(T)", "% the pose\nT = eye(4)",
+    ],
+)  # fmt: skip
+def test_a_program_that_makes_only_the_identity_is_read(text: str) -> None:
+    assert values(text, 4) == unit(4)
+
+
 @pytest.mark.parametrize("text", ["I", "T = I", "$I$", r"\mathbf{I}"])
 def test_an_identity_without_a_size_has_the_size_that_is_asked_for(text: str) -> None:
     assert values(text, 3) == unit(3)

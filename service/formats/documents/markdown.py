@@ -30,7 +30,7 @@ def _pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterat
 
 def _line(submission: GradedSubmission, translation: Translation | None) -> str:
     name = escaped(submission.name)
-    if not submission.is_graded:
+    if not submission.is_complete:
         return f"| {name} | | {told(say('not graded'), translation)} | ✗ |\n"
     earned = points(submission.points, submission.max_points)
     sign = "✓" if submission.passed else "✗"

@@ -6,10 +6,12 @@ error, because the unit may apply to the table. So is a sentence that may correc
 
 import re
 from bisect import bisect_left
+from collections import Counter
 from collections.abc import Callable
 from typing import Final
 
 from service.expressions.errors import Note, Span
+from service.grids.cutting.blanks import split_blanks
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText, joined
 from service.translations import say
@@ -32,6 +34,9 @@ _FEW_WORDS: Final = re.compile(
     r"|[A-Z]\w{0,3} (?:[Mm]atri[xz]|[Mm]atrice|[Tt]able|[Tt]ab(?:elle|la|leau)))\s?[.!:]?"
 )
 _MOST_WORDS: Final = 2
+_FEWEST_ROWS: Final = 2
+# A function's call in a program.
+_CALL: Final = re.compile(r"\w\(")
 # Signs of a row with several values.
 _SEVERAL: Final = re.compile(r"[\s,;\[\]]")
 # Signs of a formula, a row or a program.
@@ -100,7 +105,7 @@ def without_fence(source: SourceText) -> SourceText:
     around = [*lines[:first], *lines[last + 1 :]]
     if first + 1 == last or any(line.text.strip() and not _is_prose(line.text) for line in around):
         return source
-    _check_sentences(lines[:first], lines[last + 1 :])
+    check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first + 1], lines[last - 1])
 
 
@@ -151,7 +156,7 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     around = [*lines[:first], *lines[last + 1 :]]
     if not around or not all(_is_prose(line.text.strip(_PADDING)) for line in around):
         return source, ()
-    _check_sentences(lines[:first], lines[last + 1 :])
+    check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first], lines[last]), (left_aside(around[0].whole),)
 
 
@@ -176,10 +181,25 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
                 return lambda line: line.count(",") > 1
             if len(rows) > 1 and min(rows) > 1:
                 return lambda line: any(map(line.__contains__, separator))
+        if not any(sign in text for separator in _SEPARATORS[:-1] for sign in separator) and (
+            of_columns := _row_test_of_columns(lines)
+        ):
+            return of_columns
     heading = lines[0].text if len(lines) > 1 and _has_heading(lines) else None
     return lambda line: (
         line != heading and (not _TITLE.match(line) or "(" in line or bool(_CONTROL.match(line)))
     )
+
+
+def _row_test_of_columns(lines: list[SourceText]) -> Callable[[str], bool] | None:
+    # Between blanks, the rows are the lines with the most frequent number of values.
+    counts = {line.text: len(split_blanks(line).elements) for line in lines}
+    numbers = Counter(counts[line.text] for line in lines if counts[line.text] > _MOST_WORDS)
+    [(width, rows)] = numbers.most_common(1) or [(0, 0)]
+    others = [line for line, count in counts.items() if count != width]
+    if rows < _FEWEST_ROWS or not others or any(map(_CALL.search, others)):
+        return None
+    return lambda line: counts.get(line) == width
 
 
 def _has_heading(lines: list[SourceText]) -> bool:
@@ -213,7 +233,7 @@ def _is_few_words(line: str) -> bool:
     return bool(_FEW_WORDS.fullmatch(line)) and not _PARAMETER.search(line.lower())
 
 
-def _check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
+def check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
     """Raise GridError if a sentence before or after the table may change its meaning."""
     for line in (*before, *after):
         check_units(line)

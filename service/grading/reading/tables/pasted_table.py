@@ -2,6 +2,7 @@
 
 # Spans count in the whole pasted text.
 
+import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -34,13 +35,15 @@ from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
 from service.grids.cutting.source_text import joined
-from service.grids.scripts.titles import check_units, left_aside
+from service.grids.scripts.titles import check_sentences, check_units, left_aside
 from service.kinematics.chain import COLUMNS, THETA, D
 from service.translations import listed, say, say_count
 
 ColumnOrder = tuple[int | None, Header]
 # The most rows above the headers that do not belong to the table.
 _MOST_NAMES: Final = 3
+_WHOLE: Final = re.compile(r"\d{1,12}")
+_WORD: Final = re.compile(r"[^\W\d_]{3}")
 _OFFSETS: Final = (column_headers.OFFSET, column_headers.THETA_OFFSET)
 
 
@@ -110,16 +113,17 @@ def table_of(
         grid, findings = _turned(grid)
     grid = with_units_in_headers(_below_names(grid, reader))
     found = _found_headers(grid.rows[0], reader)
+    headings = int(found is not None)
+    fewest = headings + len(reader.vocabulary.joints)
+    grid = _above_remarks(grid.without_half_row(fewest), fewest, reader)
     named = None if found is not None else columns_in_comments(comments)
     if found is None:
         columns, labels, more = _columns_in_order(grid, order, named)
     else:
         found = _with_meanings(found)
         columns, labels, more = _columns_by_headers(grid.rows[0], found)
-    headings = int(found is not None)
-    grid = grid.without_half_row(headings + len(reader.vocabulary.joints))
     if labels is None:
-        grid = grid.with_empty_rows(headings + len(reader.vocabulary.joints))
+        grid = grid.with_empty_rows(fewest)
     body = grid.rows[headings:]
     findings = (*findings, *more)
     if not body:
@@ -140,18 +144,43 @@ def table_of(
 
 
 def _below_names(grid: Grid, reader: Reader) -> Grid:
-    # Rows above the headers are no rows of the table, but the name of a student or a homework, if
-    # something in each of them is unreadable.
-    first = next((i for i, row in enumerate(grid.rows) if _names_all_columns(row)), 0)
+    # Rows above the headers are no rows of the table, but the name of a student or a homework, or
+    # the headers in words above those in symbols, if something in each of them is unreadable.
+    named = [i for i, row in enumerate(grid.rows[: _MOST_NAMES + 1]) if _names_all_columns(row)]
+    first = max(named, default=0)
     above = grid.rows[:first]
-    if not 0 < first <= _MOST_NAMES or any(
+    if not above or any(
         all(reader.read(cell.text, "number").readable for cell in row) for row in above
     ):
         return grid
     for row in above:
+        headers = [read_header(cell.text) for cell in row]
+        if any(header and header.unit for header in headers):
+            return grid  # the units would be lost
         check_units(joined(row, row[0].at))
-    note = left_aside(place_of(above[0]))
-    return replace(grid, rows=grid.rows[first:], notes=(*grid.notes, note))
+    return replace(
+        grid, rows=grid.rows[first:], notes=(*grid.notes, left_aside(place_of(above[0])))
+    )
+
+
+def _above_remarks(grid: Grid, fewest: int, reader: Reader) -> Grid:
+    # Rows below the table are a remark or a name if they begin with a word or have several, and
+    # hold nothing that can be read but whole numbers. At least ``fewest`` rows stay.
+    last = len(grid.rows)
+    while last > fewest and _is_remark(grid.rows[last - 1], reader):
+        last -= 1
+    below = grid.rows[last:]
+    if not below:
+        return grid
+    check_sentences([], [joined(row, row[0].at) for row in below])
+    return replace(grid, rows=grid.rows[:last], notes=(*grid.notes, left_aside(place_of(below[0]))))
+
+
+def _is_remark(row: Sequence[GridCell], reader: Reader) -> bool:
+    cells = [cell for cell in row if cell.text and not _WHOLE.fullmatch(cell.text)]
+    words = [cell for cell in cells if _WORD.search(cell.text)]
+    is_wordy = len(words) > 1 or (bool(words) and words[0] is cells[0])
+    return is_wordy and not any(reader.read(cell.text, "number").readable for cell in cells)
 
 
 def _names_all_columns(row: Sequence[GridCell]) -> bool:
