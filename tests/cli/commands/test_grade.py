@@ -548,6 +548,20 @@ def test_the_page_of_a_class_leads_to_each_file_that_a_person_grades(
     assert (tmp_path / "out" / unquote(link)).resolve() == photo
 
 
+@pytest.mark.parametrize(
+    ("name", "told", "untold"),
+    [("markdown", "not graded", "0 %"), ("html", "Not graded", "Not passed")],
+)
+def test_what_was_not_read_has_no_score(
+    name: str, told: str, untold: str, run: Run, tmp_path: Path
+) -> None:
+    (tmp_path / "ada.csv").write_text("see the attached file")
+    result = run("grade", tmp_path / "ada.csv", "--exercise", "planar-rrr", "--part", "table",
+                 "--format", name)  # fmt: skip
+    assert told in result.stdout
+    assert untold not in result.stdout
+
+
 def test_grades_and_feedback_go_back_to_moodle(run: Run, tmp_path: Path) -> None:
     table = "a, alpha, d, theta\n0, 0, 0, q1\nl1, 0, 0, q2\nl2, 0, 0, q3\nl3, 0, 0, 0\n"
     with zipfile.ZipFile(tmp_path / "all.zip", "w") as archive:
