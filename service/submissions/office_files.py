@@ -650,7 +650,7 @@ _BREAK: Final = re.compile(
     r"(?![A-Za-z0-9-])[^<>]{0,2000}>",
     re.IGNORECASE,
 )
-# What begins a part of a page that nobody sees.
+# The start of an element that a browser does not show.
 _HIDDEN: Final = re.compile(r"<(head|style|script|title)(?![A-Za-z0-9-])|<!--|<!", re.IGNORECASE)
 _TAG: Final = re.compile(r"</?[A-Za-z][^<>]{0,2000}>")
 _RAISED: Final = re.compile(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)

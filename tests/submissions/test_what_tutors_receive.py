@@ -83,6 +83,29 @@ def test_an_unreadable_row_is_no_remark_while_rows_are_missing(
     assert [row.verdict.value for row in table(catalogue, text).rows][3] == "unreadable"
 
 
+@pytest.mark.parametrize("label", ["e", "tool", "Werkzeug", "Tool TCP"])
+def test_a_last_row_of_numbers_is_no_remark(label: str, catalogue: Mapping[str, Exercise]) -> None:
+    rows = ("i;a;alpha;d;theta", "1;0;0;0;q1", "2;l1;0;0;q2", "3;l2;0;0;q3")
+    text = "\n".join([*rows, f"{label};0;0;0;0"])
+    [report, *_] = grade(catalogue["planar-rrr"], Submission({"table": text})).parts
+    # Only the length of the tool is wrong.
+    assert [cell.verdict.value for cell in report.rows[3].cells] == [
+        "incorrect", "correct", "correct", "correct",
+    ]  # fmt: skip
+
+
+def test_a_row_with_a_value_too_many_is_not_left_aside(catalogue: Mapping[str, Exercise]) -> None:
+    text = "1 0 0 0 q1\n2 l1 0 0 q2\n3 l2 0 0 q3\nTool TCP 0 0 0 0"
+    [report, *_] = grade(catalogue["planar-rrr"], Submission({"table": text})).parts
+    assert [each.code for each in report.feedback] == ["ambiguous_columns"]
+
+
+def test_an_unreadable_row_with_a_label_is_no_remark(catalogue: Mapping[str, Exercise]) -> None:
+    rows = ("i;a;alpha;d;theta", "1;0;0;0;q1", "2;l1;0;0;q2", "3;l2;0;0;q3", "e;foo;bar;baz;qux")
+    [report, *_] = grade(catalogue["planar-rrr"], Submission({"table": "\n".join(rows)})).parts
+    assert report.rows[3].verdict.value == "unreadable"
+
+
 @pytest.mark.parametrize("above", ["% theta d a alpha", "% theta [rad], d [m], a [m], alpha [rad]"])
 def test_the_comment_above_a_matrix_in_a_matlab_file_says_the_order(
     above: str, catalogue: Mapping[str, Exercise]

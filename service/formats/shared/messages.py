@@ -101,7 +101,7 @@ def messages(part: PartReport, translation: Translation | None = None) -> Iterat
 
 
 def _once_for_each_row(found: Iterable[_Placed]) -> Iterator[_Placed]:
-    # The same message on cells of one row, one after the other, is told once.
+    # If neighbouring cells of a row have the same message, tell it once.
     def same(each: _Placed) -> object:
         feedback, places, verdict = each
         is_on_a_cell = len(places) == 1 and places[0].cell is not None

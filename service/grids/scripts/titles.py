@@ -35,6 +35,8 @@ _FEW_WORDS: Final = re.compile(
 )
 _MOST_WORDS: Final = 2
 _FEWEST_ROWS: Final = 2
+# A number that is no student's.
+_NUMBER: Final = re.compile(r"(?<![\w.])\d{1,4}(?:\.\d{1,12})?(?!\w)")
 # A function's call in a program.
 _CALL: Final = re.compile(r"\w\(")
 # Signs of a row with several values.
@@ -199,6 +201,8 @@ def _row_test_of_columns(lines: list[SourceText]) -> Callable[[str], bool] | Non
     others = [line for line, count in counts.items() if count != width]
     if rows < _FEWEST_ROWS or not others or any(map(_CALL.search, others)):
         return None
+    if any(len(_NUMBER.findall(line)) > 1 for line in others):
+        return None  # it may be a row with a value too few or too many
     return lambda line: counts.get(line) == width
 
 

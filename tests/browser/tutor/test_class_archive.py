@@ -32,6 +32,14 @@ def saved(page: Page, button: str, folder: Path) -> Path:
     return file
 
 
+def upload(page: Page, service: str, chosen: Path) -> None:
+    page.goto(f"{service}/tutor/class")
+    page.get_by_label("Exercise").select_option("planar-rr")
+    expect(page.get_by_label("Part").locator("option")).not_to_have_count(1)
+    page.get_by_label("Part").select_option("table")
+    page.get_by_label("Zip file").set_input_files(chosen)
+
+
 @pytest.mark.long
 def test_a_platforms_zip_file_gives_gradebook_and_feedback_pages(
     visit: Callable[..., Visit], service: str, tmp_path: Path
@@ -41,11 +49,7 @@ def test_a_platforms_zip_file_gives_gradebook_and_feedback_pages(
         for name, text in MOODLE.items():
             archive.writestr(name, text)
     page = visit().page
-    page.goto(f"{service}/tutor/class")
-    page.get_by_label("Exercise").select_option("planar-rr")
-    expect(page.get_by_label("Part").locator("option")).not_to_have_count(1)
-    page.get_by_label("Part").select_option("table")
-    page.get_by_label("Zip file").set_input_files(chosen)
+    upload(page, service, chosen)
     state = page.get_by_role("status")
     expect(state).to_have_text("3 submissions. The service does not keep them.")
     with saved(page, "Gradebook", tmp_path).open(encoding="utf-8") as book:
@@ -89,11 +93,7 @@ def test_a_class_of_120_workbooks_with_pictures_is_graded(
             name = f"Student {number}_{1000 + number}_assignsubmission_file/table.xlsx"
             archive.writestr(name, workbook(RIGHT.splitlines(), dice))
     page = visit().page
-    page.goto(f"{service}/tutor/class")
-    page.get_by_label("Exercise").select_option("planar-rr")
-    expect(page.get_by_label("Part").locator("option")).not_to_have_count(1)
-    page.get_by_label("Part").select_option("table")
-    page.get_by_label("Zip file").set_input_files(chosen)
+    upload(page, service, chosen)
     state = page.get_by_role("status")
     expect(state).to_have_text("120 submissions. The service does not keep them.", timeout=60_000)
     with saved(page, "Gradebook", tmp_path).open(encoding="utf-8") as book:

@@ -43,6 +43,7 @@ ColumnOrder = tuple[int | None, Header]
 # The most rows above the headers that do not belong to the table.
 _MOST_NAMES: Final = 3
 _WHOLE: Final = re.compile(r"\d{1,12}")
+_SHORT: Final = re.compile(r"\d{1,4}")
 _WORD: Final = re.compile(r"[^\W\d_]{3}")
 _OFFSETS: Final = (column_headers.OFFSET, column_headers.THETA_OFFSET)
 
@@ -111,11 +112,11 @@ def table_of(
     findings: tuple[Finding, ...] = ()
     if _has_parameters_in_rows(grid):
         grid, findings = _turned(grid)
-    grid = with_units_in_headers(_below_names(grid, reader))
+    grid = with_units_in_headers(_without_names_above(grid, reader))
     found = _found_headers(grid.rows[0], reader)
     headings = int(found is not None)
     fewest = headings + len(reader.vocabulary.joints)
-    grid = _above_remarks(grid.without_half_row(fewest), fewest, reader)
+    grid = _without_remarks_below(grid.without_half_row(fewest), fewest, reader)
     named = None if found is not None else columns_in_comments(comments)
     if found is None:
         columns, labels, more = _columns_in_order(grid, order, named)
@@ -143,7 +144,7 @@ def table_of(
     return PastedTable(rows, headers, (*notes, *findings), bool(found or named))
 
 
-def _below_names(grid: Grid, reader: Reader) -> Grid:
+def _without_names_above(grid: Grid, reader: Reader) -> Grid:
     # Rows above the headers are no rows of the table, but the name of a student or a homework, or
     # the headers in words above those in symbols, if something in each of them is unreadable.
     named = [i for i, row in enumerate(grid.rows[: _MOST_NAMES + 1]) if _names_all_columns(row)]
@@ -163,7 +164,7 @@ def _below_names(grid: Grid, reader: Reader) -> Grid:
     )
 
 
-def _above_remarks(grid: Grid, fewest: int, reader: Reader) -> Grid:
+def _without_remarks_below(grid: Grid, fewest: int, reader: Reader) -> Grid:
     # Rows below the table are a remark or a name if they begin with a word or have several, and
     # hold nothing that can be read but whole numbers. At least ``fewest`` rows stay.
     last = len(grid.rows)
@@ -177,10 +178,20 @@ def _above_remarks(grid: Grid, fewest: int, reader: Reader) -> Grid:
 
 
 def _is_remark(row: Sequence[GridCell], reader: Reader) -> bool:
+    # A row that has a label, or as many numbers as words, is a row of the table. A number with many
+    # digits is the student's.
+    first = next((cell for cell in row if cell.text), None)
+    if first is None or is_label(first.text):
+        return False
     cells = [cell for cell in row if cell.text and not _WHOLE.fullmatch(cell.text)]
     words = [cell for cell in cells if _WORD.search(cell.text)]
-    is_wordy = len(words) > 1 or (bool(words) and words[0] is cells[0])
-    return is_wordy and not any(reader.read(cell.text, "number").readable for cell in cells)
+    numbers = [cell for cell in row if _SHORT.fullmatch(cell.text)]
+    is_wordy = len(words) > 1 or words[:1] == [first]
+    return (
+        is_wordy
+        and len(numbers) < len(words)
+        and not any(reader.read(cell.text, "number").readable for cell in cells)
+    )
 
 
 def _names_all_columns(row: Sequence[GridCell]) -> bool:
