@@ -196,4 +196,7 @@ def _parallel_twist(target: Matrices, z_sign: Numbers) -> Numbers:
 
 def _rows(a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers) -> Numbers:
     # (H, K, 4, L).
-    return np.stack(np.broadcast_arrays(a, alpha, d, theta), axis=2)
+    hypotheses, candidates, samples = np.broadcast(a, alpha, d, theta).shape
+    rows = np.empty((hypotheses, candidates, 4, samples))
+    rows[:, :, A], rows[:, :, ALPHA], rows[:, :, D], rows[:, :, THETA] = a, alpha, d, theta
+    return rows

@@ -35,6 +35,8 @@ from service.kinematics.tolerances import (
 )
 from service.kinematics.transforms import Matrices, Numbers, identity, inverse, rot_x
 
+# The columns of the two angles in a row.
+_ANGLES = slice(ALPHA, None, THETA - ALPHA)
 BEAM_WIDTH = 8
 MAX_CONTINUATIONS = 20
 # A hypothesis that costs this much more than the best is dropped: it needs as many more slips.
@@ -50,6 +52,8 @@ ROW_COSTS = WRONG_CELL * np.array([0.0, 1.0, 1.9, 2.7, 3.4])
 BESIDES = 0.2
 NOT_ZERO = 1e-9
 SPARING = 4
+# For each hypothesis that is continued, the ones before it.
+_EARLIER = np.tri(MAX_CONTINUATIONS + 2 * SPARING, k=-1, dtype=np.bool_)
 # The weight of the cost between hypotheses that lose the same marks: the cheaper one is kept.
 SAME_LOSS = 1e-3
 NO_SUCH_CELL = 3.0
@@ -190,8 +194,9 @@ def _next_beam(
             if freedom.anywhere:
                 pose[..., :3, 3] = 0.0
         cost = cost + departure(relative, length_scale)
-    sparing = _distinct(pose, lost + SAME_LOSS * cost, length_scale)[:SPARING]
-    kept = _with_others(_distinct(pose, cost, length_scale), sparing)
+    is_same = _same_frames(pose, length_scale)
+    sparing = _distinct(is_same, lost + SAME_LOSS * cost)[:SPARING]
+    kept = _with_others(_distinct(is_same, cost), sparing)
     paths = [(*beam.paths[parents[i]], (expected[i], pose[i])) for i in kept]
     return _Beam(pose[kept], cost[kept], lost[kept], paths, begun.at(kept))
 
@@ -211,7 +216,7 @@ def _counts(
 ) -> tuple[_RowCounts, _RowCounts]:
     # Counts wrong, unread and nonzero cells: first among a and α, then among d and θ.
     of_first = expected[..., 0] / np.array([length_scale, 1.0, length_scale, 1.0])
-    of_first[:, [ALPHA, THETA]] = np.sin(of_first[:, [ALPHA, THETA]] / 2)
+    of_first[:, _ANGLES] = np.sin(of_first[:, _ANGLES] / 2)
     # A constant beside a wrong joint variable does not count.
     known = (np.abs(of_first) > NOT_ZERO) & ~row.wrong_regardless
     if free_angle:
@@ -271,9 +276,11 @@ def _slid(pose: Matrices, freedom: BaseFreedom, distance: Numbers) -> Matrices:
 
 
 def _wrong_cells(row: RowConstants, rows: Numbers, length_scale: float) -> NDArray[np.bool_]:
-    error = np.abs(row.written - rows)
-    turns = error[:, [ALPHA, THETA]] / (2 * np.pi)
-    error[:, [ALPHA, THETA]] = 2 * np.pi * np.abs(turns - np.round(turns))
+    error = row.written - rows
+    np.abs(error, out=error)
+    turns = error[:, _ANGLES] / (2 * np.pi)
+    turns -= np.round(turns)
+    error[:, _ANGLES] = 2 * np.pi * np.abs(turns, out=turns)
     scale = np.array([length_scale, 1.0, length_scale, 1.0])
     # The cells from which this one is computed may be rounded, too.
     slack = np.where(row.slack > 0, np.maximum(row.slack, ROUNDED_CELL * scale), EXACT_CELL * scale)
@@ -293,10 +300,16 @@ def departure(pose: Matrices, length_scale: float) -> Numbers:
     return np.asarray(cost + MOVED * (turned.astype(np.float64) + moved))
 
 
-def _distinct(pose: Matrices, cost: Numbers, length_scale: float) -> NDArray[np.int_]:
+def _same_frames(pose: Matrices, length_scale: float) -> NDArray[np.bool_]:
+    # The pairs (H, H) of hypotheses with the same frame in the first sample.
+    frames = pose[:, 0, :3].reshape(len(pose), -1)
+    difference = frames[:, None] - frames[None]
+    np.abs(difference, out=difference)
+    return np.asarray(~(difference.max(axis=-1) > SAME_HYPOTHESIS * max(1.0, length_scale)))
+
+
+def _distinct(is_same: NDArray[np.bool_], cost: Numbers) -> NDArray[np.int_]:
+    # The best hypotheses, each only once.
     order = np.argsort(cost, kind="stable")
-    frames = pose[order, 0, :3].reshape(len(order), -1)
-    difference = np.abs(frames[:, None] - frames[None]).max(axis=-1)
-    equal = ~(difference > SAME_HYPOTHESIS * max(1.0, length_scale))
-    earlier = np.tri(len(order), k=-1, dtype=np.bool_)
-    return np.asarray(order[~(equal & earlier).any(axis=1)][:BEAM_WIDTH])
+    is_again = (is_same[order[:, None], order] & _EARLIER[: len(order), : len(order)]).any(axis=1)
+    return np.asarray(order[~is_again][:BEAM_WIDTH])
