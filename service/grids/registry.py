@@ -116,7 +116,7 @@ def _limited(text: str) -> SourceText:
         )
         raise GridError("too_long", message, (most, len(text)))
     plain = SourceText.of(text)
-    plain = SourceText(text.translate(FULL_WIDTH), plain.starts, plain.ends)
+    plain = replace(plain, text=text.translate(FULL_WIDTH))
     source = without_fence(plain.strip("\ufeff"))
     if separator := _SEPARATOR_LINE.match(source.text):
         source = source.cut(separator.end(), len(source.text))

@@ -156,7 +156,7 @@ def without_remarks(source: SourceText) -> SourceText:
     pieces: list[SourceText] = []
     start = 0
     for i, end in _remarks(source.text):
-        blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
+        blank = source.cut(i, i + 1).spelled(" ")
         pieces += [source.cut(start, i), blank]
         start = end
     if not pieces:

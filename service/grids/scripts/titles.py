@@ -105,7 +105,9 @@ def without_fence(source: SourceText) -> SourceText:
         return source
     first, last = fences
     around = [*lines[:first], *lines[last + 1 :]]
-    if first + 1 == last or any(line.text.strip() and not _is_prose(line.text) for line in around):
+    if first + 1 == last or any(
+        line.text.strip() and not is_sentence(line.text) for line in around
+    ):
         return source
     check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first + 1], lines[last - 1])
@@ -156,7 +158,7 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
         return source, ()
     first, last = rows[0], rows[-1]
     around = [*lines[:first], *lines[last + 1 :]]
-    if not around or not all(_is_prose(line.text.strip(_PADDING)) for line in around):
+    if not around or not all(is_sentence(line.text.strip(_PADDING)) for line in around):
         return source, ()
     check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first], lines[last]), (left_aside(around[0].whole),)
@@ -219,11 +221,11 @@ def _has_heading(lines: list[SourceText]) -> bool:
 
 
 def _is_padded(line: str) -> bool:
-    return line.rstrip("\r\n ")[-2:] in _EMPTY_CELLS and _is_prose(line.strip(_PADDING))
+    return line.rstrip("\r\n ")[-2:] in _EMPTY_CELLS and is_sentence(line.strip(_PADDING))
 
 
-def _is_prose(line: str) -> bool:
-    """True if a line has words, and no signs of a formula or of headers."""
+def is_sentence(line: str) -> bool:
+    """True if a line has words, and no signs of a formula, of headers or of cells."""
     plain = _INLINE.sub(" ", _COMMAND.sub(r"\1 ", line)).strip()
     if _is_few_words(plain) or (not plain and _ONLY_COMMAND.match(line)):
         return True
