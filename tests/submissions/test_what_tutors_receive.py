@@ -54,6 +54,48 @@ def test_lines_around_a_right_table_cost_nothing(
     assert report.points == report.max_points, report.feedback
 
 
+SENTENCES = (
+    "This is the answer", "I hope it's right", "Das ist meine Lösung", "Voilà la réponse finale",
+    "Esta es la respuesta", "Danke und viele Grüße", "Best regards, Anna Meier", "Page 3 of 4",
+    "Hans Peter Schmidt 1234567", "Seite 2 von 3", "第 2 页", "- 3 -", "这是我的 答案 张伟 谢谢",
+)  # fmt: skip
+POSE = """c123 -s123 0 l1*c1+l2*c12+l3*c123
+s123 c123 0 l1*s1+l2*s12+l3*s123
+0 0 1 0
+0 0 0 1"""
+
+
+@pytest.mark.parametrize("gap", ["\n", "\n\n"])
+@pytest.mark.parametrize("sentence", SENTENCES)
+def test_a_sentence_with_as_many_words_as_a_row_has_values_costs_nothing(
+    sentence: str, gap: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    for text in (f"{UNLABELLED}{gap}{sentence}", f"{sentence}{gap}{UNLABELLED}"):
+        report = table(catalogue, text)
+        assert report.points == report.max_points, report.feedback
+    for text in (f"{POSE}{gap}{sentence}", f"{sentence}{gap}{POSE}"):
+        pose = grade(catalogue["planar-rrr"], Submission({"pose": text})).parts[1]
+        assert pose.points == pose.max_points, pose.feedback
+        codes = [
+            message.code for row in pose.rows for cell in row.cells for message in cell.feedback
+        ]
+        assert "text_left_aside" in codes
+
+
+@pytest.mark.parametrize("last", ["null null null eins", "This is the answer"])
+def test_a_row_of_words_is_no_sentence_while_rows_are_missing(
+    last: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    text = "\n".join([*POSE.splitlines()[:3], last])
+    pose = grade(catalogue["planar-rrr"], Submission({"pose": text})).parts[1]
+    assert [cell.verdict.value for cell in pose.rows[3].cells] == ["unreadable"] * 4
+
+
+def test_unknown_headers_in_words_are_no_sentence(catalogue: Mapping[str, Exercise]) -> None:
+    report = table(catalogue, f"Drehung Versatz Laenge Verdrehung\n{UNLABELLED}")
+    assert [message.code for message in report.feedback] == ["unknown_header"]
+
+
 @pytest.mark.parametrize(
     "text",
     [

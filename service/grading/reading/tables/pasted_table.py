@@ -44,6 +44,8 @@ from service.translations import listed, say, say_count
 ColumnOrder = tuple[int | None, Header]
 # The most rows above the headers that do not belong to the table.
 _MOST_NAMES: Final = 3
+# One of several tables in a text has at least so many rows.
+_FEWEST_ROWS: Final = 2
 _WHOLE: Final = re.compile(r"\d{1,12}")
 _SHORT: Final = re.compile(r"\d{1,4}")
 _WORD: Final = re.compile(r"[^\W\d_]{3}")
@@ -96,7 +98,7 @@ def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS)
 
     def find(piece: str, reader: Reader) -> FoundAnswer | None:
         table = _read_one(piece, reader, order)
-        if any(row.problem for row in table.rows):
+        if any(row.problem for row in table.rows) or len(table.rows) < _FEWEST_ROWS:
             return None
         units = [header.unit for header in table.headers]
         texts = [
