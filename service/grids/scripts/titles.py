@@ -281,8 +281,9 @@ def check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
         raise GridError(
             "text_around",
             say(
-                "This sentence may correct the table. Write the correction into the table, and "
-                "delete the sentence."
+                "The sentence in line {line} may correct the table. Write the correction into the "
+                "table, and delete the sentence.",
+                line=corrections[0].line_number,
             ),
             corrections[0].whole,
         )
@@ -295,8 +296,9 @@ def check_units(line: SourceText) -> None:
         raise GridError(
             "text_around",
             say(
-                "This line names a unit, but not its columns. Delete the line, and write the "
-                "units into the headers, such as theta [deg]."
+                "Line {line} names a unit, but not its columns. Delete the line, and write the "
+                "units into the headers, such as theta [deg].",
+                line=line.line_number,
             ),
             line.whole,
         )

@@ -35,12 +35,14 @@ Quantities = Sequence[Sequence[Kind]]
 class StudentMatrix:
     """A matrix as read: its entries and their values ``(rows, columns, SAMPLES)``.
 
-    A value is NaN if its entry is unreadable or undefined.
+    A value is NaN if its entry is unreadable or undefined. ``findings`` are notes on how the whole
+    matrix was read.
     """
 
     entries: list[list[Entry]]
     quantities: Quantities
     values: Numbers
+    findings: tuple[Finding, ...] = ()
 
     @property
     def expressions(self) -> list[Expression | None]:
@@ -65,12 +67,19 @@ def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> Stude
     """
     # Omitted rows at the end are missing.
     # A row of the wrong length is unreadable, because its entries are ambiguous.
+    if isinstance(answer, str) and answer.strip():
+        return _pasted(answer, quantities, reader)
     return matrix_of_entries(_entries(answer, quantities, reader), quantities, reader)
 
 
 def matrix_of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> StudentMatrix:
     """Read the matrix in a pasted grid. Raises UnreadableAnswerError if its size is wrong."""
-    return matrix_of_entries(_of_grid(grid, quantities, reader), quantities, reader)
+    cells = _cells(grid, quantities)
+    if cells is None:
+        span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
+        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
+    matrix = matrix_of_entries(_of_cells(cells, quantities, reader), quantities, reader)
+    return replace(matrix, findings=tuple(map(from_note, grid.notes)))
 
 
 def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) -> StudentMatrix:
@@ -97,7 +106,7 @@ def matrix_values(entries: list[list[Entry]], quantities: Quantities, samples: S
 
 def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     if isinstance(answer, str):
-        return _pasted(answer, quantities, reader) if answer.strip() else []
+        return []
     if not isinstance(answer, list) or not answer or len(answer) > len(quantities):
         raise UnreadableAnswerError(_of_wrong_size("", quantities))
     return [_row(row, i, quantities, reader) for i, row in enumerate(answer)]
@@ -162,7 +171,7 @@ def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[En
     return [first, *[UNREADABLE] * (len(cells) - 1)]
 
 
-def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+def _pasted(text: str, quantities: Quantities, reader: Reader) -> StudentMatrix:
     def find(piece: str, reader: Reader) -> FoundAnswer | None:
         cells = _cells(_grid(piece, quantities, reader), quantities)
         if cells is None or [len(row) for row in cells] != [len(row) for row in quantities]:
@@ -179,25 +188,13 @@ def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entr
             text, lambda piece: _grid(piece, quantities, reader), is_one, find, reader
         )
     except GridError as error:
-        raise UnreadableAnswerError(from_grid_error(error)) from error
-    return _of_grid(replace(grid, notes=(*grid.notes, *notes)), quantities, reader)
+        raise UnreadableAnswerError(from_grid_error(error, text)) from error
+    return matrix_of_grid(replace(grid, notes=(*grid.notes, *notes)), quantities, reader)
 
 
 def _grid(text: str, quantities: Quantities, reader: Reader) -> Grid:
     refuse_other_lengths(text, chain.from_iterable(quantities), reader)
     return pasted_grid(text, reader)
-
-
-def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
-    cells = _cells(grid, quantities)
-    if cells is None:
-        span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
-        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
-    entries = _of_cells(cells, quantities, reader)
-    first = entries[0][0]
-    notes = tuple(map(from_note, grid.notes))
-    entries[0][0] = replace(first, findings=(*first.findings, *notes))
-    return entries
 
 
 def _cells(grid: Grid, quantities: Quantities) -> Sequence[Sequence[GridCell]] | None:

@@ -203,7 +203,7 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
     try:
         pasted = read_pasted_table(text, reader)
     except GridError as error:
-        raise UnreadableAnswerError(from_grid_error(error)) from error
+        raise UnreadableAnswerError(from_grid_error(error, text)) from error
     if len(pasted.rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(pasted.rows)))
 
