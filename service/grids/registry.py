@@ -37,7 +37,12 @@ from service.grids.scripts.robot_script import describes_robot, read_script
 from service.grids.scripts.script import RobotTable
 from service.grids.scripts.session import session_outputs
 from service.grids.scripts.styled_names import without_styles
-from service.grids.scripts.titles import without_fence, without_pictures, without_titles
+from service.grids.scripts.titles import (
+    without_docstrings,
+    without_fence,
+    without_pictures,
+    without_titles,
+)
 from service.grids.scripts.toolbox_print import describes_print, read_print
 from service.time_slices import checkpoint
 from service.translations import say
@@ -131,7 +136,7 @@ def _limited(text: str) -> SourceText:
         raise GridError("empty", say("Nothing is written here."), (0, len(text)))
     if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
         raise too_many_cells((0, len(text)))
-    return with_own_symbols(source)
+    return with_own_symbols(without_docstrings(source))
 
 
 def grid_of(source: SourceText) -> Grid:

@@ -281,3 +281,44 @@ def test_a_cell_with_a_tab_is_quoted_readably(catalogue: Mapping[str, Exercise])
     )
     [message] = report.feedback
     assert "`d x` (with a tab in it)" in message.message
+
+
+@pytest.mark.parametrize(
+    "around",
+    [
+        "HW4 - SCARA arm - John Smith\n================================\n{}\n",
+        "{}\n\n--\nJohn Smith\njohn.smith@uni.edu\n",
+        "Übung 3\n*****\n{}\n*****\nhttps://example.org/robots\n",
+    ],
+)
+@pytest.mark.parametrize("sign", [" ", ", ", "; ", "\t"])
+def test_rules_and_addresses_around_a_table_cost_nothing(
+    around: str, sign: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    report = table(catalogue, around.format(separated(sign)))
+    assert report.points == report.max_points, report.feedback
+
+
+SCRIPT = "dh = [[a1, 0, 0, theta1], [a2, pi, 0, theta2], [0, 0, d3, 0], [0, 0, d4, theta4]]"
+
+
+@pytest.mark.parametrize(
+    "docstring",
+    [
+        '"""Homework 3."""',
+        "'''Homework 3.\n\nAuthor: Anna\n'''",
+        '#!/usr/bin/env python3\n"""Hi.\n"""',
+    ],
+)
+def test_a_docstring_above_a_table_costs_nothing(
+    docstring: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    report = table(catalogue, f"{docstring}\nimport numpy as np\n\n{SCRIPT}\n")
+    assert report.points == report.max_points, report.feedback
+
+
+def test_a_docstring_that_names_a_unit_is_refused(catalogue: Mapping[str, Exercise]) -> None:
+    report = table(catalogue, f'"""The arm.\n\nAll lengths in mm.\n"""\n{SCRIPT}\n')
+    [message] = report.feedback
+    assert message.code == "text_around"
+    assert message.message.startswith("Line 3 names a unit")

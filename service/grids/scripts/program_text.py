@@ -47,7 +47,6 @@ _CALLS: Final = re.compile(
     r"[ \t]*(?:#.*|(?:[A-Za-z]\w{0,40}[ \t]*=[ \t]*)?(?:\w{1,20}\.)?\w{1,40}\([^@*/+\n]*\)"
     r"|if __name__ ?== ?['\"]__main__['\"]:.*)?\s*"
 )
-_DOCSTRING: Final = re.compile(r"[ \t]*[rRuU]?(\"\"\"|''')")
 _ASSIGNED: Final = re.compile(r"[ \t]*([A-Za-z]\w{0,40})[ \t]*=(?!=)")
 _UNPACKED: Final = re.compile(
     r"[ \t]*[(\[]?(?P<names>[A-Za-z]\w{0,20}(?:[ \t]{0,4},[ \t]{0,4}[A-Za-z]\w{0,20}){1,11})[)\]]?"
@@ -153,10 +152,6 @@ def _without_def(source: SourceText) -> SourceText:
     if returned is None and "[" not in lines[returns[0]].text:
         return source
     first, last = body[0], body[-1] if returned else body[-1] + 1
-    if quote := _DOCSTRING.match(lines[first].text):
-        ends = [i for i in body if lines[i].text.rstrip().endswith(quote[1])]
-        one_line = lines[first].text.strip().count(quote[1]) > 1
-        first = ends[0] + 1 if one_line or len(ends) < 2 else ends[1] + 1
     kept = [line for line in lines[first:last] if not _unpacks(line.text)]
     names = [found[1] for line in kept if (found := _ASSIGNED.match(line.text))]
     if returned and names.count(returned[1]) != 1:

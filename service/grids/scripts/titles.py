@@ -7,7 +7,7 @@ error, because the unit may apply to the table. So is a sentence that may correc
 import re
 from bisect import bisect_left
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Final
 
 from service.expressions.errors import Note, Span
@@ -35,6 +35,9 @@ _FEW_WORDS: Final = re.compile(
 )
 _MOST_WORDS: Final = 2
 _FEWEST_ROWS: Final = 2
+# A rule, a mail address or an address on the web.
+_ASIDE: Final = re.compile(r"[-=_*~#+\s]{2,200}|[\w.+-]{1,64}@[\w.-]{1,64}|https?://\S{1,200}")
+_DOCSTRING: Final = re.compile(r"^[ \t]*[rRuU]?(\"{3}|'{3})", re.MULTILINE)
 # A number that is no student's.
 _NUMBER: Final = re.compile(r"(?<![\w.])\d{1,4}(?:\.\d{1,12})?(?!\w)")
 _PLAIN_WORD: Final = re.compile(
@@ -175,10 +178,39 @@ def without_titles(
         return source, ()
     first, last = rows[0], rows[-1]
     around = [*lines[:first], *lines[last + 1 :]]
-    if not around or not all(is_sentence(line.text.strip(_PADDING)) for line in around):
+    if not around or not all(map(_is_aside, around)):
         return source, ()
     check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first], lines[last]), (left_aside(around[0].whole),)
+
+
+def _is_aside(line: SourceText) -> bool:
+    text = line.text.strip(_PADDING)
+    return is_sentence(text) or _ASIDE.fullmatch(text) is not None
+
+
+def without_docstrings(source: SourceText) -> SourceText:
+    """Return a script of Python without its docstrings. Raises GridError if one names a unit."""
+    found = list(_docstrings(source.text))
+    starts = [0, *(end for _, end in found)]
+    ends = [*(start for start, _ in found), len(source.text)]
+    rest = joined(map(source.cut, starts, ends), source.at)
+    if not found or not rest.text.strip():
+        return source
+    for start, end in found:
+        for line in source.cut(start, end).lines():
+            check_units(line)
+    return rest
+
+
+def _docstrings(text: str) -> Iterator[Span]:
+    at = 0
+    while opening := _DOCSTRING.search(text, at):
+        closing = text.find(opening[1], opening.end())
+        at = closing + len(opening[1])
+        if closing < 0 or text[at:].partition("\n")[0].strip():
+            return
+        yield opening.start(), at
 
 
 def left_aside(place: Span) -> Note:
