@@ -85,16 +85,15 @@ def read_once(
 def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] | None:
     # The text up to the end of its first answer, and a note, if equal answers follow; None if the
     # text has only one answer. Raises GridError if the answers differ.
-    work = PASTED_WORK * 2 * len(text)
-    if len(text) > GRID_LIMITS.characters or not reader.budget.affords_search(work):
+    if len(text) > GRID_LIMITS.characters:
+        return None
+    lines = SourceText.of(text).lines()
+    ways = list(_starts(lines)) if len(lines) <= _MOST_LINES else []
+    if not ways or not reader.budget.affords_search(PASTED_WORK * 2 * len(text)):
         return None
     own = replace(reader, budget=WorkBudget(MAX_SYMBOLS, repairs=0, pasted=4 * MAX_PASTED))
-    source = SourceText.of(text)
-    lines = source.lines()
-    if len(lines) > _MOST_LINES:
-        return None
     try:
-        for starts in _starts(lines):
+        for starts in ways:
             pieces = [lines[a:b] for a, b in pairwise([*starts, len(lines)])]
             found = [_found(piece, find, own) for piece in pieces]
             answers = [each for each in found if each is not None]

@@ -67,7 +67,7 @@ VALUES = [["cos(q1)", "-sin(q1)"], ["sin(q1)", "cos(q1)"]]
         f"import numpy as np\ndef fk(q):\n    T = np.array({PAIR})\n    return T\n\nprint(fk(0))",
         f"def fk(q: list[float], l1: float = 0.4) -> np.ndarray:\n    T = {PAIR}\n    return T",
         f"def fk(q):\n    '''The pose.'''\n    T = {PAIR}\n    return (T)\n",
-        f'def fk(q):\n    """The pose.\n\n    Of the tool.\n    """\n    T = {PAIR}\n    return T\n',
+        f'def fk(q):\n    """The pose.\n\n    Of the tool.\n    """\n    T = {PAIR}\n    return T',
         f"def fk(q):\n    q1, q2 = q\n    c1, s1 = cos(q1), sin(q1)\n    T = {PAIR}\n    return T",
         f"def fk(q):\n    return np.array({PAIR})\n\nif __name__ == '__main__':\n    fk(0)\n",
         f"def fk(q):\r\n    T = {PAIR}\r\n    return T\r\n",
