@@ -24,15 +24,25 @@ from service.grids.formats.data_frame import without_frame
 from service.grids.formats.decimal_commas import with_decimal_points
 from service.grids.matrices import bracketed, drawn_matrix, eigen, maple, matlab_rows, word
 from service.grids.matrices.identity import identity
-from service.grids.scripts.given_values import without_definitions, without_given_values
+from service.grids.scripts.given_values import (
+    check_script,
+    without_definitions,
+    without_given_values,
+)
 from service.grids.scripts.later_statements import without_print, without_uses
 from service.grids.scripts.named_columns import describes_columns, read_columns
 from service.grids.scripts.program_text import without_function, without_title
+from service.grids.scripts.renamed_symbols import with_own_symbols
 from service.grids.scripts.robot_script import describes_robot, read_script
 from service.grids.scripts.script import RobotTable
 from service.grids.scripts.session import session_outputs
 from service.grids.scripts.styled_names import without_styles
-from service.grids.scripts.titles import without_fence, without_pictures, without_titles
+from service.grids.scripts.titles import (
+    without_docstrings,
+    without_fence,
+    without_pictures,
+    without_titles,
+)
 from service.grids.scripts.toolbox_print import describes_print, read_print
 from service.time_slices import checkpoint
 from service.translations import say
@@ -46,6 +56,8 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 
 # The formats in which a sign separates cells.
 _SEPARATED: Final = FORMATS[FORMATS.index(markdown.FORMAT) :]
+# The formats in which any line may be a row.
+_PLAIN: Final = (tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT)
 # The formats in which a comma separates no cells.
 _WITHOUT_COMMAS: Final = (html.FORMAT, markdown.FORMAT, tsv.FORMAT, semicolons.FORMAT)
 
@@ -77,7 +89,7 @@ def read_grid(text: str, *, of_table: bool = False) -> Grid:
         source = without_print(without_uses(source))
     source, pictures = without_pictures(source)
     source, defined = without_definitions(source)
-    source, titles = without_titles(without_frame(without_title(source)))
+    source, titles = without_titles(without_frame(without_title(source)), of_table=of_table)
     source, values = without_given_values(source)
     notes = (*pictures, *defined, *titles, *values)
     found = grid_of(source)
@@ -116,7 +128,7 @@ def _limited(text: str) -> SourceText:
         )
         raise GridError("too_long", message, (most, len(text)))
     plain = SourceText.of(text)
-    plain = SourceText(text.translate(FULL_WIDTH), plain.starts, plain.ends)
+    plain = replace(plain, text=text.translate(FULL_WIDTH))
     source = without_fence(plain.strip("\ufeff"))
     if separator := _SEPARATOR_LINE.match(source.text):
         source = source.cut(separator.end(), len(source.text))
@@ -124,7 +136,7 @@ def _limited(text: str) -> SourceText:
         raise GridError("empty", say("Nothing is written here."), (0, len(text)))
     if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
         raise too_many_cells((0, len(text)))
-    return source
+    return with_own_symbols(without_docstrings(source))
 
 
 def grid_of(source: SourceText) -> Grid:
@@ -133,6 +145,8 @@ def grid_of(source: SourceText) -> Grid:
     if found in _SEPARATED:
         source = without_last_signs(source)
         found = _format_of(source)
+    if found in _PLAIN:
+        check_script(source)
     if found in _WITHOUT_COMMAS:
         return with_decimal_points(found.parse(source))
     if found:

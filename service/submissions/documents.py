@@ -26,13 +26,20 @@ _CHANGED: Final = re.compile(r"\b([A-Za-z]\w{0,60})[ \t]*(?:\([^()\n]{0,80}\)[ \
 
 
 def pasted_from(text: str, suffix: str) -> str:
-    """Return the only table or matrix in a document with this suffix, or else the whole text."""
+    """Return the only table or matrix in a document with this suffix, or else the whole text.
+
+    Empty lines before it keep the numbers of its lines, which messages name.
+    """
     tables = _TABLES.get(suffix)
     if tables is None:
         return text
     found = tables(text)
     first = next(found, None)
-    return text if first is None or next(found, None) is not None else first
+    if first is None or next(found, None) is not None:
+        return text
+    last = text.find(first.rpartition("\n")[2], text.find(first.partition("\n")[0]))
+    above = text.count("\n", 0, max(last, 0)) - first.count("\n")
+    return "\n" * above + first
 
 
 # A line of a CSV file that is one cell in quotation marks.
@@ -65,7 +72,8 @@ def _markdown(text: str) -> Iterator[str]:
         if not is_fence and (is_code or "|" in line):
             block.append(line)
             continue
-        if len(block) > 1:
+        # A single row below another line may belong to the table.
+        if len(block) > 1 or (block and block[0].lstrip().startswith("|")):
             yield "\n".join(block)
         block = []
         is_code = is_fence and not is_code

@@ -214,11 +214,12 @@ def _recognised(text: str) -> FileContent:
     typed = typed_in_receipt(text)
     if typed == "":
         raise UnusableFileError(say("is empty"))
-    text = (typed or text).strip()
+    # Empty lines at the beginning stay, because messages name lines by their numbers.
+    text = (typed or text).rstrip()
     if _TAGS.search(text) and not _HAS_TABLE.search(text):
         # Text from the editor of a platform, saved under the name of a text file.
         text = typed_text(text)
-    if text.startswith(("{", "[")):
+    if text.lstrip().startswith(("{", "[")):
         try:
             return FileContent(read_json(text.encode()))
         except MalformedError as error:

@@ -11,6 +11,7 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from datetime import date, datetime, time, timedelta
 from html import unescape
@@ -720,7 +721,7 @@ def decoded(data: bytes) -> str:
                 say("is not text: it begins like UTF-16, but is invalid")
             ) from error
     if b"\0" in data:
-        raise UnusableFileError(say("is not text: it has zero bytes"))
+        return _wide(data)
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError:
@@ -733,6 +734,23 @@ def decoded(data: bytes) -> str:
     if any(ord(sign) < 32 and sign not in "\t\n\r\f" for sign in text):
         raise UnusableFileError(say("is not text"))
     return text
+
+
+def _wide(data: bytes) -> str:
+    """Return the text of a file in UTF-16 without a byte order mark. Raises UnusableFileError.
+
+    The file must be certain: half of its letters are ASCII, and all of them can be printed.
+    """
+    for encoding, first in (("utf-16-le", 1), ("utf-16-be", 0)):
+        high, low = data[first::2], data[1 - first :: 2]
+        if len(data) % 2 == 0 and 0 not in low and 2 * high.count(0) >= len(high):
+            with suppress(UnicodeDecodeError):
+                text = data.decode(encoding)
+                if all(sign.isprintable() or sign in "\t\n\r\f" for sign in text):
+                    return text
+    raise UnusableFileError(
+        say("is not text: it has zero bytes; if it is a text, save it as UTF-8")
+    )
 
 
 _READERS: Final[Mapping[str, Callable[[bytes], Iterator[Excerpt]]]] = {

@@ -226,7 +226,7 @@ def refusal(text: str) -> GridError:
         ("L(1) = Link([0 0 a1 0]);\nR = SerialLink(L)", "unknown_call", "Link"),
         # a letter of the matrix is assigned a value that is not a plain number
         ("a1 = 0.4; q1 = pi/2;\nT = [a1, q1; 0, 1]", "given_value", "q1 = pi/2"),
-        ("q1 = sym('q2');\nT = [a1, q1; 0, 1]", "given_value", "q1 = sym('q2')"),
+        ("q1 = sym('2*q2');\nT = [a1, q1; 0, 1]", "given_value", "q1 = sym('2*q2')"),
         ("| a | b |\nsee below\n| c | d |", "text_around", "see below"),
         # cells that hold more than a value
         (r"\begin{array}{cc} \multicolumn{2}{c}{x} \end{array}", "spanning_cell", r"\multicolumn"),

@@ -28,7 +28,20 @@ MATRIX = "DH = [a1 0 0 q1;\n      a2 0 0 q2]"
     ],
 )  # fmt: skip
 def test_text_around_a_table_is_removed(text: str, suffix: str, pasted: str) -> None:
-    assert pasted_from(text, suffix) == pasted
+    assert pasted_from(text, suffix).lstrip("\n") == pasted
+
+
+@pytest.mark.parametrize(
+    ("text", "suffix", "line"),
+    [
+        (f"\\documentclass{{article}}\n\nHi\n{TABULAR}\nBye", ".tex", 4),
+        (f"# Homework\n\n{BARS}\n\nDone.", ".md", 3),
+        (f"clear; clc;\n\na1 = 0.4;\n\n\n{MATRIX};", ".m", 6),
+    ],
+)
+def test_lines_keep_their_numbers(text: str, suffix: str, line: int) -> None:
+    pasted = pasted_from(text, suffix).splitlines()
+    assert pasted[line - 1] == text.splitlines()[line - 1]
 
 
 @pytest.mark.parametrize(
@@ -39,6 +52,8 @@ def test_text_around_a_table_is_removed(text: str, suffix: str, pasted: str) -> 
         (f"{BARS}\n\n{BARS}", ".md"),
         ("a, d\n0, 1", ".md"),
         (f"x\n{BARS}\n\ny", ".csv"),
+        # The last row does not belong to another table.
+        (f"{BARS}\nand\n| 2 | 3 |", ".md"),
         ('"a1","a2"\n"0","1"', ".csv"),
         ('"a1"\na2', ".csv"),
         (f"{MATRIX};\nB = [1 2; 3 4];", ".m"),

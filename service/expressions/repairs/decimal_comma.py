@@ -1,4 +1,4 @@
-"""A comma or an apostrophe as decimal point: 1,5 or 1’5 for 1.5."""
+"""A comma or an apostrophe as decimal point, or a thousands separator: 1,5; 1’5; 1.000,5."""
 
 import re
 
@@ -9,11 +9,19 @@ _THOUSANDS = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
 # A number with an apostrophe as decimal mark, and one in which it may separate thousands.
 _APOSTROPHE = re.compile(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
 _IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
+# A number with a thousands separator, and perhaps another sign as decimal point.
+_GROUPED = re.compile(
+    r"(?<![\w.,'’])[1-9][0-9]{0,2}(?P<mark>[.,'’ \u00a0\u202f])[0-9]{3}"
+    r"(?P<more>(?:(?P=mark)[0-9]{3})*)(?:(?!(?P=mark))[.,](?P<rest>[0-9]+))?"
+    r"(?![0-9]|[.,'’][0-9])"
+)
 
 
-@for_causes("grammar", "transpose")
+@for_causes("grammar", "transpose", "values")
 def repair(failure: Failure) -> Repair:
     """Suggest a decimal point, or explain that 1,000 is ambiguous."""
+    if grouped := _grouped(failure):
+        return grouped
     if failure.cause == "transpose":
         return _apostrophe(failure)
     start, end = failure.span
@@ -26,6 +34,31 @@ def repair(failure: Failure) -> Repair:
     message = say("A comma separates values. Write one number with a point.")
     point = re.sub(r"(?<=[0-9]),(?=[0-9])", ".", failure.source)
     return error(failure, "decimal_comma", message, point)
+
+
+def _grouped(failure: Failure) -> Repair:
+    numbers = (each for each in _GROUPED.finditer(failure.source) if _is_sure(each))
+    start, end = failure.span
+    number = next((each for each in numbers if each.start() <= end and start <= each.end()), None)
+    if number is None:
+        return None
+    typed, rest = number[0], number["rest"]
+    whole = typed[: len(typed) - len(rest) - 1] if rest else typed
+    plain = re.sub(r"[^0-9]", "", whole) + (f".{rest}" if rest else "")
+    message = say(
+        "`{typed}` has a thousands separator. Write {number}.",
+        typed=typed,
+        number=plain,
+    )
+    repaired = failure.source[: number.start()] + plain + failure.source[number.end() :]
+    return error(failure, "decimal_comma", message, repaired, number.span())
+
+
+def _is_sure(number: re.Match[str]) -> bool:
+    # 1.000 is a number, and 1,000 or 1 000 may be two.
+    if number["mark"] in "\u00a0\u202f":
+        return True
+    return bool(number["rest"] or (number["more"] and number["mark"] in ".'’"))
 
 
 def _apostrophe(failure: Failure) -> Repair:

@@ -66,7 +66,7 @@ def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix
         try:
             grid = screw_grid(answer, numbers, grading.reader)
         except GridError as error:
-            raise UnreadableAnswerError(from_grid_error(error)) from error
+            raise UnreadableAnswerError(from_grid_error(error, answer)) from error
         rows = matrix_of_grid(grid, quantities, grading.reader)
         if len(numbers) != WIDTH or not _columns_are_axes(part, rows, grading):
             return rows
@@ -94,9 +94,7 @@ def _transposed(rows: StudentMatrix, grading: Grading) -> StudentMatrix:
 
 def _by_columns(rows: StudentMatrix, note: Note, grading: Grading) -> StudentMatrix:
     columns = _transposed(rows, grading)
-    first = columns.entries[0][0]
-    columns.entries[0][0] = replace(first, findings=(*first.findings, from_note(note)))
-    return columns
+    return replace(columns, findings=(*rows.findings, from_note(note)))
 
 
 def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:
@@ -132,7 +130,8 @@ def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judge
         labels=expected.labels,
         remarks={**remarks, **of_single_rows},
     )
-    return Judged(rows, of_rows(_known(axes, grading)), shared, whole_cost=cost)
+    feedback = (*grading.messages(answer.findings), *shared)
+    return Judged(rows, of_rows(_known(axes, grading)), feedback, whole_cost=cost)
 
 
 def _explained(

@@ -25,6 +25,7 @@ from service.grids import (
     read_robot,
 )
 from service.grids.cutting.once import remembering
+from service.grids.cutting.source_text import line_number
 from service.time_slices import checkpoint
 from service.translations import say
 
@@ -38,6 +39,11 @@ _IN_UNIT: Final = re.compile(
 # A unit in a header: a [mm], alpha (deg).
 _HEADED_UNIT: Final = re.compile(r"[\[(]\s?([^\W\d_]{1,12}|°)\s?[\])]")
 _MOST_UNITS: Final = 40
+# The codes of errors whose messages say "this bracket" or "this row".
+_AT_A_PLACE: Final = frozenset(
+    {"unclosed_quote", "stray_quote", "unbalanced_bracket", "unbalanced_environment"}
+    | {"unclosed_tag", "unread_tag", "mixed_separators"}
+)
 _JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
 
 
@@ -175,10 +181,17 @@ def _charge(text: str, reader: Reader) -> None:
     raise GridError("too_long", message, (0, len(text)))
 
 
-def from_grid_error(error: GridError) -> Finding:
-    """Return the finding that a pasted text is not a table or matrix."""
+def from_grid_error(error: GridError, text: str = "") -> Finding:
+    """Return the finding that a pasted text is not a table or matrix.
+
+    If the error is about one place in several lines of ``text``, the message names its line.
+    """
     code = "wrong_shape" if error.code == "no_grid" else error.code
-    return Finding(code, error.message, span=error.span, reading=True)
+    message = error.message
+    if code in _AT_A_PLACE and line_number(text, len(text)) > 1:
+        line = line_number(text, error.span[0])
+        message = say("Line {line}: {message}", line=line, message=message)
+    return Finding(code, message, span=error.span, reading=True)
 
 
 def placed(entry: Entry, cell: GridCell) -> Entry:
@@ -199,8 +212,11 @@ def place_of(cells: Sequence[GridCell]) -> tuple[int, int]:
 
 def quoted(text: str) -> str:
     """Return a cell's text, shortened and in quotes, for use in a message."""
-    shown = "".join(filter(str.isprintable, text))
+    shown = "".join(filter(str.isprintable, text.replace("\t", " ")))
     short = shown if len(shown) <= 30 else shown[:29] + "…"
+    if "\t" in text:
+        # Translators: the text of a cell, as a part of other sentences.
+        return say("`{text}` (with a tab in it)", text=short)
     if shown == text:
         return f"`{short}`"
     # Translators: the text of a cell, as a part of other sentences.

@@ -10,6 +10,7 @@ from service.grading.reading.entry import Reader
 from service.grading.reading.pasted import once
 from service.grading.reading.tables.words import ANGLE_UNITS, METRES, in_plain_words
 from service.grids import GridError
+from service.grids.cutting.source_text import line_number
 from service.translations import say
 
 _COMMENT: Final = re.compile(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,80})")
@@ -41,8 +42,9 @@ def _refuse_other_lengths(text: str, reader: Reader) -> None:
         _, lengths = units_in(comment[comment.lastindex or 0])
         if lengths - {METRES.get(reader.length_unit or "")}:
             message = say(
-                "This line names a unit of length. Delete the line, and write lengths as the "
-                "exercise does."
+                "Line {line} names a unit of length. Delete the line, and write lengths as the "
+                "exercise does.",
+                line=line_number(text, comment.start()),
             )
             raise GridError("text_around", message, comment.span())
 

@@ -163,7 +163,7 @@ def tidy(cell: GridCell) -> GridCell:
                 cell = inner.strip()
     if "$" in cell.text and cell.text.count("$") % 2 == 0 and "\\$" not in cell.text:
         # Replace each $ by a blank, so that $a$$b$ does not become one name.
-        cell = SourceText(cell.text.replace("$", " "), cell.starts, cell.ends, cell.at).strip()
+        cell = replace(cell, text=cell.text.replace("$", " ")).strip()
     if variable := _VARIABLE.search(cell.text[-20:]):
         cell = cell.cut(0, len(cell.text) - len(variable[0]))
     if cell.text.startswith("\\(") and cell.text.endswith("\\)"):

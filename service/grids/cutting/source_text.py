@@ -15,25 +15,30 @@ _LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
 class SourceText:
     """A piece of text, and the position [start, end) of each character in the typed text.
 
-    ``at`` is the position of an empty piece.
+    ``at`` is the position of an empty piece. ``typed`` is the whole typed text.
     """
 
     text: str
     starts: Sequence[int]
     ends: Sequence[int]
     at: int = 0
+    typed: str = ""
 
     @staticmethod
     def of(source: str) -> "SourceText":
         """Return the whole ``source`` as a piece."""
-        return SourceText(source, range(len(source)), range(1, len(source) + 1))
+        return SourceText(source, range(len(source)), range(1, len(source) + 1), typed=source)
 
     def cut(self, start: int, end: int) -> "SourceText":
         """Return the characters [start, end) as a piece."""
         if start == 0 and end == len(self.text):
             return self
         return SourceText(
-            self.text[start:end], self.starts[start:end], self.ends[start:end], self.span(start)[0]
+            self.text[start:end],
+            self.starts[start:end],
+            self.ends[start:end],
+            self.span(start)[0],
+            self.typed,
         )
 
     def span(self, start: int = 0, end: int | None = None) -> Span:
@@ -52,6 +57,11 @@ class SourceText:
     def whole(self) -> Span:
         """The position of the piece in the typed text."""
         return self.span(0, len(self.text))
+
+    @property
+    def line_number(self) -> int:
+        """The number of the line of the typed text in which the piece begins, as editors count."""
+        return line_number(self.typed, self.whole[0])
 
     def strip(self, letters: str | None = None) -> "SourceText":
         """Return the piece without blanks (or ``letters``) at either end."""
@@ -74,7 +84,12 @@ class SourceText:
         """Return a copy of the piece with this ``text``, at the same position."""
         # Each of its characters has the place of this whole piece.
         start, end = self.whole
-        return SourceText(text, (start,) * len(text), (end,) * len(text), start)
+        return SourceText(text, (start,) * len(text), (end,) * len(text), start, self.typed)
+
+
+def line_number(typed: str, place: int) -> int:
+    """Return the number of the line with the character ``place``. The first line is 1."""
+    return 1 + sum(1 for _ in _LINE_END.finditer(typed, 0, place))
 
 
 def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
@@ -87,4 +102,5 @@ def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
         [*chain.from_iterable(piece.starts for piece in kept)],
         [*chain.from_iterable(piece.ends for piece in kept)],
         at,
+        kept[0].typed if kept else "",
     )

@@ -85,9 +85,10 @@ def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:
     message = say("Each line seems to have one value. Write commas between the values.")
     if at:
         message = say(
-            "Lines 1 and {line} seem to have different numbers of values: {first} and {other}. "
-            "Write commas between the values.",
-            line=at + 1,
+            "Lines {before} and {line} seem to have different numbers of values: {first} and "
+            "{other}. Write commas between the values.",
+            before=lines[0].line_number,
+            line=lines[at].line_number,
             first=len(rows[0]),
             other=len(rows[at]),
         )

@@ -1,6 +1,7 @@
 """Read data frames as pandas, R, Julia and MATLAB print them."""
 
 import re
+from dataclasses import replace
 from typing import Final
 
 from service.grids.cutting.source_text import SourceText, joined
@@ -38,11 +39,11 @@ def without_frame(source: SourceText) -> SourceText:
     size = _SIZE.search(source.text)
     if size is None or source.text[: size.start()].strip(" \t\r\n=abcdefghijklmnopqrstuvwxyz"):
         return source
-    pieces = []
-    for line in source.cut(size.end(), len(source.text)).lines():
-        if not _TYPES.fullmatch(line.text.rstrip()) and not _LINES.fullmatch(line.text):
-            plain = _QUOTES.sub(" ", line.text)
-            pieces.append(SourceText(plain, line.starts, line.ends, line.at))
+    pieces = [
+        replace(line, text=_QUOTES.sub(" ", line.text))
+        for line in source.cut(size.end(), len(source.text)).lines()
+        if not _TYPES.fullmatch(line.text.rstrip()) and not _LINES.fullmatch(line.text)
+    ]
     return _joined_lines(pieces, source)
 
 

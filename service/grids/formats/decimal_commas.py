@@ -11,7 +11,7 @@ from itertools import chain
 from typing import Final
 
 from service.expressions.errors import Note
-from service.grids.cutting.grid import Grid, GridCell
+from service.grids.cutting.grid import Grid, GridCell, GridError
 from service.grids.cutting.pairs import outside
 from service.translations import say
 
@@ -20,22 +20,37 @@ _NUMBER: Final = re.compile(r"(?<![\w.,])\d{1,15},\d{1,15}(?![\w.,]*[.,]\d)", re
 _THOUSANDS: Final = re.compile(r"[1-9]\d{0,2},\d{3}", re.ASCII)
 # A point that may stand between thousands in the same language: 1.000 or 12.500,5.
 _POINT: Final = re.compile(r"(?<![\d.])[1-9]\d{0,2}\.\d{3}(?!\d)", re.ASCII)
+# A number with a sign between thousands and a decimal comma: 1.000,5. The reader of its cell names
+# the sign.
+_GROUPED: Final = re.compile(
+    r"(?<![\w.,])[1-9]\d{0,2}(?:[.'’ \u00a0\u202f]\d{3})+,\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII
+)
 # One line between semicolons may be several rows of a matrix.
 _FEWEST: Final = 2
 
 
 def with_decimal_points(grid: Grid) -> Grid:
-    """Return the grid with points for its decimal commas, and a note; unchanged if unsure."""
+    """Return the grid with points for its decimal commas, and a note; unchanged if unsure.
+
+    Raises GridError if a point in another number may separate thousands.
+    """
     if len(grid.rows) < _FEWEST or min(map(len, grid.rows)) < _FEWEST:
         return grid
-    cells = [cell for cell in chain.from_iterable(grid.rows) if "," in cell.text]
+    cells = [
+        cell
+        for cell in chain.from_iterable(grid.rows)
+        if "," in cell.text and not _GROUPED.search(cell.text)
+    ]
     found = [_numbers(cell.text) for cell in cells]
     numbers = [number for each in found for number in (each or {}).values()]
     is_sure = all(each is not None for each in found) and any(
         not _THOUSANDS.fullmatch(number) for number in numbers
     )
-    if not is_sure or any(_POINT.search(cell.text) for row in grid.rows for cell in row):
+    if not is_sure:
         return grid
+    for cell in chain.from_iterable(grid.rows):
+        if (point := _POINT.search(cell.text)) and not _GROUPED.search(cell.text):
+            raise _in_thousands(cell, point)
     message = say(
         "`{typed}` is read as {number}: the comma is a decimal comma.",
         typed=numbers[0],
@@ -45,6 +60,17 @@ def with_decimal_points(grid: Grid) -> Grid:
     rows = tuple(tuple(map(_with_points, row)) for row in grid.rows)
     note = Note("decimal_comma_read", message, first.whole)
     return replace(grid, rows=rows, notes=(*grid.notes, note))
+
+
+def _in_thousands(cell: GridCell, number: re.Match[str]) -> GridError:
+    message = say(
+        "The point in `{typed}` may separate thousands, because other numbers here have a decimal "
+        "comma. Write {thousands} or {number}.",
+        typed=number[0],
+        thousands=number[0].replace(".", ""),
+        number=number[0].replace(".", ","),
+    )
+    return GridError("decimal_comma", message, cell.span(*number.span()))
 
 
 def _numbers(text: str) -> Mapping[int, str] | None:
@@ -58,7 +84,7 @@ def _numbers(text: str) -> Mapping[int, str] | None:
 
 
 def _with_points(cell: GridCell) -> GridCell:
-    if "," not in cell.text:
+    if "," not in cell.text or _GROUPED.search(cell.text):
         return cell
     places = _numbers(cell.text) or {}
     letters = ["." if i in places else letter for i, letter in enumerate(cell.text)]

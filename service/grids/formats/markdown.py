@@ -41,7 +41,10 @@ def _parse(source: SourceText) -> Grid:
             continue
         cells = _cells(line)
         if len(cells) == 1 and not _SEPARATOR.search(line.text):
-            message = say("This line of the table has no |; paste the table alone.")
+            message = say(
+                "Line {line} is in the table, but has no |. Delete it, or paste the table alone.",
+                line=line.line_number,
+            )
             raise GridError("text_around", message, line.whole)
         rows.append(cells)
     return grid("Markdown", rows, source.whole)

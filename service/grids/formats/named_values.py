@@ -4,6 +4,7 @@ The values may also be below each other, as in YAML, or arguments: ``DH('a', l1,
 """
 
 import re
+from dataclasses import replace
 from itertools import islice, pairwise
 from typing import Final, NamedTuple
 
@@ -93,7 +94,7 @@ def _spread(source: SourceText) -> SourceText:
 
 def _items(source: SourceText) -> list[_Item]:
     text = _STYLE.sub(lambda mark: " " * len(mark[0]), source.text)
-    source = _spread(SourceText(text, source.starts, source.ends, source.at))
+    source = _spread(replace(source, text=text))
     text = source.text
     first = islice(_NAME.finditer(text), len(_COLUMNS) * GRID_LIMITS.rows + 1)
     names = [name for name in first if name["sign"] != "," or name["quote"]]

@@ -13,7 +13,7 @@ from typing import Final
 from service.expressions.errors import Note
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
-from service.grids.scripts.program_text import begins_as_matrix, without_remarks
+from service.grids.scripts.program_text import begins_as_matrix, text_around, without_remarks
 from service.translations import say
 
 # The value may be a calculation or a call of a function, but not a matrix or a list.
@@ -23,10 +23,11 @@ ASSIGNMENT: Final = re.compile(
 )
 # An assignment to several letters: d1, d4 = 0.1625, 0.1333.
 _LETTER: Final = r"[A-Za-z]\w{0,20}"
-_VALUE: Final = r"[^,;=\n()\[\]{}#%]{1,40}"
+_VALUE: Final = r"(?:[^,;=\n()\[\]{}#%]|\([^,;=\n()\[\]{}#%]{0,40}\)){1,40}"
 _TUPLE: Final = re.compile(
     rf"[ \t\r]*(?P<line>\(?(?P<names>{_LETTER}(?:[ \t]*,[ \t]*{_LETTER}){{1,11}})\)?[ \t]*=(?!=)"
-    rf"[ \t]*\(?(?P<values>{_VALUE}(?:,{_VALUE}){{1,11}})\)?)[ \t\r]*(?:[#%][^\n]*)?(?:[;\n]|\Z)"
+    rf"[ \t]*\(?(?P<values>(?! ){_VALUE}(?:,{_VALUE}){{1,11}})\)?)[ \t\r]*"
+    r"(?:[#%][^\n]*)?(?:[;\n]|\Z)"
 )
 _TUPLES: Final = re.compile(rf"(?:(?<=[;\n])|\A){_TUPLE.pattern}")
 _NUMBER: Final = re.compile(r"[-+]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+]?\d{1,3})?")
@@ -65,6 +66,8 @@ _AROUND_SHORTHANDS: Final = re.compile(
     r"[\s,;:.]*(?:(?:where|with|using|wobei|mit|donde|con|où|avec|其中|and|und|y|et|etc)[\s,;:.]*){0,9}"
 )
 _TAIL: Final = " \t\r\n;,"
+# The beginning of a matrix on a later line of a script.
+_MATRIX: Final = re.compile(r"\n[ \t]*[A-Za-z]\w{0,40}[ \t]{0,4}=[ \t]{0,4}(?:[\w.]{1,40}\()?[\[]")
 _MOST_NAMES: Final = 8
 
 
@@ -100,6 +103,15 @@ def without_given_values(source: SourceText) -> tuple[SourceText, tuple[Note, ..
     if (shown is plain and not at) or not begins_as_matrix(rest.text):
         return source, ()
     return rest, given_numbers_note(given, set(_READ.findall(rest.text)))
+
+
+def check_script(source: SourceText) -> None:
+    """Raise GridError if a text is a script with a statement before its matrix."""
+    # Its statements would be read as rows of values.
+    plain = without_remarks(source)
+    if _MATRIX.search(plain.text):
+        _, at = _given_values(plain)
+        raise text_around(plain.cut(at, len(plain.text)))
 
 
 def without_definitions(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:

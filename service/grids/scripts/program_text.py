@@ -40,6 +40,20 @@ _FUNCTION: Final = re.compile(
     r"\s*function\s+(?:\[?(?P<output>\w{1,40})\]?\s*=\s*)?\w{1,40}\s*"
     r"(?:\([\w, ~]{0,100}\))?[ \t]*[\n;,](?P<body>(?s:.)*?)(?:(?<=[\s;])end(?:function)?[\s;]*)?"
 )
+# A function of Python: its first line, its last line, and lines below it that only call it.
+_DEF: Final = re.compile(r"def \w{1,40}\([^()\n]{0,200}\)[^()\n]{0,60}:[ \t]*(?:#.*)?\r?$")
+_RETURN: Final = re.compile(r"[ \t]+return[ \t]+\(?([A-Za-z]\w{0,40})\)?[ \t;]*(?:#.*)?\r?")
+_CALLS: Final = re.compile(
+    r"[ \t]*(?:#.*|(?:[A-Za-z]\w{0,40}[ \t]*=[ \t]*)?(?:\w{1,20}\.)?\w{1,40}\([^@*/+\n]*\)"
+    r"|if __name__ ?== ?['\"]__main__['\"]:.*)?\s*"
+)
+_ASSIGNED: Final = re.compile(r"[ \t]*([A-Za-z]\w{0,40})[ \t]*=(?!=)")
+_UNPACKED: Final = re.compile(
+    r"[ \t]*[(\[]?(?P<names>[A-Za-z]\w{0,20}(?:[ \t]{0,4},[ \t]{0,4}[A-Za-z]\w{0,20}){1,11})[)\]]?"
+    r"[ \t]*=[ \t]*\w{1,20}[ \t;]*(?:#.*)?\r?"
+)
+_LAST_NUMBER: Final = re.compile(r"(\d{1,2})\Z")
+_RETURNS: Final = re.compile(r"[ \t]+return(?!\w)")
 # A name on a line of its own above its value: MATLAB's ``ans =``.
 _TITLE: Final = re.compile(
     r"\s*(?:[^\W\d][\w{}^]{0,20}(?:\([\w,: ]{0,40}\))?[ \t]*:?=[ \t]*\r?\n\s*){1,3}"
@@ -112,11 +126,46 @@ def without_function(source: SourceText) -> SourceText:
     """Return the body of the one function in a text, if the body sets the function's output."""
     found = _FUNCTION.fullmatch(source.text)
     if found is None or "function" in found["body"]:
-        return source
+        return _without_def(source)
     body = source.cut(*found.span("body"))
     output = found["output"]
     is_output = re.compile(rf"(?:^|;)[ \t]*(?:return\s|{output or 'return'}[ \t]*=)", re.MULTILINE)
     return body if not output or is_output.search(body.text) else source
+
+
+def _without_def(source: SourceText) -> SourceText:
+    """Return the statements of the one function of Python in a text that returns a matrix.
+
+    Calls below the function are left out. Any other text is returned unchanged.
+    """
+    lines = source.lines()
+    heads = [i for i, line in enumerate(lines) if _DEF.match(line.text)]
+    if len(heads) != 1:
+        return source
+    [head] = heads
+    after = next((i for i in range(head + 1, len(lines)) if lines[i].text[:1].strip()), len(lines))
+    body = [i for i in range(head + 1, after) if lines[i].text.strip()]
+    returns = [i for i in body if _RETURNS.match(lines[i].text)]
+    if len(returns) != 1 or not all(_CALLS.fullmatch(line.text) for line in lines[after:]):
+        return source
+    returned = _RETURN.fullmatch(lines[body[-1]].text)
+    if returned is None and "[" not in lines[returns[0]].text:
+        return source
+    first, last = body[0], body[-1] if returned else body[-1] + 1
+    kept = [line for line in lines[first:last] if not _unpacks(line.text)]
+    names = [found[1] for line in kept if (found := _ASSIGNED.match(line.text))]
+    if returned and names.count(returned[1]) != 1:
+        return source
+    pieces = [*lines[:head], *kept]
+    return joined([each for line in pieces for each in (line, line.spelled("\n"))], source.at)
+
+
+def _unpacks(line: str) -> bool:
+    """True if a line names the elements of an argument in order: ``q1, q2, q3 = q``."""
+    unpacked = _UNPACKED.fullmatch(line)
+    names = unpacked["names"].split(",") if unpacked else []
+    numbers = [found[1] for name in names if (found := _LAST_NUMBER.search(name.strip()))]
+    return bool(names) and numbers == [str(i + 1) for i in range(len(names))]
 
 
 def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
@@ -156,7 +205,7 @@ def without_remarks(source: SourceText) -> SourceText:
     pieces: list[SourceText] = []
     start = 0
     for i, end in _remarks(source.text):
-        blank = SourceText(" ", [source.starts[i]], [source.ends[i]])
+        blank = source.cut(i, i + 1).spelled(" ")
         pieces += [source.cut(start, i), blank]
         start = end
     if not pieces:

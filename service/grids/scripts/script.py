@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError
@@ -40,7 +40,7 @@ def statements(source: SourceText) -> list[SourceText]:
     Raises GridError for unbalanced brackets, and for too many brackets.
     """
     # Brackets may span several lines.
-    source = SourceText(_BLANK.sub(" ", source.text), source.starts, source.ends, source.at)
+    source = replace(source, text=_BLANK.sub(" ", source.text))
     plain = without_remarks(_without_blocks(without_prompts(source)))
     if sum(map(plain.text.count, CLOSES)) > GRID_LIMITS.separators:
         raise unread_script(

@@ -200,7 +200,7 @@ def in_order(links: Links, source: SourceText) -> list[RobotLink]:
 def _line_of(row: list[SourceText]) -> SourceText:
     text = " ".join(cell.text for cell in row)
     start, end = row[0].whole[0], max(row[0].whole[1], row[-1].whole[1])
-    return SourceText(text, (start,) * len(text), (end,) * len(text), start)
+    return SourceText(text, (start,) * len(text), (end,) * len(text), start, row[0].typed)
 
 
 def check_count(links: Sized, source: SourceText) -> None:

@@ -7,7 +7,7 @@ error, because the unit may apply to the table. So is a sentence that may correc
 import re
 from bisect import bisect_left
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from typing import Final
 
 from service.expressions.errors import Note, Span
@@ -35,8 +35,20 @@ _FEW_WORDS: Final = re.compile(
 )
 _MOST_WORDS: Final = 2
 _FEWEST_ROWS: Final = 2
+# A rule, a mail address or an address on the web.
+_ASIDE: Final = re.compile(r"[-=_*~#+\s]{2,200}|[\w.+-]{1,64}@[\w.-]{1,64}|https?://\S{1,200}")
+_DOCSTRING: Final = re.compile(r"^[ \t]*[rRuU]?(\"{3}|'{3})", re.MULTILINE)
 # A number that is no student's.
 _NUMBER: Final = re.compile(r"(?<![\w.])\d{1,4}(?:\.\d{1,12})?(?!\w)")
+_PLAIN_WORD: Final = re.compile(
+    r"[(\"„“]?(?:[^\W\d_]+(?:['’-][^\W\d_]+)*|\d{5,9})[).,:;!?\"“”]{0,3}"
+)
+# Signs of a sentence or of a student's name, which the words of headers do not have.
+_SENTENCE: Final = re.compile(
+    r"[.,:;!?'’]|\d{5}|(?<!\w)(?:is|are|this|the|here|my|ist|sind|das|hier|meine?|und|viele"
+    r"|est|voil[aà]|voici|mon|ma|es|est[ae]|mi|gracias|merci|danke|thanks)(?!\w)|我的|答案|谢谢",
+    re.IGNORECASE,
+)
 # A function's call in a program.
 _CALL: Final = re.compile(r"\w\(")
 # Signs of a row with several values.
@@ -105,7 +117,9 @@ def without_fence(source: SourceText) -> SourceText:
         return source
     first, last = fences
     around = [*lines[:first], *lines[last + 1 :]]
-    if first + 1 == last or any(line.text.strip() and not _is_prose(line.text) for line in around):
+    if first + 1 == last or any(
+        line.text.strip() and not is_sentence(line.text) for line in around
+    ):
         return source
     check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first + 1], lines[last - 1])
@@ -130,11 +144,17 @@ _PRODUCT: Final = (
     rf"[ \t]{{0,3}}{_FACTOR}(?:{_BETWEEN}{_FACTOR}){{1,12}}\s{{0,4}}"
     r"(?(open)(?:\$\$?|\\\]|\\\)))[.,]?[ \t]*"
 )
-_PICTURE: Final = re.compile(rf"^(?:{_IMAGE}|{_PRODUCT})$\n?", re.MULTILINE)
+# The number of a page: "Page 3 of 4", "Seite 2", "- 3 -", "第 3 页".
+_PAGE: Final = (
+    r"[ \t]*(?:(?:page|seite|blatt|página|pagina|p\.|s\.)[ \t]?\d{1,3}"
+    r"(?:[ \t]?(?:of|von|sur|de|di|/)[ \t]?\d{1,3})?|-[ \t]?\d{1,3}[ \t]?-"
+    r"|第[ \t]?\d{1,3}[ \t]?页(?:.{0,3}共[ \t]?\d{1,3}[ \t]?页)?)[ \t]*"
+)
+_PICTURE: Final = re.compile(rf"^(?:{_IMAGE}|{_PRODUCT}|(?i:{_PAGE}))\r?$\n?", re.MULTILINE)
 
 
 def without_pictures(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return the text without lines that are an image or a product of named matrices."""
+    """Return the text without lines that are an image, a product of matrices or a page number."""
     found = _PICTURE.search(source.text)
     rest = joined(source.split(_PICTURE), source.at) if found else source
     if found is None or not rest.text.strip():
@@ -142,13 +162,15 @@ def without_pictures(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
     return rest, (left_aside(source.span(*found.span())),)
 
 
-def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
+def without_titles(
+    source: SourceText, *, of_table: bool = False
+) -> tuple[SourceText, tuple[Note, ...]]:
     """Return the text without the sentences around the table, and a note on the sentences.
 
     Raises GridError if a sentence names a unit.
     """
     lines = [line for line in source.lines() if line.text.strip()]
-    is_row = _row_test(source.text, lines)
+    is_row = _row_test(source.text, lines, of_table=of_table)
     # In a spreadsheet, a title or a remark is followed by empty cells.
     inner = [i for i, line in enumerate(lines) if not _is_padded(line.text)] or range(len(lines))
     rows = [i for i, line in enumerate(lines) if inner[0] <= i <= inner[-1] and is_row(line.text)]
@@ -156,10 +178,39 @@ def without_titles(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
         return source, ()
     first, last = rows[0], rows[-1]
     around = [*lines[:first], *lines[last + 1 :]]
-    if not around or not all(_is_prose(line.text.strip(_PADDING)) for line in around):
+    if not around or not all(map(_is_aside, around)):
         return source, ()
     check_sentences(lines[:first], lines[last + 1 :])
     return _between(source, lines[first], lines[last]), (left_aside(around[0].whole),)
+
+
+def _is_aside(line: SourceText) -> bool:
+    text = line.text.strip(_PADDING)
+    return is_sentence(text) or _ASIDE.fullmatch(text) is not None
+
+
+def without_docstrings(source: SourceText) -> SourceText:
+    """Return a script of Python without its docstrings. Raises GridError if one names a unit."""
+    found = list(_docstrings(source.text))
+    starts = [0, *(end for _, end in found)]
+    ends = [*(start for start, _ in found), len(source.text)]
+    rest = joined(map(source.cut, starts, ends), source.at)
+    if not found or not rest.text.strip():
+        return source
+    for start, end in found:
+        for line in source.cut(start, end).lines():
+            check_units(line)
+    return rest
+
+
+def _docstrings(text: str) -> Iterator[Span]:
+    at = 0
+    while opening := _DOCSTRING.search(text, at):
+        closing = text.find(opening[1], opening.end())
+        at = closing + len(opening[1])
+        if closing < 0 or text[at:].partition("\n")[0].strip():
+            return
+        yield opening.start(), at
 
 
 def left_aside(place: Span) -> Note:
@@ -168,7 +219,7 @@ def left_aside(place: Span) -> Note:
     return Note("text_left_aside", message, place)
 
 
-def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
+def _row_test(text: str, lines: list[SourceText], *, of_table: bool) -> Callable[[str], bool]:
     if marks := [i for i, line in enumerate(lines) if _ENVIRONMENT.search(line.text)]:
         within = {line.text for line in lines[marks[0] : marks[-1] + 1]}
         return within.__contains__
@@ -184,7 +235,7 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
             if len(rows) > 1 and min(rows) > 1:
                 return lambda line: any(map(line.__contains__, separator))
         if not any(sign in text for separator in _SEPARATORS[:-1] for sign in separator) and (
-            of_columns := _row_test_of_columns(lines)
+            of_columns := _row_test_of_columns(lines, of_table=of_table)
         ):
             return of_columns
     heading = lines[0].text if len(lines) > 1 and _has_heading(lines) else None
@@ -193,17 +244,32 @@ def _row_test(text: str, lines: list[SourceText]) -> Callable[[str], bool]:
     )
 
 
-def _row_test_of_columns(lines: list[SourceText]) -> Callable[[str], bool] | None:
+def _row_test_of_columns(
+    lines: list[SourceText], *, of_table: bool
+) -> Callable[[str], bool] | None:
     # Between blanks, the rows are the lines with the most frequent number of values.
     counts = {line.text: len(split_blanks(line).elements) for line in lines}
     numbers = Counter(counts[line.text] for line in lines if counts[line.text] > _MOST_WORDS)
     [(width, rows)] = numbers.most_common(1) or [(0, 0)]
+    # A sentence may have as many words as a row has values.
+    words = [line.text for line in lines if counts[line.text] == width and _is_words(line.text)]
+    if of_table:
+        # The headers of a table may be words, and the reader of tables knows the number of rows.
+        words = [text for text in words if _SENTENCE.search(text)]
+    if words and rows - len(words) >= (_FEWEST_ROWS if of_table else width):
+        counts.update(dict.fromkeys(words, 0))
+        rows -= len(words)
     others = [line for line, count in counts.items() if count != width]
     if rows < _FEWEST_ROWS or not others or any(map(_CALL.search, others)):
         return None
     if any(len(_NUMBER.findall(line)) > 1 for line in others):
         return None  # it may be a row with a value too few or too many
     return lambda line: counts.get(line) == width
+
+
+def _is_words(line: str) -> bool:
+    """True if a line is a sentence or a name, of words and a student's number only."""
+    return is_sentence(line) and all(map(_PLAIN_WORD.fullmatch, line.split()))
 
 
 def _has_heading(lines: list[SourceText]) -> bool:
@@ -219,11 +285,11 @@ def _has_heading(lines: list[SourceText]) -> bool:
 
 
 def _is_padded(line: str) -> bool:
-    return line.rstrip("\r\n ")[-2:] in _EMPTY_CELLS and _is_prose(line.strip(_PADDING))
+    return line.rstrip("\r\n ")[-2:] in _EMPTY_CELLS and is_sentence(line.strip(_PADDING))
 
 
-def _is_prose(line: str) -> bool:
-    """True if a line has words, and no signs of a formula or of headers."""
+def is_sentence(line: str) -> bool:
+    """True if a line has words, and no signs of a formula, of headers or of cells."""
     plain = _INLINE.sub(" ", _COMMAND.sub(r"\1 ", line)).strip()
     if _is_few_words(plain) or (not plain and _ONLY_COMMAND.match(line)):
         return True
@@ -247,8 +313,9 @@ def check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
         raise GridError(
             "text_around",
             say(
-                "This sentence may correct the table. Write the correction into the table, and "
-                "delete the sentence."
+                "The sentence in line {line} may correct the table. Write the correction into the "
+                "table, and delete the sentence.",
+                line=corrections[0].line_number,
             ),
             corrections[0].whole,
         )
@@ -261,8 +328,9 @@ def check_units(line: SourceText) -> None:
         raise GridError(
             "text_around",
             say(
-                "This line names a unit, but not its columns. Delete the line, and write the "
-                "units into the headers, such as theta [deg]."
+                "Line {line} names a unit, but not its columns. Delete the line, and write the "
+                "units into the headers, such as theta [deg].",
+                line=line.line_number,
             ),
             line.whole,
         )

@@ -78,13 +78,14 @@ def matrix_rows(
     # matrix, ``motion`` the motion in given formulas, both at given samples. ``slipped`` returns
     # the matrices that follow from slips in the table. ``work_budget`` limits the search in
     # products. ``name`` is the name of this matrix if the answer has several, as in the row "A2.1".
+    notes = grading.messages(student.findings)
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
     if (found >= Match.ROUNDED).all():
         rows = entry_rows(student.entries, found, {}, grading, labels=labels)
-        return MatrixRows(rows, is_right=True)
+        return MatrixRows(rows, notes, is_right=True)
     if not grading.affords(LINK_WORK if name else MATRIX_WORK):
-        return MatrixRows(entry_rows(student.entries, found, {}, grading, labels=labels))
+        return MatrixRows(entry_rows(student.entries, found, {}, grading, labels=labels), notes)
     scale = expected.scale(grading.exercise.length_scale)
     actual = Samples.subset_of(student.values, SUBSET)
     right = Samples.subset_of(expected.values, SUBSET)
@@ -141,10 +142,11 @@ def matrix_rows(
     findings += [(check, tuple(map(Place, labels[:3])))] if check else []
     return MatrixRows(
         entry_rows(student.entries, found, slips, grading, labels=labels),
-        tuple(
-            message
-            for finding, places in findings
-            for message in grading.messages((finding,), places)
+        (
+            *notes,
+            *chain.from_iterable(
+                grading.messages((finding,), places) for finding, places in findings
+            ),
         ),
     )
 

@@ -20,6 +20,7 @@ from service.grading.reading.entry import (
 )
 from service.grading.reading.matrices.matrix_entry_names import misnamed_entry
 from service.grading.reading.pasted import from_grid_error, pasted_grid, place_of, placed
+from service.grading.reading.several_answers import FoundAnswer, read_once
 from service.grading.reading.unit_comments import refuse_other_lengths
 from service.grading.report import Verdict
 from service.grids import Grid, GridCell, GridError
@@ -34,12 +35,14 @@ Quantities = Sequence[Sequence[Kind]]
 class StudentMatrix:
     """A matrix as read: its entries and their values ``(rows, columns, SAMPLES)``.
 
-    A value is NaN if its entry is unreadable or undefined.
+    A value is NaN if its entry is unreadable or undefined. ``findings`` are notes on how the whole
+    matrix was read.
     """
 
     entries: list[list[Entry]]
     quantities: Quantities
     values: Numbers
+    findings: tuple[Finding, ...] = ()
 
     @property
     def expressions(self) -> list[Expression | None]:
@@ -64,12 +67,19 @@ def read_matrix(answer: object, quantities: Quantities, reader: Reader) -> Stude
     """
     # Omitted rows at the end are missing.
     # A row of the wrong length is unreadable, because its entries are ambiguous.
+    if isinstance(answer, str) and answer.strip():
+        return _pasted(answer, quantities, reader)
     return matrix_of_entries(_entries(answer, quantities, reader), quantities, reader)
 
 
 def matrix_of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> StudentMatrix:
     """Read the matrix in a pasted grid. Raises UnreadableAnswerError if its size is wrong."""
-    return matrix_of_entries(_of_grid(grid, quantities, reader), quantities, reader)
+    cells = _cells(grid, quantities)
+    if cells is None:
+        span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
+        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
+    matrix = matrix_of_entries(_of_cells(cells, quantities, reader), quantities, reader)
+    return replace(matrix, findings=tuple(map(from_note, grid.notes)))
 
 
 def unreadable_matrix(finding: Finding, quantities: Quantities, reader: Reader) -> StudentMatrix:
@@ -96,7 +106,7 @@ def matrix_values(entries: list[list[Entry]], quantities: Quantities, samples: S
 
 def _entries(answer: object, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
     if isinstance(answer, str):
-        return _pasted(answer, quantities, reader) if answer.strip() else []
+        return []
     if not isinstance(answer, list) or not answer or len(answer) > len(quantities):
         raise UnreadableAnswerError(_of_wrong_size("", quantities))
     return [_row(row, i, quantities, reader) for i, row in enumerate(answer)]
@@ -161,28 +171,47 @@ def _unreadable_row(finding: Finding | None, cells: Sequence[object]) -> list[En
     return [first, *[UNREADABLE] * (len(cells) - 1)]
 
 
-def _pasted(text: str, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+def _pasted(text: str, quantities: Quantities, reader: Reader) -> StudentMatrix:
+    def find(piece: str, reader: Reader) -> FoundAnswer | None:
+        cells = _cells(_grid(piece, quantities, reader), quantities)
+        if cells is None or [len(row) for row in cells] != [len(row) for row in quantities]:
+            return None
+        texts = tuple("".join(cell.text.split()) for row in cells for cell in row)
+        entries = tuple(chain.from_iterable(_of_cells(cells, quantities, reader)))
+        return FoundAnswer(texts, entries, (*chain.from_iterable(quantities),), is_whole=True)
+
+    def is_one(grid: Grid) -> bool:
+        return _cells(grid, quantities) is not None
+
     try:
-        refuse_other_lengths(text, chain.from_iterable(quantities), reader)
-        grid = pasted_grid(text, reader)
+        grid, notes = read_once(
+            text, lambda piece: _grid(piece, quantities, reader), is_one, find, reader
+        )
     except GridError as error:
-        raise UnreadableAnswerError(from_grid_error(error)) from error
-    return _of_grid(grid, quantities, reader)
+        raise UnreadableAnswerError(from_grid_error(error, text)) from error
+    return matrix_of_grid(replace(grid, notes=(*grid.notes, *notes)), quantities, reader)
 
 
-def _of_grid(grid: Grid, quantities: Quantities, reader: Reader) -> list[list[Entry]]:
+def _grid(text: str, quantities: Quantities, reader: Reader) -> Grid:
+    refuse_other_lengths(text, chain.from_iterable(quantities), reader)
+    return pasted_grid(text, reader)
+
+
+def _cells(grid: Grid, quantities: Quantities) -> Sequence[Sequence[GridCell]] | None:
+    # None if the grid has another size.
     height, width = len(quantities), len(quantities[0])
     grid = grid.with_empty_rows(height).without_half_row(height)
     if grid.format == ANY_SIZE and height == width:
         grid = replace(grid, rows=tuple(row[:width] for row in grid.rows[:height]))
     if len(grid.rows) > height or all(len(row) != width for row in grid.rows):
-        span = grid.rows[0][0].whole[0], grid.rows[-1][-1].whole[1]
-        raise UnreadableAnswerError(_of_wrong_size(grid.size, quantities, span))
-    entries = [_pasted_row(row, i, quantities, reader) for i, row in enumerate(grid.rows)]
-    first = entries[0][0]
-    notes = tuple(map(from_note, grid.notes))
-    entries[0][0] = replace(first, findings=(*first.findings, *notes))
-    return entries
+        return None
+    return grid.rows
+
+
+def _of_cells(
+    cells: Sequence[Sequence[GridCell]], quantities: Quantities, reader: Reader
+) -> list[list[Entry]]:
+    return [_pasted_row(row, i, quantities, reader) for i, row in enumerate(cells)]
 
 
 def _pasted_row(

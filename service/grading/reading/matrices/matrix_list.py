@@ -59,7 +59,7 @@ def grids_in_order(
         refuse_other_lengths(text, ["length"], reader)
         grids = pasted_grids(text, reader)
     except GridError as error:
-        raise UnreadableAnswerError(from_grid_error(error)) from error
+        raise UnreadableAnswerError(from_grid_error(error, text)) from error
     errors = [each.grid for each in grids if isinstance(each.grid, GridError)]
     if len(errors) == len(grids):
         raise UnreadableAnswerError(_no_matrices(errors[0], labels))
@@ -128,10 +128,8 @@ def _matrix(grid: Grid | GridError | None, quantities: Quantities, reader: Reade
 
 
 def with_notes(matrix: StudentMatrix, notes: Sequence[Finding]) -> StudentMatrix:
-    """Return the matrix with notes on its first entry."""
-    [first, *row], *rows = matrix.entries
-    entry = replace(first, findings=(*first.findings, *notes))
-    return replace(matrix, entries=[[entry, *row], *rows])
+    """Return the matrix with more notes on how it was read."""
+    return replace(matrix, findings=(*matrix.findings, *notes))
 
 
 def _places(

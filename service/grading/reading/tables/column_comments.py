@@ -21,6 +21,7 @@ from service.grading.reading.unit_comments import (
     units_in,
 )
 from service.grids import GridError
+from service.grids.cutting.source_text import line_number
 from service.kinematics.chain import COLUMNS
 from service.translations import say
 
@@ -65,8 +66,9 @@ def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> 
         others = set() if has_angles else angles - {reader.angle_unit}
         if others or (not has_lengths and lengths - {METRES.get(reader.length_unit or "")}):
             message = say(
-                "This line names a unit, but not its columns. Delete the line, and write the "
-                "units into the headers, such as theta [deg]."
+                "Line {line} names a unit, but not its columns. Delete the line, and write the "
+                "units into the headers, such as theta [deg].",
+                line=line_number(text, comment.start()),
             )
             raise GridError("text_around", message, comment.span())
 

@@ -6,6 +6,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
+from itertools import chain
 from typing import Final
 
 from service.grading.feedback import Finding, reading_error, reading_note
@@ -18,6 +19,7 @@ from service.grading.reading.pasted import (
     quoted,
     side_by_side,
 )
+from service.grading.reading.several_answers import FoundAnswer, read_once
 from service.grading.reading.tables import column_headers
 from service.grading.reading.tables.cell_names import arranged_row, first_number, row_entries
 from service.grading.reading.tables.column_comments import columns_in_comments, refuse_other_units
@@ -42,6 +44,8 @@ from service.translations import listed, say, say_count
 ColumnOrder = tuple[int | None, Header]
 # The most rows above the headers that do not belong to the table.
 _MOST_NAMES: Final = 3
+# One of several tables in a text has at least so many rows.
+_FEWEST_ROWS: Final = 2
 _WHOLE: Final = re.compile(r"\d{1,12}")
 _SHORT: Final = re.compile(r"\d{1,4}")
 _WORD: Final = re.compile(r"[^\W\d_]{3}")
@@ -77,25 +81,51 @@ class PastedTable:
     """
 
     # ``is_named`` is true if the columns have headers, or names in a script or a comment.
+    # ``grid`` has the cells as they were pasted.
     rows: tuple[PastedRow, ...]
     headers: tuple[Header, ...]
     findings: tuple[Finding, ...] = ()
     is_named: bool = True
     convention: str | None = None
+    grid: Grid | None = None
 
 
 def read_pasted_table(text: str, reader: Reader, order: Sequence[str] = COLUMNS) -> PastedTable:
     """Read the rows of a pasted DH table; columns without names are in ``order``.
 
-    Raises GridError if there is no table.
+    Raises GridError if there is no table, or if there are several that differ.
     """
+
+    def find(piece: str, reader: Reader) -> FoundAnswer | None:
+        table = _read_one(piece, reader, order)
+        if any(row.problem for row in table.rows) or len(table.rows) < _FEWEST_ROWS:
+            return None
+        units = [header.unit for header in table.headers]
+        texts = [
+            f"{text} {unit}"
+            for row in table.rows
+            for text, unit in zip(row.texts, units, strict=True)
+        ]
+        entries = tuple(chain.from_iterable(entries_of(table, reader)))
+        is_whole = len(table.rows) >= len(reader.vocabulary.joints)
+        quantities = (*QUANTITIES.values(),) * len(table.rows)
+        return FoundAnswer(tuple(texts), entries, quantities, is_whole, is_table=True)
+
+    def is_one(table: PastedTable) -> bool:
+        return len(table.rows) <= len(reader.vocabulary.joints)
+
+    table, notes = read_once(
+        text, lambda piece: _read_one(piece, reader, order), is_one, find, reader
+    )
+    return replace(table, findings=(*table.findings, *map(from_note, notes)))
+
+
+def _read_one(text: str, reader: Reader, order: Sequence[str]) -> PastedTable:
     robot = pasted_robot(text, reader)
-    if robot:
-        table = table_of_robot(robot, reader)
-    else:
-        table = table_of(pasted_grid(text, reader, of_table=True), reader, order, comments=text)
+    grid = robot.grid if robot else pasted_grid(text, reader, of_table=True)
+    table = table_of_robot(robot, reader) if robot else table_of(grid, reader, order, comments=text)
     refuse_other_units(text, table.headers, reader)
-    return table
+    return replace(table, grid=grid)
 
 
 def table_of(

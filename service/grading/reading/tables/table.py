@@ -11,7 +11,7 @@ from service.expressions import read as read_expression
 from service.grading.feedback import Finding, UnreadableAnswerError, reading_error
 from service.grading.numerics.samples import Samples
 from service.grading.reading.entry import Entry, Reader, entry_values
-from service.grading.reading.pasted import from_grid_error, pasted_grid, pasted_robot
+from service.grading.reading.pasted import from_grid_error
 from service.grading.reading.tables.cell_names import first_number
 from service.grading.reading.tables.cells import (
     canonical_table,
@@ -19,13 +19,12 @@ from service.grading.reading.tables.cells import (
     memoized_row,
     read_row,
 )
-from service.grading.reading.tables.column_comments import refuse_other_units
 from service.grading.reading.tables.column_headers import QUANTITIES
 from service.grading.reading.tables.pasted_table import (
     PastedTable,
     entries_of,
+    read_pasted_table,
     table_of,
-    table_of_robot,
 )
 from service.grading.report import Severity, Verdict
 from service.grading.work_budget import MAX_SYMBOLS_AGAIN, WorkBudget
@@ -202,12 +201,9 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
     if not text.strip():
         return StudentTable((), _NO_ROWS, None)
     try:
-        robot = pasted_robot(text, reader)
-        grid = robot.grid if robot else pasted_grid(text, reader, of_table=True)
-        pasted = table_of_robot(robot, reader) if robot else table_of(grid, reader, comments=text)
-        refuse_other_units(text, pasted.headers, reader)
+        pasted = read_pasted_table(text, reader)
     except GridError as error:
-        raise UnreadableAnswerError(from_grid_error(error)) from error
+        raise UnreadableAnswerError(from_grid_error(error, text)) from error
     if len(pasted.rows) > MAX_ROWS:
         raise UnreadableAnswerError(_too_many_rows(len(pasted.rows)))
 
@@ -218,8 +214,10 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
 
     def reread(other: Sequence[str]) -> StudentTable:
         separate = _with_own_budget(reader)
+        if pasted.grid is None:
+            return StudentTable((), _NO_ROWS, None)
         try:
-            return read(table_of(grid, separate, other), separate)
+            return read(table_of(pasted.grid, separate, other), separate)
         except GridError:
             return StudentTable((), _NO_ROWS, None)
 

@@ -185,5 +185,4 @@ def test_the_preview_shows_unreadable_cells(arm: Exercise) -> None:
 
 def test_a_note_on_the_reading_is_shown_once(arm: Exercise) -> None:
     report = pasted(arm, f"A1 = {A1}\nA2 = {A2}")
-    told = [code for row in report.rows for each in row.cells for code in codes(each)]
-    assert told == ["blank_before_sign"]
+    assert [message.code for message in report.feedback] == ["blank_before_sign"]
