@@ -85,10 +85,9 @@ def read_once(
 def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] | None:
     # The text up to the end of its first answer, and a note, if equal answers follow; None if the
     # text has only one answer. Raises GridError if the answers differ.
-    if len(text) > GRID_LIMITS.characters:
+    if len(text) > GRID_LIMITS.characters or not _FEWEST_LINES <= _count_lines(text) <= _MOST_LINES:
         return None
-    lines = SourceText.of(text).lines()
-    ways = list(_starts(lines)) if len(lines) <= _MOST_LINES else []
+    ways = list(_starts(lines := SourceText.of(text).lines()))
     if not ways or not reader.budget.affords_search(PASTED_WORK * 2 * len(text)):
         return None
     own = replace(reader, budget=WorkBudget(MAX_SYMBOLS, repairs=0, pasted=4 * MAX_PASTED))
@@ -102,6 +101,10 @@ def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] 
     finally:
         reader.budget.charge_search(SYMBOL_WORK * (MAX_SYMBOLS - max(own.budget.symbols, 0)))
     return None
+
+
+def _count_lines(text: str) -> int:
+    return len(text.splitlines())
 
 
 def _first(

@@ -22,6 +22,8 @@ _DECLARES: Final = re.compile(
     r"(?P<options>[^()\n]{0,100})\)[ \t]{0,40})(?=[;\r\n#%]|\Z)",
     re.MULTILINE,
 )
+# One of these is in the name of each function.
+_FUNCTIONS: Final = ("ym", "var")
 # A name in a formula, perhaps with an index. Names of arguments, and names in strings and comments,
 # are no symbols.
 _USE: Final = re.compile(
@@ -40,6 +42,8 @@ def with_own_symbols(source: SourceText) -> SourceText:
 
     Raises GridError if it is not certain which symbol a name means.
     """
+    if not any(word in source.text for word in _FUNCTIONS):
+        return source
     declared = [each for each in _DECLARES.finditer(source.text) if _is_other(each)][:_MOST]
     if not declared:
         return source

@@ -293,10 +293,9 @@ def is_sentence(line: str) -> bool:
     plain = _INLINE.sub(" ", _COMMAND.sub(r"\1 ", line)).strip()
     if _is_few_words(plain) or (not plain and _ONLY_COMMAND.match(line)):
         return True
-    line = plain
-    if len({name[0] for name in _PARAMETER.finditer(line.lower())}) > 1:
+    if not _WORD.search(plain) or _SIGNS.search(_LEGEND.sub("", plain)):
         return False
-    return _WORD.search(line) is not None and not _SIGNS.search(_LEGEND.sub("", line))
+    return len({name[0] for name in _PARAMETER.finditer(plain.lower())}) <= 1
 
 
 def _is_few_words(line: str) -> bool:
