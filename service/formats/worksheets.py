@@ -11,7 +11,7 @@ Blackboard, "Upload or download grades".
 
 import codecs
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import permutations
 from pathlib import PurePath
@@ -44,6 +44,8 @@ _BLACKBOARD_COLUMN: Final = re.compile(
 # Identifier, status, grade, maximum, whether it can be changed, and the time of the last change.
 _FEWEST_COLUMNS: Final = 6
 _EXCUSED: Final = "EX"
+# The most characters of a username.
+_LONGEST_USER: Final = 255
 # The most students that one sentence names.
 _MOST_NAMES: Final = 40
 # If more submissions are in no row, one sentence is about all of them, and names a few.
@@ -113,14 +115,17 @@ class _Cell:
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    # The numbers of the columns; ``of_row`` is True if the submission belongs to the row.
+    # The numbers of the columns. A submission belongs to the rows that have one of its keys, if
+    # ``of_row`` is True, too.
     grade: int
     comment: int | None
     max_points: Callable[[Sequence[_Cell]], str]
-    of_row: Callable[[Grade, Sequence[_Cell]], bool]
+    keys: Callable[[Sequence[_Cell]], Iterable[str]]
+    wanted: Callable[[str], Iterable[str]]
     rows: list[list[_Cell]]
     # The name of the student in a row; empty if there is none.
     person: Callable[[Sequence[_Cell]], str] = lambda _: ""
+    of_row: Callable[[Grade, Sequence[_Cell]], bool] = lambda _, __: True
 
 
 @dataclass(slots=True)
@@ -146,8 +151,10 @@ class Worksheet:
         self._text, self._encoding = _decoded(content)
         self._separator, table = _table(self._text)
         self._layout = _layout(table, column)
-        # The rows of each submission.
-        self._found: dict[tuple[str, str], list[int]] = {}
+        self._rows_of_key: dict[str, list[int]] = {}
+        for i, cells in enumerate(self._layout.rows):
+            for key in set(self._layout.keys(cells)):
+                self._rows_of_key.setdefault(key, []).append(i)
         most = [self._layout.max_points(cells) for cells in self._layout.rows]
         grades = [cells[self._layout.grade].value for cells in self._layout.rows]
         told = [value for value in most if "." in value or "," in value] or grades
@@ -224,12 +231,9 @@ class Worksheet:
             rows.changes.append((comment, told))
 
     def _rows_of(self, grade: Grade) -> list[int]:
-        layout, key = self._layout, (grade.name, grade.learner)
-        if key not in self._found:
-            self._found[key] = [
-                i for i, cells in enumerate(layout.rows) if layout.of_row(grade, cells)
-            ]
-        return self._found[key]
+        layout = self._layout
+        found = {i for key in layout.wanted(grade.learner) for i in self._rows_of_key.get(key, ())}
+        return [i for i in sorted(found) if layout.of_row(grade, layout.rows[i])]
 
     def _written(self, grade: Grade, most: str) -> str:
         maximum = _value(most) if most else grade.max_points
@@ -337,7 +341,8 @@ def _canvas(head: Sequence[str], rows: list[list[_Cell]], column: str | None) ->
         grade,
         None,
         lambda _: most,
-        lambda each, cells: cells[own].value.strip() == each.learner,
+        lambda cells: [cells[own].value.strip()],
+        lambda learner: [learner],
         students,
         lambda cells: cells[0].value,
     )
@@ -348,31 +353,44 @@ def _brightspace(head: Sequence[str], rows: list[list[_Cell]], column: str | Non
     found = _BRIGHTSPACE_COLUMN.fullmatch(head[grade])
     texts = [i for i in range(len(head)) if "<" not in head[i]][:6]
 
-    def of_row(each: Grade, cells: Sequence[_Cell]) -> bool:
+    def keys(cells: Sequence[_Cell]) -> Iterator[str]:
         values = [cells[i].value.strip() for i in texts if cells[i].value.strip() not in ("", "#")]
-        if each.learner in [value.removeprefix("#") for value in values]:
-            return True
+        yield from (value.removeprefix("#") for value in values)
         # The export of submissions has no number of the gradebook, only the names.
-        names = (_compared(one + other) for one, other in permutations(values, 2))
-        return _compared(each.learner) in names
+        yield from (_compared(one + other) for one, other in permutations(values, 2))
 
-    return _Layout(grade, None, lambda _: found[1] if found else "", of_row, rows)
+    return _Layout(
+        grade,
+        None,
+        lambda _: found[1] if found else "",
+        keys,
+        lambda learner: [learner, _compared(learner)],
+        rows,
+    )
 
 
 def _blackboard(head: Sequence[str], rows: list[list[_Cell]], column: str | None) -> _Layout:
     grade = _chosen(head, _BLACKBOARD_COLUMN, column)
     found = _BLACKBOARD_COLUMN.fullmatch(head[grade])
 
-    def of_row(each: Grade, cells: Sequence[_Cell]) -> bool:
+    def keys(cells: Sequence[_Cell]) -> Iterator[str]:
         # The columns are last name, first name, username. The name of the assignment and the
         # username may contain "_", so "a_lee" may also be the user "lee": both rows are found.
-        user = cells[2].value.strip()
-        return user == each.learner or user.endswith(f"_{each.learner}")
+        steps = cells[2].value.strip()[:_LONGEST_USER].split("_")
+        return ("_".join(steps[i:]) for i in range(len(steps)))
 
     def person(cells: Sequence[_Cell]) -> str:
         return f"{cells[1].value} {cells[0].value}"
 
-    return _Layout(grade, None, lambda _: found[1] if found else "", of_row, rows, person)
+    return _Layout(
+        grade,
+        None,
+        lambda _: found[1] if found else "",
+        keys,
+        lambda learner: [learner],
+        rows,
+        person,
+    )
 
 
 def _chosen(head: Sequence[str], pattern: re.Pattern[str], column: str | None) -> int:
@@ -385,7 +403,7 @@ def _chosen(head: Sequence[str], pattern: re.Pattern[str], column: str | None) -
         return found[0]
     known = ", ".join(each for each in head if pattern.fullmatch(each))
     raise UnfillableWorksheetError(
-        say("has several columns for grades; name one with --column: {columns}", columns=known)
+        say("has several columns for grades; name one of them (--column): {columns}", columns=known)
         if len(found) != 0
         else say("has no such column for grades; its columns are {columns}", columns=known)
     )
@@ -440,19 +458,30 @@ def _moodle(head: Sequence[str], rows: list[list[_Cell]]) -> _Layout:
     has_names = grade > 2
 
     def of_row(each: Grade, cells: Sequence[_Cell]) -> bool:
-        participant = _PARTICIPANT.fullmatch(cells[0].value.strip())
-        own = _PARTICIPANT.fullmatch(each.learner)
-        if participant is None or own is None or participant[1] != own[1]:
-            return False
         # A group has a number of its own, which may be the number of another student.
-        name = _compared(PurePath(each.name).name.partition(f"_{own[1]}")[0])
+        [number] = _number_of(each.learner)
+        name = _compared(PurePath(each.name).name.partition(f"_{number}")[0])
         known = (_compared(cells[1].value), _compared(cells[0].value.rstrip("0123456789")))
         return not has_names or not name or name in known or name == _compared(cells[0].value)
 
     def person(cells: Sequence[_Cell]) -> str:
         return cells[1].value if has_names else ""
 
-    return _Layout(grade, comment, lambda cells: cells[most[0]].value.strip(), of_row, rows, person)
+    return _Layout(
+        grade,
+        comment,
+        lambda cells: cells[most[0]].value.strip(),
+        lambda cells: _number_of(cells[0].value.strip()),
+        _number_of,
+        rows,
+        person,
+        of_row,
+    )
+
+
+def _number_of(participant: str) -> list[str]:
+    found = _PARTICIPANT.fullmatch(participant)
+    return [found[1]] if found else []
 
 
 def _is_maximum(values: Sequence[str]) -> bool:

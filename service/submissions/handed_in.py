@@ -524,13 +524,35 @@ def _members(archive: zipfile.ZipFile) -> list[_Member]:
     # The files in a zip file, in the order of their paths.
     found = []
     for info in archive.infolist():
-        path = _readable_name(info).replace("\\", "/")
-        steps = tuple(step for step in path.split("/") if step not in ("", ".", ".."))
-        if path.endswith("/") or not steps or any(map(_is_junk, steps)):
+        path = _readable_name(info)
+        steps = _steps(path)
+        if path.endswith(("/", "\\")) or not steps or any(map(_is_junk, steps)):
             continue
-        is_misplaced = path.startswith("/") or ".." in path.split("/") or bool(_DRIVE.match(path))
-        found.append(_Member(steps, info.filename, is_misplaced))
+        found.append(_Member(steps, info.filename, leads_out(path)))
     return sorted(found, key=lambda each: each.steps)
+
+
+def leads_out(path: str) -> bool:
+    """True if a path in a zip file leads out of the folder into which it is unpacked."""
+    path = path.replace("\\", "/")
+    return path.startswith("/") or ".." in path.split("/") or bool(_DRIVE.match(path))
+
+
+def _steps(path: str) -> tuple[str, ...]:
+    # Without the steps that lead elsewhere.
+    steps = path.replace("\\", "/").split("/")
+    return tuple(step for step in steps if step not in ("", ".", ".."))
+
+
+def handed_in_out_of_place(path: str, parts: Collection[str]) -> HandedIn:
+    """Return the submission of a file whose path leads out of its zip file. It is not read."""
+    steps = _steps(path) or ("?",)
+    first, *below = steps[next((i for i in range(len(steps)) if platform_name(steps[i])), 0) :]
+    found = platform_name(first)
+    own = "/".join(below) or (found.file if found else "") or first
+    file = HandedFile(Path(first, *below), own, member=path, is_misplaced=True)
+    learner = _learner(first, parts, is_folder=bool(below))
+    return HandedIn(path, learner, (file,), person=found.person if found else "")
 
 
 def _readable_name(info: zipfile.ZipInfo) -> str:
