@@ -41,6 +41,10 @@ MAX_UNPACKED: Final = 16 * 1024 * 1024
 _MOST_ARCHIVES: Final = 2
 # Bytes of the zip file of a class in another zip file. It is unpacked into memory.
 MAX_INNER_ARCHIVE: Final = 128 * 1024 * 1024
+# The files in a zip file are compressed already, so that another zip file around it saves little.
+# A zip file that grows much more is hostile.
+_LEAST_INNER_ARCHIVE: Final = 1024 * 1024
+_MOST_EXPANSION: Final = 4
 # Folders and zip files around the download of a platform.
 _MOST_LEVELS: Final = 4
 # Bytes of a file that show whether it is a submission.
@@ -577,7 +581,9 @@ def _opened(path: Path, outer: Sequence[str] = ()) -> zipfile.ZipFile:
 def _inner_archive(path: Path, outer: tuple[str, ...]) -> bytes:
     # All files of a class are read from one inner zip file, so that it is unpacked once.
     with _opened(path, outer[:-1]) as archive:
-        return unpacked(archive, outer[-1], MAX_INNER_ARCHIVE)
+        packed = archive.getinfo(outer[-1]).compress_size
+        most = min(MAX_INNER_ARCHIVE, _LEAST_INNER_ARCHIVE + _MOST_EXPANSION * packed)
+        return unpacked(archive, outer[-1], most)
 
 
 def _require_no_closed_archive(level: _Level, name: str) -> None:
