@@ -124,7 +124,7 @@ def graded(
             answers, terms.assignment.exercises, terms.answered, strict=True
         )
     )
-    return GradedSubmission(handed.name, handed.learner, files, terms.pass_mark)
+    return GradedSubmission(handed.name, handed.learner, files, terms.pass_mark, handed.person)
 
 
 def _readable_excerpt(

@@ -11,8 +11,8 @@ Blackboard, "Upload or download grades".
 
 import codecs
 import re
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from itertools import permutations
 from pathlib import PurePath
 from typing import Final
@@ -20,7 +20,7 @@ from typing import Final
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.plain_text import number, points
 from service.formats.shared.spreadsheet import without_formulas
-from service.translations import Sentence, say, say_count
+from service.translations import Sentence, paragraph, say, say_count
 
 # Bytes.
 MAX_WORKSHEET: Final = 16 * 1024 * 1024
@@ -41,13 +41,41 @@ _BRIGHTSPACE_COLUMN: Final = re.compile(r".* Points Grade <.*MaxPoints:([\d.,]+)
 _BLACKBOARD_COLUMN: Final = re.compile(
     r".*\[[^\]\d]*([\d.,]+)[^\]]*\]\s*\|\s*\d+(?:_\d+)*", re.DOTALL
 )
+# Identifier, status, grade, maximum, whether it can be changed, and the time of the last change.
+_FEWEST_COLUMNS: Final = 6
 _EXCUSED: Final = "EX"
+# The most characters of a username.
+_LONGEST_USER: Final = 255
 # The most students that one sentence names.
 _MOST_NAMES: Final = 40
+# If more submissions are in no row, one sentence is about all of them, and names a few.
+_FEW: Final = 3
 
 
 class UnusableWorksheetError(ValueError):
     """The file is not a worksheet that can be filled; the text gives the reason."""
+
+
+class UnfillableWorksheetError(UnusableWorksheetError):
+    """The file is a worksheet, but its grades cannot be filled in."""
+
+
+@dataclass(frozen=True, slots=True)
+class Filled:
+    """A worksheet with grades, and what is left to do.
+
+    ``grades`` is the number of rows that now have the grade of a submission; ``by_hand`` of those
+    that a person must still grade. ``problems`` are sentences for the tutor. ``kept`` is the number
+    of grades that were in the worksheet and differ from the points of the submission.
+    """
+
+    content: bytes
+    grades: int
+    by_hand: int
+    kept: int
+    problems: tuple[str, ...]
+    # True if the worksheet has no row for any submission.
+    is_foreign: bool
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,12 +115,28 @@ class _Cell:
 
 @dataclass(frozen=True, slots=True)
 class _Layout:
-    # The numbers of the columns; ``of_row`` is True if the submission belongs to the row.
+    # The numbers of the columns. A submission belongs to the rows that have one of its keys, if
+    # ``of_row`` is True, too.
     grade: int
     comment: int | None
     max_points: Callable[[Sequence[_Cell]], str]
-    of_row: Callable[[Grade, Sequence[_Cell]], bool]
+    keys: Callable[[Sequence[_Cell]], Iterable[str]]
+    wanted: Callable[[str], Iterable[str]]
     rows: list[list[_Cell]]
+    # The name of the student in a row; empty if there is none.
+    person: Callable[[Sequence[_Cell]], str] = lambda _: ""
+    of_row: Callable[[Grade, Sequence[_Cell]], bool] = lambda _, __: True
+
+
+@dataclass(slots=True)
+class _Rows:
+    # What was done with the rows so far.
+    changes: list[tuple[_Cell, str]] = field(default_factory=list)
+    filled: int = 0
+    comments: int = 0
+    kept: list[str] = field(default_factory=list)
+    unread: list[Grade] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
 
 
 class Worksheet:
@@ -103,42 +147,93 @@ class Worksheet:
 
         ``column`` is the heading of the column to fill, if there are several.
         """
+        self.content = content
         self._text, self._encoding = _decoded(content)
         self._separator, table = _table(self._text)
         self._layout = _layout(table, column)
-        filled = [cells[self._layout.grade].value for cells in self._layout.rows]
+        self._rows_of_key: dict[str, list[int]] = {}
+        for i, cells in enumerate(self._layout.rows):
+            for key in set(self._layout.keys(cells)):
+                self._rows_of_key.setdefault(key, []).append(i)
         most = [self._layout.max_points(cells) for cells in self._layout.rows]
-        self._has_comma = any("," in value and _NUMBER.fullmatch(value) for value in filled + most)
+        grades = [cells[self._layout.grade].value for cells in self._layout.rows]
+        told = [value for value in most if "." in value or "," in value] or grades
+        self._has_comma = any("," in value and _NUMBER.fullmatch(value) for value in told)
 
-    def filled(self, grades: Iterable[Grade]) -> tuple[bytes, list[Sentence]]:
-        """Return the file with the grades, and a sentence about each grade that is not in it."""
-        layout = self._layout
-        problems: list[Sentence] = []
-        grade_of_row: dict[int, Grade] = {}
-        twice: set[int] = set()
-        for grade in grades:
-            found = [i for i, cells in enumerate(layout.rows) if layout.of_row(grade, cells)]
-            if len(found) != 1:
-                problems.append(_unmatched(grade, found))
-            elif found[0] in grade_of_row:
-                twice.add(found[0])
-                problems.append(_shared_row(grade))
-            else:
-                grade_of_row[found[0]] = grade
-        problems += [_shared_row(grade_of_row.pop(i)) for i in twice]
-        changes: list[tuple[_Cell, str]] = []
-        unread = [grade for grade in grade_of_row.values() if grade.share is None]
+    def person(self, name: str, learner: str) -> str:
+        """Return the student's name in the row of a submission, or an empty text."""
+        found = self._rows_of(Grade(name, learner, None, 0.0, 0.0, ""))
+        return self._layout.person(self._layout.rows[found[0]]).strip() if len(found) == 1 else ""
+
+    def filled(self, grades: Iterable[Grade], *, replaces: bool = False) -> Filled:
+        """Return the worksheet with the grades.
+
+        A grade or comment that is already in the worksheet stays, unless ``replaces`` is True.
+        """
+        grade_of_row, absent, problems = self._matched(grades)
+        is_foreign = bool(absent) and not grade_of_row and not problems
+        problems += _in_no_row(absent, is_foreign=is_foreign)
+        rows = _Rows()
         for i, grade in grade_of_row.items():
-            cells = layout.rows[i]
-            if grade.share is None:
-                continue
-            if cells[layout.grade].value.strip().upper() == _EXCUSED:
-                problems.append(_excused(grade))
-                continue
-            changes.append((cells[layout.grade], self._written(grade, layout.max_points(cells))))
-            if layout.comment is not None:
-                changes.append((cells[layout.comment], without_formulas(grade.comment)))
-        return self._changed(changes), [*problems, *([_by_hand(unread)] if unread else [])]
+            self._fill(rows, self._layout.rows[i], grade, replaces=replaces)
+        problems += [*rows.problems, *_kept(rows.kept), *_kept_comments(rows.comments)]
+        problems += _by_hand(rows.unread)
+        content = self._changed(rows.changes)
+        return Filled(
+            content, rows.filled, len(rows.unread), len(rows.kept), tuple(problems), is_foreign
+        )
+
+    def _matched(
+        self, grades: Iterable[Grade]
+    ) -> tuple[Mapping[int, Grade], Sequence[Grade], list[str]]:
+        # The grade of each row, the grades without a row, and sentences about unclear rows.
+        found: dict[int, list[Grade]] = {}
+        absent: list[Grade] = []
+        problems: list[str] = []
+        for grade in grades:
+            rows = self._rows_of(grade)
+            if len(rows) == 1:
+                found.setdefault(rows[0], []).append(grade)
+            elif rows:
+                problems.append(_ambiguous(grade, len(rows)))
+            else:
+                absent.append(grade)
+        for several in found.values():
+            if len(several) > 1:
+                problems += map(_shared_row, several)
+        return {i: own[0] for i, own in found.items() if len(own) == 1}, absent, problems
+
+    def _fill(self, rows: "_Rows", cells: Sequence[_Cell], grade: Grade, *, replaces: bool) -> None:
+        cell = cells[self._layout.grade]
+        before = cell.value.strip()
+        has_grade = _NUMBER.fullmatch(before) is not None
+        if grade.share is None:
+            # If a person has entered a grade, nothing is left to do.
+            rows.unread += [] if has_grade else [grade]
+            return
+        if before.upper() == _EXCUSED:
+            rows.problems.append(_excused(grade))
+            return
+        written = self._written(grade, self._layout.max_points(cells))
+        is_same = has_grade and _value(before) == _value(written)
+        if has_grade and not is_same and not replaces:
+            rows.kept.append(f"{_short(grade)} ({before} / {written})")
+            return
+        rows.filled += 1
+        if not is_same:
+            rows.changes.append((cell, written))
+        if self._layout.comment is None:
+            return
+        comment, told = cells[self._layout.comment], without_formulas(grade.comment)
+        if comment.value.strip() and not replaces:
+            rows.comments += comment.value != told
+        elif comment.value != told:
+            rows.changes.append((comment, told))
+
+    def _rows_of(self, grade: Grade) -> list[int]:
+        layout = self._layout
+        found = {i for key in layout.wanted(grade.learner) for i in self._rows_of_key.get(key, ())}
+        return [i for i in sorted(found) if layout.of_row(grade, layout.rows[i])]
 
     def _written(self, grade: Grade, most: str) -> str:
         maximum = _value(most) if most else grade.max_points
@@ -220,6 +315,8 @@ def _layout(table: list[list[_Cell]], column: str | None) -> _Layout:
     head = [cell.value.strip() for cell in table[0]]
     # Empty lines, and lines that lack cells, are no students.
     rows = [row for row in table[1:] if len(row) == len(head)]
+    if not rows:
+        raise UnusableWorksheetError(say("has only a heading, and no row of a student"))
     if any(row[0].value.strip() == "Points Possible" for row in rows):
         return _canvas(head, rows, column)
     if any(_BRIGHTSPACE_COLUMN.fullmatch(each) for each in head):
@@ -237,15 +334,17 @@ def _canvas(head: Sequence[str], rows: list[list[_Cell]], column: str | None) ->
     possible = next(row for row in rows if row[0].value.strip() == "Points Possible")
     most = possible[grade].value.strip()
     if not _NUMBER.fullmatch(most) or not _value(most):
-        raise UnusableWorksheetError(_no_maximum(head[grade]))
+        raise UnfillableWorksheetError(_no_maximum(head[grade]))
     # The rows of students have an id; other rows, such as "Manual Posting", have none.
     students = [row for row in rows if row[own].value.strip()]
     return _Layout(
         grade,
         None,
         lambda _: most,
-        lambda each, cells: cells[own].value.strip() == each.learner,
+        lambda cells: [cells[own].value.strip()],
+        lambda learner: [learner],
         students,
+        lambda cells: cells[0].value,
     )
 
 
@@ -254,28 +353,44 @@ def _brightspace(head: Sequence[str], rows: list[list[_Cell]], column: str | Non
     found = _BRIGHTSPACE_COLUMN.fullmatch(head[grade])
     texts = [i for i in range(len(head)) if "<" not in head[i]][:6]
 
-    def of_row(each: Grade, cells: Sequence[_Cell]) -> bool:
+    def keys(cells: Sequence[_Cell]) -> Iterator[str]:
         values = [cells[i].value.strip() for i in texts if cells[i].value.strip() not in ("", "#")]
-        if each.learner in [value.removeprefix("#") for value in values]:
-            return True
+        yield from (value.removeprefix("#") for value in values)
         # The export of submissions has no number of the gradebook, only the names.
-        names = (_compared(one + other) for one, other in permutations(values, 2))
-        return _compared(each.learner) in names
+        yield from (_compared(one + other) for one, other in permutations(values, 2))
 
-    return _Layout(grade, None, lambda _: found[1] if found else "", of_row, rows)
+    return _Layout(
+        grade,
+        None,
+        lambda _: found[1] if found else "",
+        keys,
+        lambda learner: [learner, _compared(learner)],
+        rows,
+    )
 
 
 def _blackboard(head: Sequence[str], rows: list[list[_Cell]], column: str | None) -> _Layout:
     grade = _chosen(head, _BLACKBOARD_COLUMN, column)
     found = _BLACKBOARD_COLUMN.fullmatch(head[grade])
 
-    def of_row(each: Grade, cells: Sequence[_Cell]) -> bool:
+    def keys(cells: Sequence[_Cell]) -> Iterator[str]:
         # The columns are last name, first name, username. The name of the assignment and the
         # username may contain "_", so "a_lee" may also be the user "lee": both rows are found.
-        user = cells[2].value.strip()
-        return user == each.learner or user.endswith(f"_{each.learner}")
+        steps = cells[2].value.strip()[:_LONGEST_USER].split("_")
+        return ("_".join(steps[i:]) for i in range(len(steps)))
 
-    return _Layout(grade, None, lambda _: found[1] if found else "", of_row, rows)
+    def person(cells: Sequence[_Cell]) -> str:
+        return f"{cells[1].value} {cells[0].value}"
+
+    return _Layout(
+        grade,
+        None,
+        lambda _: found[1] if found else "",
+        keys,
+        lambda learner: [learner],
+        rows,
+        person,
+    )
 
 
 def _chosen(head: Sequence[str], pattern: re.Pattern[str], column: str | None) -> int:
@@ -287,8 +402,8 @@ def _chosen(head: Sequence[str], pattern: re.Pattern[str], column: str | None) -
     if len(found) == 1:
         return found[0]
     known = ", ".join(each for each in head if pattern.fullmatch(each))
-    raise UnusableWorksheetError(
-        say("has several columns for grades; name one with --column: {columns}", columns=known)
+    raise UnfillableWorksheetError(
+        say("has several columns for grades; name one of them (--column): {columns}", columns=known)
         if len(found) != 0
         else say("has no such column for grades; its columns are {columns}", columns=known)
     )
@@ -296,7 +411,8 @@ def _chosen(head: Sequence[str], pattern: re.Pattern[str], column: str | None) -
 
 def _moodle(head: Sequence[str], rows: list[list[_Cell]]) -> _Layout:
     columns = [[row[i].value.strip() for row in rows] for i in range(len(head))]
-    if not rows or not all(map(_PARTICIPANT.fullmatch, columns[0])):
+    # A table of joints also has rows such as "Joint 1", but fewer columns.
+    if len(head) < _FEWEST_COLUMNS or not all(map(_PARTICIPANT.fullmatch, columns[0])):
         raise UnusableWorksheetError(_unknown())
     # Identifier, (full name, …), status, (…), grade, maximum, (…), can be changed, …
     most = [
@@ -307,8 +423,28 @@ def _moodle(head: Sequence[str], rows: list[list[_Cell]]) -> _Layout:
         and not all(_NUMBER.fullmatch(value) for value in columns[i + 1])
     ]
     if not most:
-        raise UnusableWorksheetError(_no_maximum(", ".join(head)))
+        scale = next((found[0] for found in columns[3:] if _is_scale(found)), None)
+        is_moodle = any(all(map(_DATE.fullmatch, found)) for found in columns[3:])
+        unusable = UnfillableWorksheetError if is_moodle else UnusableWorksheetError
+        raise unusable(
+            _no_maximum(", ".join(head))
+            if scale is None
+            else say(
+                "is for grades by a scale ({scale}), and the program gives points. Enter the "
+                "grades by hand, or choose points in the settings of the assignment",
+                scale=scale,
+            )
+        )
     grade = most[0] - 1
+    spellings = dict.fromkeys(columns[most[0]])
+    if len({value.replace(",", ".") != value for value in spellings}) > 1:
+        raise UnfillableWorksheetError(
+            say(
+                "has the maximum points in several spellings ({spellings}), so that its decimal "
+                "sign is unclear. Download it again, and do not save it in a spreadsheet program",
+                spellings=", ".join(spellings),
+            )
+        )
     dates = [i for i in range(most[0] + 1, len(head)) if all(map(_DATE.fullmatch, columns[i]))]
     if not dates:
         raise UnusableWorksheetError(
@@ -322,22 +458,43 @@ def _moodle(head: Sequence[str], rows: list[list[_Cell]]) -> _Layout:
     has_names = grade > 2
 
     def of_row(each: Grade, cells: Sequence[_Cell]) -> bool:
-        participant = _PARTICIPANT.fullmatch(cells[0].value.strip())
-        own = _PARTICIPANT.fullmatch(each.learner)
-        if participant is None or own is None or participant[1] != own[1]:
-            return False
         # A group has a number of its own, which may be the number of another student.
-        name = _compared(PurePath(each.name).name.partition(f"_{own[1]}")[0])
+        [number] = _number_of(each.learner)
+        name = _compared(PurePath(each.name).name.partition(f"_{number}")[0])
         known = (_compared(cells[1].value), _compared(cells[0].value.rstrip("0123456789")))
         return not has_names or not name or name in known or name == _compared(cells[0].value)
 
-    return _Layout(grade, comment, lambda cells: cells[most[0]].value.strip(), of_row, rows)
+    def person(cells: Sequence[_Cell]) -> str:
+        return cells[1].value if has_names else ""
+
+    return _Layout(
+        grade,
+        comment,
+        lambda cells: cells[most[0]].value.strip(),
+        lambda cells: _number_of(cells[0].value.strip()),
+        _number_of,
+        rows,
+        person,
+        of_row,
+    )
+
+
+def _number_of(participant: str) -> list[str]:
+    found = _PARTICIPANT.fullmatch(participant)
+    return [found[1]] if found else []
 
 
 def _is_maximum(values: Sequence[str]) -> bool:
-    return (
-        len(set(values)) == 1 and _NUMBER.fullmatch(values[0]) is not None and _value(values[0]) > 0
-    )
+    if not all(map(_NUMBER.fullmatch, values)):
+        return False
+    found = set(map(_value, values))
+    return len(found) == 1 and found.pop() > 0
+
+
+def _is_scale(values: Sequence[str]) -> bool:
+    # Moodle writes all words of the scale into each row: "Not yet, Good, Very good".
+    words = values[0].split(",")
+    return len(set(values)) == 1 and len(words) > 1 and not _DATE.fullmatch(values[0])
 
 
 def _value(text: str) -> float:
@@ -359,46 +516,121 @@ def _no_maximum(columns: str) -> Sentence:
     return say("has no column with the maximum points; there are {columns}", columns=columns)
 
 
-def _unmatched(grade: Grade, found: Sequence[int]) -> Sentence:
-    if found:
-        return say(
-            "{name} fits {count} rows of the worksheet. Enter {points} points by hand.",
-            name=grade.name,
-            count=len(found),
-            points=_told_points(grade),
+def is_worksheet(start: bytes) -> bool:
+    """True if a worksheet or a gradebook of a platform begins with these bytes."""
+    # The last line may be cut off. In UTF-16, a line ends with two bytes.
+    is_utf_16 = start.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))
+    lines = start if is_utf_16 else start[: start.rfind(b"\n") + 1]
+    try:
+        Worksheet(lines)
+    except UnfillableWorksheetError:
+        return True
+    except UnusableWorksheetError:
+        return False
+    return True
+
+
+def _ambiguous(grade: Grade, count: int) -> str:
+    return _left(
+        grade,
+        say("{name} fits {count} rows of the worksheet.", name=grade.name, count=count),
+    )
+
+
+def _shared_row(grade: Grade) -> str:
+    return _left(
+        grade,
+        say(
+            "{name} fits a row of the worksheet that another submission fits, too.", name=grade.name
+        ),
+    )
+
+
+def _left(grade: Grade, reason: Sentence) -> str:
+    # What was not read has no points that a person could enter.
+    if grade.share is None:
+        return paragraph(reason, say("Grade it by hand."))
+    shown = f"{number(grade.points)} / {number(grade.max_points)}"
+    return paragraph(reason, say("Enter {points} points by hand.", points=shown))
+
+
+def _in_no_row(grades: Sequence[Grade], *, is_foreign: bool) -> list[str]:
+    if len(grades) <= _FEW:
+        return [
+            _left(each, say("{name} is in no row of the worksheet.", name=each.name))
+            for each in grades
+        ]
+    names = ", ".join(map(_short, grades[:_FEW]))
+    count = len(grades)
+    if is_foreign:
+        return [
+            say(
+                "None of the {count} submissions is in the worksheet ({names}, …). It may be that "
+                "of another course.",
+                count=count,
+                names=names,
+            )
+        ]
+    return [
+        say(
+            "{count} submissions are in no row of the worksheet ({names}, …). Enter their points "
+            "by hand.",
+            count=count,
+            names=names,
         )
-    return say(
-        "{name} is in no row of the worksheet. Enter {points} points by hand.",
-        name=grade.name,
-        points=_told_points(grade),
-    )
+    ]
 
 
-def _shared_row(grade: Grade) -> Sentence:
-    return say(
-        "{name} fits a row of the worksheet that another submission fits, too. Enter {points} "
-        "points by hand.",
-        name=grade.name,
-        points=_told_points(grade),
-    )
+def _kept(grades: Sequence[str]) -> list[Sentence]:
+    if not grades:
+        return []
+    return [
+        say_count(
+            "{count} row of the worksheet already had another grade, which stays (grade in the "
+            "worksheet / grade of the program): {grades}.",
+            "{count} rows of the worksheet already had other grades, which stay (grade in the "
+            "worksheet / grade of the program): {grades}.",
+            count=len(grades),
+            grades=_named(grades),
+        )
+    ]
 
 
-def _by_hand(grades: Sequence[Grade]) -> Sentence:
+def _kept_comments(count: int) -> list[Sentence]:
+    if not count:
+        return []
+    return [
+        say_count(
+            "{count} comment that was already in the worksheet stays.",
+            "{count} comments that were already in the worksheet stay.",
+            count=count,
+        )
+    ]
+
+
+def _by_hand(grades: Sequence[Grade]) -> list[Sentence]:
     # The report says what could not be read in each.
-    names = [PurePath(grade.name).name for grade in grades]
-    return say_count(
-        "{count} row of the worksheet stays as it was, because something in the submission could "
-        "not be read. Grade it by hand: {names}.",
-        "{count} rows of the worksheet stay as they were, because something in the submissions "
-        "could not be read. Grade them by hand: {names}.",
-        count=len(grades),
-        names=", ".join(names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else ""),
-    )
+    if not grades:
+        return []
+    return [
+        say_count(
+            "{count} row of the worksheet stays as it was, because something in the submission "
+            "could not be read. Grade it by hand: {names}.",
+            "{count} rows of the worksheet stay as they were, because something in the submissions "
+            "could not be read. Grade them by hand: {names}.",
+            count=len(grades),
+            names=_named(list(map(_short, grades))),
+        )
+    ]
+
+
+def _named(names: Sequence[str]) -> str:
+    return ", ".join(names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else "")
+
+
+def _short(grade: Grade) -> str:
+    return PurePath(grade.name).name
 
 
 def _excused(grade: Grade) -> Sentence:
     return say("{name} is from an excused student. The row stays as it was.", name=grade.name)
-
-
-def _told_points(grade: Grade) -> str:
-    return "?" if grade.share is None else f"{number(grade.points)} / {number(grade.max_points)}"

@@ -94,20 +94,54 @@ def answers_in(
     """
     try:
         files = [file for file in handed.files() if not _is_empty_receipt(file)]
-        claims, left = _claims(files, assignment)
+        misplaced = [file for file in files if file.is_misplaced]
+        claims, left = _claims(
+            [file for file in files if not file.is_misplaced] or files, assignment
+        )
     except UnusableFileError as error:
         entries = handed.entries
         file = str(entries[0].path) if len(entries) == 1 else handed.name
         name = entries[0].own_name if len(entries) == 1 else ""
         problem = of_file(name or PurePosixPath(handed.name).name, error.args[0])
         return (ExerciseAnswers(file, None, problem),) * len(assignment.exercises)
-    found = [_combined(*each, choose) for each in zip(claims, assignment.exercises, strict=True)]
+    found = [
+        _with_misplaced(_combined(own, assigned, choose, handed.name), misplaced)
+        for own, assigned in zip(claims, assignment.exercises, strict=True)
+    ]
     unread = [file for file in left if _may_be_answer(file)]
     # A photo beside all answers is no answer; where an answer is missing, it may be the answer.
     return tuple(
         _with_unread(answers, unread, assigned)
         for answers, assigned in zip(found, assignment.exercises, strict=True)
     )
+
+
+def _with_misplaced(answers: ExerciseAnswers, misplaced: Sequence[HandedFile]) -> ExerciseAnswers:
+    # A file whose path leads out of its zip file is always named: only a person knows whose it is.
+    problems = dict(answers.unread)
+    for file in misplaced:
+        if file.own_name not in problems:
+            problems[file.own_name] = of_file(file.own_name, _problem_of(file))
+    if len(problems) == len(answers.unread):
+        return answers
+    names = tuple(file.own_name for file in misplaced if file.own_name not in answers.names)
+    return replace(
+        answers,
+        file=answers.file or str(misplaced[0].path),
+        problem=joined(
+            "; ", list(filter(None, dict.fromkeys((answers.problem, *problems.values()))))
+        ),
+        names=(*answers.names, *names),
+        unread=problems,
+    )
+
+
+def _problem_of(file: HandedFile) -> str:
+    try:
+        file.read()
+    except UnusableFileError as error:
+        return str(error.args[0])
+    return ""
 
 
 def _with_unread(
@@ -319,20 +353,20 @@ def _example(assigned: AssignedExercise, suffix: str) -> str:
 
 
 def _combined(
-    claims: Sequence[_Claim], assigned: AssignedExercise, choose: Choose
+    claims: Sequence[_Claim], assigned: AssignedExercise, choose: Choose, submission: str
 ) -> ExerciseAnswers:
     if not claims:
         return ExerciseAnswers("", GradeRequest(answers={}))
     paths = [str(claim.file.path) for claim in claims]
     names = tuple(claim.file.own_name for claim in claims)
-    shown = paths[0] if len(paths) == 1 else commonpath(paths)
+    shown = paths[0] if len(paths) == 1 else _common_place(paths, submission)
     bodies: list[tuple[str, GradeRequest]] = []
     problems: dict[str, str] = {}
     if all(claim.is_one_of for claim in claims):
         try:
             claims = _readable_claim(claims, assigned, choose)
-        except UnusableFileError as error:
-            problem = of_file(PurePosixPath(shown).name, error.args[0])
+        except _DifferentAnswersError as error:
+            problem = str(error.args[0])
             return ExerciseAnswers(shown, None, problem, names, dict.fromkeys(names, problem))
     for claim in claims:
         name = claim.file.own_name
@@ -348,6 +382,16 @@ def _combined(
         return ExerciseAnswers(shown, None, problem, names)
     told = joined("; ", list(problems.values()))
     return ExerciseAnswers(shown, body, told, names, problems)
+
+
+def _common_place(paths: Sequence[str], submission: str) -> str:
+    # Files that a platform names after the student are in the folder of the class.
+    common = PurePosixPath(commonpath(paths))
+    return submission if common in PurePosixPath(submission).parents else str(common)
+
+
+class _DifferentAnswersError(Exception):
+    """Several files have answers to one part; the message is a whole sentence."""
 
 
 def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
@@ -393,7 +437,19 @@ def _readable_claim(
     part = assigned.only_part
     if not pieces or part is None:
         return claims[:1]
-    chosen = choose(assigned, part, [excerpt for _, excerpt in pieces])
+    try:
+        chosen = choose(assigned, part, [excerpt for _, excerpt in pieces])
+    except UnusableFileError as error:
+        files = list(dict.fromkeys(claim.file.own_name for claim, _ in pieces))
+        raise _DifferentAnswersError(
+            of_file(files[0], error.args[0])
+            if len(files) == 1
+            else say(
+                "{files} have answers to {part} that differ; leave only one of them",
+                files=_listed(files),
+                part=part,
+            )
+        ) from error
     return [next(claim for claim, excerpt in pieces if excerpt.text == chosen)]
 
 

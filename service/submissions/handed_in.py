@@ -5,16 +5,26 @@ a learning platform names after the same student belong together. A zip file of 
 its folder, and a zip file of a student like a folder of the student's files.
 """
 
+import io
 import os
+import re
 import sys
 import zipfile
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
+from itertools import chain, islice
 from pathlib import Path, PurePosixPath
-from typing import Final
+from typing import Final, Protocol
 
 from service.submissions.file_content import STANDARD_INPUT, ending, most_bytes, read_file
-from service.submissions.office_files import UnusableFileError, open_archive, unpacked
+from service.submissions.office_files import (
+    UNREADABLE_ARCHIVE,
+    UnusableFileError,
+    open_archive,
+    unpacked,
+)
 from service.submissions.platform_names import platform_name, student_and_part
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.translations import say
@@ -29,8 +39,21 @@ MAX_CLASS_ARCHIVE: Final = 1024 * 1024 * 1024
 MAX_UNPACKED: Final = 16 * 1024 * 1024
 # Zip files in zip files: that of a student, and one more in it.
 _MOST_ARCHIVES: Final = 2
+# Bytes of the zip file of a class in another zip file. It is unpacked into memory.
+MAX_INNER_ARCHIVE: Final = 128 * 1024 * 1024
+# The files in a zip file are compressed already, so that another zip file around it saves little.
+# A zip file that grows much more is hostile.
+_LEAST_INNER_ARCHIVE: Final = 1024 * 1024
+_MOST_EXPANSION: Final = 4
+# Folders and zip files around the download of a platform.
+_MOST_LEVELS: Final = 4
+# Bytes of a file that show whether it is a submission.
+MAX_START: Final = 64 * 1024
 _ARCHIVE: Final = ".zip"
 _INDEX: Final = "index.html"
+_DRIVE: Final = re.compile("[A-Za-z]:/")
+# The flag of a zip file whose names are UTF-8.
+_SAYS_UTF_8: Final = 0x800
 
 _JUNK: Final = frozenset({"__macosx", "thumbs.db", "desktop.ini", "__pycache__", "node_modules"})
 
@@ -46,9 +69,12 @@ class HandedFile:
     problem: str = ""
     # Set if the file has been read already.
     content: bytes | None = field(default=None, repr=False)
-    # The zip file that holds the file, and the name of the file in it.
+    # The zip file that holds the file, the zip files between the two, and the name in the last one.
     archive: Path | None = None
+    outer: tuple[str, ...] = ()
     member: str = ""
+    # True if the name in the zip file leads out of it, as ``../table.csv`` does.
+    is_misplaced: bool = False
 
     @property
     def own_name(self) -> str:
@@ -62,8 +88,15 @@ class HandedFile:
         """Return the bytes of the file. Raises UnusableFileError."""
         if self.problem:
             raise UnusableFileError(self.problem)
+        if self.is_misplaced:
+            raise UnusableFileError(
+                say(
+                    "has a path in the zip file that leads out of it ({path}), so it was not read",
+                    path=self.member,
+                )
+            )
         if self.archive is not None:
-            with _opened(self.archive) as archive:
+            with _opened(self.archive, self.outer) as archive:
                 return unpacked(archive, self.member, most_bytes(self.name))
         return read_file(self.path) if self.content is None else self.content
 
@@ -81,6 +114,8 @@ class HandedIn:
     folder: Path | None = None
     # The reason why nothing can be graded.
     problem: str = ""
+    # The name of the person, if it is known and not the name in a gradebook.
+    person: str = ""
 
     def files(self) -> list[HandedFile]:
         """Return all files sorted by name. Raises UnusableFileError."""
@@ -97,66 +132,335 @@ class HandedIn:
         return found
 
 
+@dataclass(frozen=True, slots=True)
+class ClassEntry:
+    """A file or folder in the folder or zip file of a class, before anything decides whose it is.
+
+    ``inside`` returns the names in a folder, or the paths of all files in a zip file. ``start``
+    returns the first bytes of the file with this path inside, or those of the entry itself.
+    """
+
+    path: str
+    name: str
+    inside: Callable[[], Sequence[str]]
+    start: Callable[[str], bytes]
+
+
 def all_handed_in(
     paths: Iterable[Path],
     *,
     folder_is_one: bool = False,
     left_out: Collection[Path] = (),
     parts: Collection[str] = (),
+    is_output: Callable[[ClassEntry], bool] = lambda _: False,
+    outputs: list[str] | None = None,
 ) -> Iterator[HandedIn]:
     """Yield the submissions in files and folders.
 
     With ``folder_is_one``, a folder is the submission of one student. ``left_out`` are files that
     are no submissions. ``parts`` are the possible parts in file names such as
-    ``STUDENT.PART.csv``.
+    ``STUDENT.PART.csv``. ``is_output`` is asked about each entry of a class that no platform has
+    named, and returns True if the entry is no submission; ``outputs`` collects the paths of these
+    entries. Raises UnusableClassError.
     """
+    outputs = [] if outputs is None else outputs
     for path in paths:
         if str(path) == STANDARD_INPUT:
             content = sys.stdin.buffer.read(MAX_BODY_SIZE + 1)
             entry = HandedFile(path, STANDARD_INPUT, content=content)
             yield HandedIn(STANDARD_INPUT, STANDARD_INPUT, (entry,))
         elif ending(path.name) == _ARCHIVE and not folder_is_one and path.is_file():
-            yield from _of_class_archive(path, parts)
+            yield from _Class(left_out, parts, is_output, outputs).found(_ZipFile, path)
         elif not path.is_dir():
             entry = HandedFile(path, path.as_posix())
-            yield HandedIn(str(path), _learner(entry, parts), (entry,))
+            yield HandedIn(str(path), _learner(path.name, parts, is_folder=False), (entry,))
         elif folder_is_one:
             entry = HandedFile(path, "")
-            yield HandedIn(str(path), _learner(entry), (entry,))
+            name = path.name or path.resolve().name
+            yield HandedIn(str(path), _learner(name, (), is_folder=True), (entry,))
         else:
-            yield from _of_class(path, left_out, parts)
+            yield from _Class(left_out, parts, is_output, outputs).found(_Folder, path)
 
 
-def _of_class(
-    folder: Path, left_out: Collection[Path], parts: Collection[str]
-) -> Iterator[HandedIn]:
-    try:
-        names = _names(folder, MAX_SUBMISSIONS_IN_FOLDER)
-    except UnusableFileError as error:
-        yield HandedIn(str(folder), folder.name, (), problem=error.args[0])
-        return
-    by_student: dict[str, list[str]] = {}
-    for name in _without_index(names):
-        if not any(_is_same(folder / name, each) for each in left_out):
-            by_student.setdefault(_student(folder, name, parts), []).append(name)
-    for student, own in by_student.items():
-        entries = tuple(_entry(folder, name) for name in own)
-        shown = folder / (own[0] if len(own) == 1 else student[1:])
-        yield HandedIn(str(shown), _learner(entries[0], parts), entries, folder)
+class UnusableClassError(Exception):
+    """The students cannot be told apart; the message says what to give instead."""
 
 
-def _student(folder: Path, name: str, parts: Collection[str]) -> str:
-    if found := platform_name(name):
-        return f"/{found.student}"
-    named = student_and_part(name, parts)
-    return f"/{named[0]}" if named and not _is_folder(folder / name) else name
+class _Level(Protocol):
+    """The folder of a class, or its zip file, or a folder in this zip file."""
+
+    path: Path
+
+    def names(self) -> Sequence[str]:
+        """Return the names of all entries. Raises UnusableFileError."""
+
+    def is_folder(self, name: str) -> bool:
+        """True if the entry is a folder."""
+
+    def opened(self, name: str) -> "_Level | None":
+        """Return the level in a folder or a zip file; None for others and for damaged ones."""
+
+    def files(self, name: str, own: str) -> Sequence[HandedFile]:
+        """Return the files of an entry, which the student named ``own``."""
+
+    def all_names(self) -> Sequence[str]:
+        """Return the names in a folder, or the paths of all files in a zip file."""
+
+    def start(self, path: str) -> bytes:
+        """Return the first bytes of a file; none if it cannot be read."""
 
 
-def _entry(folder: Path, name: str) -> HandedFile:
-    path = folder / name
-    found = platform_name(name)
-    own = found.file if found else name
-    return HandedFile(path, "" if _is_folder(path) else own)
+class _Folder:
+    """A folder on the disk."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def names(self) -> Sequence[str]:
+        return _names(self.path, MAX_SUBMISSIONS_IN_FOLDER)
+
+    def is_folder(self, name: str) -> bool:
+        return _is_folder(self.path / name)
+
+    def opened(self, name: str) -> _Level | None:
+        path = self.path / name
+        if path.is_symlink():
+            return None
+        with suppress(UnusableFileError):
+            if path.is_dir():
+                return _Folder(path)
+            if ending(name) == _ARCHIVE and path.is_file():
+                return _ZipFile(path)
+        return None
+
+    def files(self, name: str, own: str) -> Sequence[HandedFile]:
+        path = self.path / name
+        return [HandedFile(path, "" if _is_folder(path) else own)]
+
+    def all_names(self) -> Sequence[str]:
+        try:
+            return os.listdir(self.path)  # noqa: PTH208
+        except OSError:
+            return []
+
+    def start(self, path: str) -> bytes:
+        place = self.path / path
+        if place.is_symlink() or not place.is_file():
+            return b""
+        try:
+            with place.open("rb") as file:
+                return file.read(MAX_START)
+        except OSError:
+            return b""
+
+
+@dataclass(frozen=True, slots=True)
+class _Member:
+    # The steps of the path without those that only lead elsewhere.
+    steps: tuple[str, ...]
+    # The name in the zip file.
+    name: str
+    is_misplaced: bool
+
+
+class _ZipFile:
+    """A zip file, or a folder in it."""
+
+    def __init__(
+        self,
+        archive: Path,
+        outer: tuple[str, ...] = (),
+        shown: Path | None = None,
+        members: Sequence[_Member] | None = None,
+    ) -> None:
+        """Read the names in a zip file. Raises UnusableFileError.
+
+        ``outer`` are the zip files between ``archive`` and this one. With ``members``, this is a
+        folder of a zip file whose names have been read.
+        """
+        self.path = shown or archive
+        self._archive = archive
+        self._outer = outer
+        if members is None:
+            with _opened(archive, outer) as opened:
+                members = _members(opened)
+            start = _common_folder([each.steps for each in members])
+            members = [replace(each, steps=each.steps[start:]) for each in members]
+        self._entries: dict[str, list[_Member]] = {}
+        for each in members:
+            self._entries.setdefault(each.steps[0], []).append(each)
+
+    def names(self) -> Sequence[str]:
+        found = [name for name in self._entries if not _is_junk(name)]
+        if sum(map(len, self._entries.values())) > MAX_SUBMISSIONS_IN_FOLDER:
+            raise UnusableFileError(
+                say("holds more than {most:,} files", most=MAX_SUBMISSIONS_IN_FOLDER)
+            )
+        return found
+
+    def all_names(self) -> Sequence[str]:
+        members = chain.from_iterable(self._entries.values())
+        return ["/".join(each.steps) for each in islice(members, MAX_FILES)]
+
+    def is_folder(self, name: str) -> bool:
+        return len(self._entries[name][0].steps) > 1
+
+    def opened(self, name: str) -> _Level | None:
+        members = self._entries[name]
+        shown = self.path / name
+        if self.is_folder(name):
+            below = [replace(each, steps=each.steps[1:]) for each in members if each.steps[1:]]
+            return _ZipFile(self._archive, self._outer, shown, below)
+        if ending(name) == _ARCHIVE and len(self._outer) < _MOST_ARCHIVES:
+            with suppress(UnusableFileError):
+                return _ZipFile(self._archive, (*self._outer, members[0].name), shown)
+        return None
+
+    def files(self, name: str, own: str) -> Sequence[HandedFile]:
+        return [
+            HandedFile(
+                self.path.joinpath(*each.steps),
+                "/".join(each.steps[1:]) or own,
+                archive=self._archive,
+                outer=self._outer,
+                member=each.name,
+                is_misplaced=each.is_misplaced,
+            )
+            for each in self._entries[name]
+            if not any(map(_is_junk, each.steps))
+        ]
+
+    def start(self, path: str) -> bytes:
+        steps = tuple(path.split("/"))
+        found = [each for each in self._entries.get(steps[0], ()) if each.steps == steps]
+        if not found:
+            return b""
+        try:
+            with (
+                _opened(self._archive, self._outer) as archive,
+                archive.open(found[0].name) as file,
+            ):
+                return file.read(MAX_START)
+        except (UnusableFileError, *UNREADABLE_ARCHIVE):
+            return b""
+
+
+def _entry(level: _Level, name: str) -> ClassEntry:
+    def inside() -> Sequence[str]:
+        opened = level.opened(name)
+        return opened.all_names() if opened else []
+
+    def start(path: str = "") -> bytes:
+        opened = level.opened(name) if path else None
+        return (opened.start(path) if opened else b"") if path else level.start(name)
+
+    return ClassEntry(str(level.path / name), name, inside, start)
+
+
+class _Class:
+    """Finds the students in the folder or zip file of a class.
+
+    A tutor may give the download of a platform in a folder or in another zip file, beside earlier
+    outputs of this program. So an entry that holds the files of several students is a class.
+    """
+
+    def __init__(
+        self,
+        left_out: Collection[Path],
+        parts: Collection[str],
+        is_output: Callable[[ClassEntry], bool],
+        outputs: list[str],
+    ) -> None:
+        self._left_out = left_out
+        self._parts = parts
+        self._is_output = is_output
+        self._outputs = outputs
+        # The download in which a platform's student was found.
+        self._places: dict[str, Path] = {}
+
+    def found(self, opened: Callable[[Path], _Level], path: Path) -> Iterator[HandedIn]:
+        """Yield the submissions in a folder or zip file."""
+        try:
+            level = opened(path)
+            names = level.names()
+        except UnusableFileError as error:
+            name = path.stem if path.is_file() else path.name
+            yield HandedIn(str(path), name, (), problem=error.args[0])
+        else:
+            yield from self._below(level, names, _MOST_LEVELS)
+
+    def _below(self, level: _Level, names: Sequence[str], left: int) -> Iterator[HandedIn]:
+        names = _without_index([name for name in names if self._is_submission(level, name)])
+        if len(names) == 1:
+            _require_no_closed_archive(level, names[0])
+        by_student: dict[str, list[str]] = {}
+        for name in names:
+            if left and (inner := self._download(level, name, is_alone=len(names) == 1)):
+                yield from self._below(inner, inner.names(), left - 1)
+            else:
+                by_student.setdefault(self._student(level, name), []).append(name)
+        for student, own in by_student.items():
+            yield self._handed_in(level, student, own)
+
+    def _is_submission(self, level: _Level, name: str) -> bool:
+        if any(_is_same(level.path / name, each) for each in self._left_out):
+            return False
+        if not self._is_named_output(level, name):
+            return True
+        self._outputs.append(str(level.path / name))
+        return False
+
+    def _download(self, level: _Level, name: str, *, is_alone: bool) -> _Level | None:
+        # The level in an entry that holds the files of several students, as a platform names them.
+        # A single entry may also hold those of one student.
+        if platform_name(name):
+            return None
+        inner = level.opened(name)
+        if inner is None:
+            return None
+        try:
+            found = [each for each in inner.names() if not self._is_named_output(inner, each)]
+        except UnusableFileError:
+            return None
+        students = [named.student for each in found if (named := platform_name(each))]
+        if is_alone and len(found) == 1 and not students:
+            return inner if self._download(inner, found[0], is_alone=True) else None
+        is_class = len(students) * 2 > len(found) and (is_alone or len(set(students)) > 1)
+        return inner if is_class else None
+
+    def _is_named_output(self, level: _Level, name: str) -> bool:
+        return not platform_name(name) and self._is_output(_entry(level, name))
+
+    def _student(self, level: _Level, name: str) -> str:
+        if found := platform_name(name):
+            first = self._places.setdefault(found.student, level.path)
+            if first != level.path:
+                raise UnusableClassError(
+                    say(
+                        "{first} and {second} hold submissions of the same student, {student}. "
+                        "Give only one of them.",
+                        first=str(first),
+                        second=str(level.path),
+                        student=found.student,
+                    )
+                )
+            return f"/{found.student}"
+        named = student_and_part(name, self._parts)
+        return f"/{named[0]}" if named and not level.is_folder(name) else name
+
+    def _handed_in(self, level: _Level, student: str, own: Sequence[str]) -> HandedIn:
+        entries: list[HandedFile] = []
+        for name in own:
+            found = platform_name(name)
+            entries += level.files(name, found.file if found and found.file else name)
+        shown = level.path / (own[0] if len(own) == 1 else student[1:])
+        if isinstance(level, _ZipFile):
+            shown = level.path / student.lstrip("/")
+        learner = _learner(own[0], self._parts, is_folder=level.is_folder(own[0]))
+        folder = level.path if isinstance(level, _Folder) else None
+        found = platform_name(own[0])
+        person = found.person if found else ""
+        return HandedIn(str(shown), learner, tuple(entries), folder, person=person)
 
 
 def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[HandedFile]:
@@ -176,7 +480,7 @@ def _files_below(entry: HandedFile, boundary: Path, levels: int) -> Iterator[Han
 
 def _unpacked_files(file: HandedFile) -> Iterator[HandedFile]:
     # The files in a student's zip file, or the file itself if it is another one or damaged.
-    if ending(_own(file)) != _ARCHIVE:
+    if ending(_own(file)) != _ARCHIVE or file.is_misplaced:
         yield file
         return
     try:
@@ -199,12 +503,16 @@ class _Unpacking:
         """Return the files in this zip file, and those in zip files in it."""
         found: list[HandedFile] = []
         with open_archive(file.read()) as archive:
-            for name in _members(archive):
-                content = unpacked(archive, name, min(self._left, most_bytes(name)))
+            for member in _members(archive):
+                name = member.steps[-1]
+                below = str(PurePosixPath(_own(file)).with_suffix("").joinpath(*member.steps))
+                path = file.path.joinpath(*member.steps)
+                if member.is_misplaced:
+                    found.append(HandedFile(path, below, member=member.name, is_misplaced=True))
+                    continue
+                content = unpacked(archive, member.name, min(self._left, most_bytes(name)))
                 self._left -= len(content)
-                steps = [step for step in name.split("/") if step not in ("", ".", "..")]
-                below = str(PurePosixPath(_own(file)).with_suffix("").joinpath(*steps))
-                inner = HandedFile(file.path.joinpath(*steps), below, content=content)
+                inner = HandedFile(path, below, content=content)
                 if ending(name) == _ARCHIVE and levels > 1:
                     found += self.files(inner, levels - 1)
                 else:
@@ -216,47 +524,80 @@ def _own(file: HandedFile) -> str:
     return file.name or file.path.name
 
 
-def _members(archive: zipfile.ZipFile) -> list[str]:
-    # The names of the files in a zip file, in order. Steps such as ".." only name the file.
-    names = [name for name in archive.namelist() if not name.endswith("/")]
-    return sorted(name for name in names if not any(map(_is_junk, name.split("/"))))
+def _members(archive: zipfile.ZipFile) -> list[_Member]:
+    # The files in a zip file, in the order of their paths.
+    found = []
+    for info in archive.infolist():
+        path = _readable_name(info)
+        steps = _steps(path)
+        if path.endswith(("/", "\\")) or not steps or any(map(_is_junk, steps)):
+            continue
+        found.append(_Member(steps, info.filename, leads_out(path)))
+    return sorted(found, key=lambda each: each.steps)
 
 
-def _opened(path: Path) -> zipfile.ZipFile:
+def leads_out(path: str) -> bool:
+    """True if a path in a zip file leads out of the folder into which it is unpacked."""
+    path = path.replace("\\", "/")
+    return path.startswith("/") or ".." in path.split("/") or bool(_DRIVE.match(path))
+
+
+def _steps(path: str) -> tuple[str, ...]:
+    # Without the steps that lead elsewhere.
+    steps = path.replace("\\", "/").split("/")
+    return tuple(step for step in steps if step not in ("", ".", ".."))
+
+
+def handed_in_out_of_place(path: str, parts: Collection[str]) -> HandedIn:
+    """Return the submission of a file whose path leads out of its zip file. It is not read."""
+    steps = _steps(path) or ("?",)
+    first, *below = steps[next((i for i in range(len(steps)) if platform_name(steps[i])), 0) :]
+    found = platform_name(first)
+    own = "/".join(below) or (found.file if found else "") or first
+    file = HandedFile(Path(first, *below), own, member=path, is_misplaced=True)
+    learner = _learner(first, parts, is_folder=bool(below))
+    return HandedIn(path, learner, (file,), person=found.person if found else "")
+
+
+def _readable_name(info: zipfile.ZipInfo) -> str:
+    # Some programs (such as Archive Utility on a Mac) write UTF-8, but do not say so.
+    if not info.flag_bits & _SAYS_UTF_8:
+        with suppress(UnicodeError):
+            return info.filename.encode("cp437").decode()
+    return info.filename
+
+
+def _opened(path: Path, outer: Sequence[str] = ()) -> zipfile.ZipFile:
+    """Open a zip file, or the zip file ``outer[-1]`` in it. Raises UnusableFileError."""
     try:
+        if outer:
+            return zipfile.ZipFile(io.BytesIO(_inner_archive(path, tuple(outer))))
         return zipfile.ZipFile(path)
-    except (zipfile.BadZipFile, OSError, ValueError) as error:
+    except (zipfile.BadZipFile, OSError, ValueError, NotImplementedError) as error:
         raise UnusableFileError(say("is damaged, or not what its name says")) from error
 
 
-def _of_class_archive(path: Path, parts: Collection[str]) -> Iterator[HandedIn]:
-    try:
-        with _opened(path) as archive:
-            names = _members(archive)
-        if len(names) > MAX_SUBMISSIONS_IN_FOLDER:
-            raise UnusableFileError(
-                say("holds more than {most:,} files", most=MAX_SUBMISSIONS_IN_FOLDER)
+@lru_cache(maxsize=1)
+def _inner_archive(path: Path, outer: tuple[str, ...]) -> bytes:
+    # All files of a class are read from one inner zip file, so that it is unpacked once.
+    with _opened(path, outer[:-1]) as archive:
+        packed = archive.getinfo(outer[-1]).compress_size
+        most = min(MAX_INNER_ARCHIVE, _LEAST_INNER_ARCHIVE + _MOST_EXPANSION * packed)
+        return unpacked(archive, outer[-1], most)
+
+
+def _require_no_closed_archive(level: _Level, name: str) -> None:
+    # A zip file alone in a zip file is the class, unless it is too large or damaged.
+    is_archive = ending(name) == _ARCHIVE and not platform_name(name)
+    if isinstance(level, _ZipFile) and is_archive and level.opened(name) is None:
+        raise UnusableClassError(
+            say(
+                "{outer} holds only the zip file {inner}, which is too large to be read in it, or "
+                "damaged. Unpack {outer}, and give {inner}.",
+                outer=str(level.path),
+                inner=name,
             )
-    except UnusableFileError as error:
-        yield HandedIn(str(path), path.stem, (), problem=error.args[0])
-        return
-    start = _common_folder(names)
-    by_student: dict[str, list[HandedFile]] = {}
-    tops = {name: name[len(start) :].split("/") for name in names}
-    own = frozenset(_without_index([first for first, *_ in tops.values()]))
-    for name, (first, *steps) in tops.items():
-        if first not in own:
-            continue
-        found = platform_name(first)
-        student = f"/{found.student}" if found else first
-        if not steps and not found and (named := student_and_part(first, parts)):
-            student = f"/{named[0]}"
-        inner = "/".join(steps) if steps else (found.file if found and found.file else first)
-        file = HandedFile(path / name[len(start) :], inner, archive=path, member=name)
-        by_student.setdefault(student, []).append(file)
-    for student, files in by_student.items():
-        shown = path / student.lstrip("/")
-        yield HandedIn(str(shown), _learner_in_archive(files, parts), tuple(files))
+        )
 
 
 def _without_index(names: Sequence[str]) -> list[str]:
@@ -265,22 +606,13 @@ def _without_index(names: Sequence[str]) -> list[str]:
     return others if others and all(map(platform_name, others)) else list(names)
 
 
-def _common_folder(names: Sequence[str]) -> str:
-    # A folder around everything, such as the name of the zip file; not the folder of a student.
-    first = names[0].partition("/")[0] if names else ""
-    if not all(name.startswith(f"{first}/") for name in names) or platform_name(first):
-        return ""
-    return f"{first}/" if len({name.split("/")[1] for name in names}) > 1 else ""
-
-
-def _learner_in_archive(files: Sequence[HandedFile], parts: Collection[str]) -> str:
-    [top, *below] = files[0].path.relative_to(files[0].archive or "").parts
-    if found := platform_name(top):
-        return found.learner
-    if below:
-        return top
-    named = student_and_part(top, parts)
-    return named[0] if named else PurePosixPath(top).stem
+def _common_folder(paths: Sequence[tuple[str, ...]]) -> int:
+    # 1 if a folder is around everything, such as the name of the zip file, otherwise 0. The folder
+    # of a student is none.
+    first = paths[0][0] if paths else ""
+    if platform_name(first) or not all(steps[0] == first and len(steps) > 1 for steps in paths):
+        return 0
+    return 1 if len({steps[1] for steps in paths}) > 1 else 0
 
 
 def _names(folder: Path, most: int) -> list[str]:
@@ -318,11 +650,10 @@ def _is_same(path: Path, other: Path) -> bool:
     return path.name == other.name and path.resolve() == other.resolve()
 
 
-def _learner(entry: HandedFile, parts: Collection[str] = ()) -> str:
-    name = entry.path.name or entry.path.resolve().name
+def _learner(name: str, parts: Collection[str], *, is_folder: bool) -> str:
     if found := platform_name(name):
         return found.learner
-    if _is_folder(entry.path):
+    if is_folder:
         return name
     named = student_and_part(name, parts)
-    return named[0] if named else entry.path.stem
+    return named[0] if named else PurePosixPath(name).stem

@@ -77,6 +77,17 @@ def open_archive(data: bytes) -> zipfile.ZipFile:
     return archive
 
 
+# What ``zipfile`` raises for a damaged or encrypted entry.
+UNREADABLE_ARCHIVE: Final = (
+    zipfile.BadZipFile,
+    zlib.error,
+    EOFError,
+    OSError,
+    NotImplementedError,
+    RuntimeError,
+)
+
+
 def unpacked(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     """Return an entry of a zip file with at most ``most`` bytes. Raises UnusableFileError."""
     info = archive.getinfo(name)
@@ -86,14 +97,7 @@ def unpacked(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
         # A false size in the directory makes zipfile stop there and report a wrong checksum.
         with archive.open(info) as entry:
             content = entry.read(most + 1)
-    except (
-        zipfile.BadZipFile,
-        zlib.error,
-        EOFError,
-        OSError,
-        NotImplementedError,
-        RuntimeError,
-    ) as error:
+    except UNREADABLE_ARCHIVE as error:
         raise _damaged() from error
     if len(content) > most:
         raise _too_much()

@@ -51,6 +51,8 @@ class PlatformName:
     learner: str
     # The student's own name of the file; empty for a folder.
     file: str
+    # The name of the person; empty if the submission is anonymous.
+    person: str
 
 
 def platform_name(name: str) -> PlatformName | None:
@@ -60,17 +62,20 @@ def platform_name(name: str) -> PlatformName | None:
     if found := _MOODLE.fullmatch(name):
         # Moodle's grading worksheet has this in the column "Identifier".
         learner = f"Participant {found['id']}"
-        return PlatformName(f"{found['student']}_{found['id']}", learner, found["file"] or "")
+        student = found["student"]
+        return PlatformName(f"{student}_{found['id']}", learner, found["file"] or "", student)
     if found := _BRIGHTSPACE.fullmatch(name):
         student = found["student"]
-        return PlatformName(f"{student}_{found['id']}", student, found["file"] or "")
+        return PlatformName(f"{student}_{found['id']}", student, found["file"] or "", student)
     if found := _BLACKBOARD.fullmatch(name):
-        return PlatformName(found["student"], found["user"], found["file"] or RECEIPT)
+        user = found["user"]
+        return PlatformName(found["student"], user, found["file"] or RECEIPT, user)
     found = _CANVAS.fullmatch(name)
     if found is None or (found["student"] is None) == found["id"].isdigit():
         return None
     student = "_".join(filter(None, (found["student"], found["id"])))
-    return PlatformName(student, found["id"], found["file"] or found["entry"])
+    person = found["student"] or ""
+    return PlatformName(student, found["id"], found["file"] or found["entry"], person)
 
 
 def without_copy_number(stem: str) -> str:

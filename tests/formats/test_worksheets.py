@@ -5,11 +5,12 @@ The headings are those of Moodle's language packs, version 4.5.
 
 import csv
 import io
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import pytest
 
-from service.formats.worksheets import Grade, UnusableWorksheetError, Worksheet
+from service.formats.worksheets import Grade, UnusableWorksheetError, Worksheet, is_worksheet
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,13 @@ def moodle(words: Words, separator: str = ",", most: str = "8.00") -> bytes:
     return b"\xef\xbb\xbf" + written.getvalue().encode()
 
 
+def filled(
+    grades: Iterable[Grade], before: bytes, column: str | None = None, *, replaces: bool = False
+) -> tuple[bytes, list[str]]:
+    found = Worksheet(before, column).filled(grades, replaces=replaces)
+    return found.content, list(found.problems)
+
+
 def imported(content: bytes, words: Words, separator: str) -> dict[int, tuple[float | None, str]]:
     """Return the grades and comments by participant, by the rules of Moodle's importer.
 
@@ -110,8 +118,8 @@ def imported(content: bytes, words: Words, separator: str) -> dict[int, tuple[fl
 @pytest.mark.parametrize("language", WORDS)
 def test_moodles_importer_reads_the_grades(language: str, separator: str) -> None:
     words = WORDS[language]
-    filled, problems = Worksheet(moodle(words, separator)).filled([ADA, BEN, UNREAD])
-    assert imported(filled, words, separator) == {
+    content, problems = filled([ADA, BEN, UNREAD], moodle(words, separator))
+    assert imported(content, words, separator) == {
         1234: (7.0, "Table: 7 / 8"),
         1235: (2.33, 'Table: "2.33" / 8; a, b'),
         # What was not read is graded by hand, and who handed nothing in stays.
@@ -126,7 +134,7 @@ def test_moodles_importer_reads_the_grades(language: str, separator: str) -> Non
 @pytest.mark.parametrize("language", WORDS)
 def test_all_else_stays_byte_for_byte(language: str) -> None:
     before = moodle(WORDS[language])
-    after, _ = Worksheet(before).filled([ADA])
+    after, _ = filled([ADA], before)
     comma = WORDS[language].comma
     lines = before.split(b"\n")
     most = b'"8,00"' if comma else b"8.00"
@@ -134,22 +142,22 @@ def test_all_else_stays_byte_for_byte(language: str) -> None:
     assert lines[1].endswith(b"-,")
     lines[1] += b"Table: 7 / 8"
     assert after == b"\n".join(lines)
-    assert Worksheet(before).filled([])[0] == before
+    assert filled([], before)[0] == before
 
 
 def test_points_are_scaled_to_the_maximum_of_the_worksheet() -> None:
     words = WORDS["en"]
-    after, _ = Worksheet(moodle(words, most="100.00")).filled([BEN])
+    after, _ = filled([BEN], moodle(words, most="100.00"))
     assert b",29.17,100.00," in after
 
 
 def test_points_have_the_decimal_comma_of_the_worksheet() -> None:
-    after, _ = Worksheet(moodle(WORDS["de"])).filled([BEN])
+    after, _ = filled([BEN], moodle(WORDS["de"]))
     assert b',"2,33","8,00",' in after
 
 
 def test_a_comment_is_no_formula_of_a_spreadsheet() -> None:
-    after, _ = Worksheet(moodle(WORDS["en"])).filled([replace(ADA, comment="=1+1")])
+    after, _ = filled([replace(ADA, comment="=1+1")], moodle(WORDS["en"]))
     assert b",-,'=1+1\n" in after
 
 
@@ -165,14 +173,14 @@ def test_a_worksheet_without_the_time_of_grades_is_refused() -> None:
 def test_the_number_of_a_group_is_not_the_number_of_a_student() -> None:
     group = Grade("in/Group 3_1234", "Participant 1234", 1.0, 8.0, 8.0, "")
     before = moodle(WORDS["en"])
-    after, [problem] = Worksheet(before).filled([group])
+    after, [problem] = filled([group], before)
     assert after == before
     assert problem == "in/Group 3_1234 is in no row of the worksheet. Enter 8 / 8 points by hand."
 
 
 def test_two_submissions_of_one_student_fill_nothing() -> None:
     before = moodle(WORDS["en"])
-    after, problems = Worksheet(before).filled([ADA, ADA])
+    after, problems = filled([ADA, ADA], before)
     assert after == before
     assert len(problems) == 2
 
@@ -185,7 +193,7 @@ def test_anonymous_worksheets_have_no_names() -> None:
         '"Saturday, 3 October 2026, 2:05 PM",-,\r\n'
     )
     anonymous = Grade("in/Participant 1234_1234", "Participant 1234", 0.5, 4, 8, "ok")
-    after, problems = Worksheet(text.encode()).filled([anonymous])
+    after, problems = filled([anonymous], text.encode())
     assert after.decode() == text.replace("grading,,", "grading,4,").replace("-,\r", "-,ok\r")
     assert problems == []
 
@@ -208,7 +216,7 @@ def test_canvas_students_of_one_name_are_told_apart_by_id() -> None:
         Grade("in/roecy_13", "13", 0.25, 2.0, 8.0, "c"),
         Grade("in/who_15", "15", 0.25, 2.0, 8.0, "c"),
     ]
-    after, problems = Worksheet(CANVAS.encode(), "HW 1").filled(grades)
+    after, problems = filled(grades, CANVAS.encode(), "HW 1")
     # A row without a login is filled like the others.
     wanted = CANVAS.replace("11,,,A,,", "11,,,A,4,").replace("ann2,B,,", "ann2,B,16,")
     assert after.decode() == wanted
@@ -237,7 +245,7 @@ BRIGHTSPACE = (
 def test_brightspace_finds_students_by_name_if_the_name_is_unique() -> None:
     ada = Grade("in/Ada Byron_75-12", "Ada Byron", 0.75, 6.0, 8.0, "c")
     ann = Grade("in/Ann Lee_76-13", "Ann Lee", 0.75, 6.0, 8.0, "c")
-    after, [problem] = Worksheet(BRIGHTSPACE.encode()).filled([ada, ann])
+    after, [problem] = filled([ada, ann], BRIGHTSPACE.encode())
     assert after.decode() == BRIGHTSPACE.replace("Ada,,", "Ada,7.5,")
     assert "Ann Lee" in problem
     assert "2 rows" in problem
@@ -256,7 +264,7 @@ def test_blackboards_file_in_utf_16() -> None:
     before = b"\xff\xfe" + BLACKBOARD.encode("utf-16-le")
     ada = Grade("in/HW1_abyron", "abyron", 0.75, 6.0, 8.0, "c")
     lee = Grade("in/HW1_a_lee", "lee", 0.75, 6.0, 8.0, "c")
-    after, [problem] = Worksheet(before).filled([ada, lee])
+    after, [problem] = filled([ada, lee], before)
     wanted = BLACKBOARD.replace('00"\t"Yes"\t""', '00"\t"Yes"\t"6"')
     assert after == b"\xff\xfe" + wanted.encode("utf-16-le")
     assert "a_lee" in problem
@@ -269,3 +277,135 @@ def test_blackboards_file_in_utf_16() -> None:
 def test_other_files_are_refused(content: bytes) -> None:
     with pytest.raises(UnusableWorksheetError):
         Worksheet(content)
+
+
+def with_grades(*grades: str, comment: str = "") -> bytes:
+    """Return a worksheet of Moodle in which somebody has entered these grades."""
+    head, *rows = list(csv.reader(io.StringIO(moodle(WORDS["en"]).decode("utf-8-sig"))))
+    for row, grade in zip(rows, grades, strict=False):
+        row[4], row[-1] = grade, comment if grade else ""
+    written = io.StringIO(newline="")
+    csv.writer(written, lineterminator="\n").writerows([head, *rows])
+    return written.getvalue().encode()
+
+
+KEPT = (
+    "1 row of the worksheet already had another grade, which stays (grade in the worksheet / grade "
+    "of the program): Ada Byron_1234 (5.00 / 7)."
+)
+
+
+def test_a_grade_that_a_person_entered_stays_unless_it_shall_be_replaced() -> None:
+    before = with_grades("5.00", "2.33", comment="well done")
+    sheet = Worksheet(before)
+    found = sheet.filled([ADA, BEN])
+    # Ben's grade is the same, and the comments of a person stay, too.
+    assert found.content == before
+    assert (found.grades, found.kept) == (1, 1)
+    assert list(found.problems) == [
+        KEPT,
+        "1 comment that was already in the worksheet stays.",
+    ]
+    replaced = sheet.filled([ADA, BEN], replaces=True)
+    assert (replaced.grades, replaced.kept, replaced.problems) == (2, 0, ())
+    assert imported(replaced.content, WORDS["en"], ",") == {
+        1234: (7.0, "Table: 7 / 8"),
+        1235: (2.33, 'Table: "2.33" / 8; a, b'),
+        1236: (None, ""),
+        1237: (None, ""),
+    }
+
+
+def test_a_comment_of_a_person_stays_beside_a_new_grade() -> None:
+    lines = moodle(WORDS["en"]).decode().splitlines(keepends=True)
+    lines[1] = lines[1].replace("-,\n", "-,see me\n")
+    content, [problem] = filled([ADA], "".join(lines).encode())
+    assert imported(content, WORDS["en"], ",")[1234] == (7.0, "see me")
+    assert problem == "1 comment that was already in the worksheet stays."
+
+
+def test_a_row_that_a_person_has_graded_is_not_left_for_grading_by_hand() -> None:
+    found = Worksheet(with_grades("", "", "6.00")).filled([UNREAD])
+    assert (found.by_hand, found.problems) == (0, ())
+
+
+def test_what_was_not_read_has_no_points_to_enter() -> None:
+    stranger = replace(UNREAD, name="in/Eve_99", learner="Participant 99")
+    for grades in ([stranger], [UNREAD, UNREAD]):
+        _, problems = filled(grades, moodle(WORDS["en"]))
+        for problem in problems:
+            assert problem.endswith("Grade it by hand.")
+            assert "?" not in problem
+
+
+def test_the_worksheet_of_another_course_gets_one_sentence() -> None:
+    grades = [Grade(f"in/S{i}_{i}", f"Participant {i}", 1.0, 8.0, 8.0, "") for i in range(900, 930)]
+    found = Worksheet(moodle(WORDS["en"])).filled(grades)
+    assert found.is_foreign
+    [problem] = found.problems
+    assert problem.startswith(
+        "None of the 30 submissions is in the worksheet (S900_900, S901_901, S902_902, …)."
+    )
+    partly = Worksheet(moodle(WORDS["en"])).filled([ADA, *grades])
+    assert not partly.is_foreign
+    [problem] = partly.problems
+    assert problem.startswith(
+        "30 submissions are in no row of the worksheet (S900_900, S901_901, S902_902, …)."
+    )
+
+
+SCALE = (
+    "Identifier,Full name,Status,Grade,Scale,Grade can be changed,"
+    "Last modified (submission),Last modified (grade),Feedback comments\n"
+    'Participant 1234,Ada Byron,Submitted,,"Not yet, Good",Yes,-,-,\n'
+    'Participant 1235,Ben Okri,Submitted,,"Not yet, Good",Yes,-,-,\n'
+)
+
+
+@pytest.mark.parametrize(
+    ("content", "reason"),
+    [
+        (SCALE.encode(), r"grades by a scale \(Not yet, Good\)"),
+        (moodle(WORDS["en"]).replace(b",8.00,", b',"8,00",', 2), r"spellings \(8,00, 8.00\)"),
+        (moodle(WORDS["en"]).partition(b"\n")[0] + b"\n", "only a heading"),
+        (CANVAS.partition("\n")[0].encode(), "only a heading"),
+    ],
+)
+def test_a_worksheet_that_cannot_be_filled_says_why(content: bytes, reason: str) -> None:
+    with pytest.raises(UnusableWorksheetError, match=reason):
+        Worksheet(content)
+
+
+def test_the_maximum_decides_about_the_decimal_sign() -> None:
+    # Somebody has typed a grade with another decimal sign.
+    before = with_grades("6,5")
+    content, _ = filled([BEN], before)
+    assert imported(content.replace(b"6,5", b"6.5"), WORDS["en"], ",")[1235][0] == 2.33
+
+
+@pytest.mark.parametrize(
+    ("sheet", "name", "learner", "person"),
+    [
+        (moodle(WORDS["de"]), "in/Ada Byron_1234", "Participant 1234", "Ada Byron"),
+        (CANVAS.encode(), "in/leeann_12", "12", "Lee, Ann"),
+        (BLACKBOARD.encode("utf-16"), "in/HW1_abyron", "abyron", "Ada Byron"),
+        (moodle(WORDS["de"]), "in/Eve_99", "Participant 99", ""),
+    ],
+)
+def test_the_worksheet_knows_the_names(sheet: bytes, name: str, learner: str, person: str) -> None:
+    assert Worksheet(sheet, "HW 1" if b"HW 1 (" in sheet else None).person(name, learner) == person
+
+
+def test_worksheets_are_recognised_by_their_beginning() -> None:
+    for words in WORDS.values():
+        assert is_worksheet(moodle(words)[:600])
+    for text in (CANVAS, BRIGHTSPACE, BLACKBOARD, SCALE):
+        assert is_worksheet(text.encode())
+    assert is_worksheet(BLACKBOARD.encode("utf-16"))
+    for table in (
+        "i,a,alpha,d,theta\n1,0,0,0,q1\n",
+        "Joint 1,a1,0,0,theta1\nJoint 2,a2,180,0,theta2\nJoint 3,0,0,d3,0\n",
+        "Link 1;0;90;8;-\nLink 2;0;90;8;-\n",
+        "1;2;3\n",
+    ):
+        assert not is_worksheet(table.encode())

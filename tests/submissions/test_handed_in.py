@@ -3,13 +3,14 @@
 import io
 import os
 import sys
+import tracemalloc
 import zipfile
 from pathlib import Path
 
 import pytest
 
 from service.submissions import handed_in
-from service.submissions.handed_in import HandedIn, all_handed_in
+from service.submissions.handed_in import ClassEntry, HandedIn, UnusableClassError, all_handed_in
 from service.submissions.office_files import UnusableFileError
 
 needs_links = pytest.mark.skipif(os.name == "nt", reason="needs a right for symbolic links")
@@ -193,3 +194,165 @@ def test_the_own_name_of_a_file_has_no_path_and_no_name_of_a_platform(tmp_path: 
     paths = [tmp_path / each for each in ("class", f"{moodle}table.csv", "anna.table.csv")]
     names = [file.own_name for found in all_handed_in(paths) for file in found.files()]
     assert names == ["planar-rr/table.csv", "table.csv", "anna.table.csv"]
+
+
+def zipped(path: Path, members: dict[str, str | bytes]) -> Path:
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+ADA, BEN = "Ada Byron_1234_assignsubmission_file_", "Ben Okri_1235_assignsubmission_file_"
+DOWNLOAD: dict[str, str | bytes] = {f"{ADA}/table.csv": "ada", f"{BEN}/table.csv": "ben"}
+IN_DOWNLOAD = [("Participant 1234", ["table.csv"]), ("Participant 1235", ["table.csv"])]
+
+
+@pytest.mark.parametrize(
+    "path", ["../x.csv", "a/../../x.csv", "/etc/x.csv", "C:/x.csv", "D:\\x.csv", "..\\x.csv"]
+)
+@pytest.mark.parametrize("place", ["class", "student"])
+def test_a_path_out_of_a_zip_file_is_listed_and_not_read(
+    tmp_path: Path, path: str, place: str
+) -> None:
+    if place == "class":
+        given = zipped(tmp_path / "class.zip", {f"{BEN}/t.csv": "", f"../{ADA}/{path}": "0"})
+    else:
+        (tmp_path / "class" / ADA).mkdir(parents=True)
+        zipped(tmp_path / "class" / ADA / "mine.zip", {path: "0"})
+        given = tmp_path / "class"
+    before = sorted(tmp_path.rglob("*"))
+    ada, *_ = all_handed_in([given])
+    assert ada.learner == "Participant 1234"
+    [file] = ada.files()
+    assert file.name.endswith("x.csv")
+    with pytest.raises(UnusableFileError) as error:
+        file.read()
+    assert path in str(error.value)
+    assert "leads out of it" in str(error.value)
+    assert sorted(tmp_path.rglob("*")) == before
+
+
+def test_names_that_only_windows_reserves_and_harmless_steps_are_read(tmp_path: Path) -> None:
+    names = [f"./{ADA}/aux.csv", f"{ADA}\\sub\\nul.csv", f"{BEN}//con"]
+    given = zipped(tmp_path / "class.zip", dict.fromkeys(names, "0"))
+    found = list(all_handed_in([given]))
+    assert [told(each) for each in found] == [
+        ("Participant 1234", ["aux.csv", "sub/nul.csv"]),
+        ("Participant 1235", ["con"]),
+    ]
+    assert {file.read() for each in found for file in each.files()} == {b"0"}
+
+
+def test_names_in_utf_8_need_no_flag(tmp_path: Path) -> None:
+    given = zipped(tmp_path / "class.zip", {"Jörg 李_7_assignsubmission_file_/lösung.csv": "0"})
+    # Archive Utility on a Mac does not set the flag. It is in the header and in the directory.
+    content = given.read_bytes()
+    flags = b"\x00\x08"
+    assert content.count(b"\x14\x00" + flags) == 2
+    given.write_bytes(content.replace(b"\x14\x00" + flags, b"\x14\x00\x00\x00"))
+    [found] = all_handed_in([given])
+    assert found.person == "Jörg 李"
+    assert [(file.name, file.read()) for file in found.files()] == [("lösung.csv", b"0")]
+
+
+def packed() -> bytes:
+    content = io.BytesIO()
+    with zipfile.ZipFile(content, "w") as archive:
+        for name, each in DOWNLOAD.items():
+            archive.writestr(name, each)
+    return content.getvalue()
+
+
+def test_the_download_is_found_wherever_the_tutor_has_put_it(tmp_path: Path) -> None:
+    download = packed()
+    given = []
+    for name in ("alone", "beside", "unpacked", "two deep"):
+        (tmp_path / name).mkdir()
+        given.append(tmp_path / name)
+    (tmp_path / "alone" / "ROB1-4711.zip").write_bytes(download)
+    (tmp_path / "beside" / "ROB1-4711.zip").write_bytes(download)
+    (tmp_path / "beside" / "points.csv").write_text("points", encoding="utf-8")
+    for name in DOWNLOAD:
+        save(tmp_path / "unpacked" / "ROB1-4711", name)
+        save(tmp_path / "two deep" / "HW3" / "ROB1-4711", name)
+    given += [
+        zipped(tmp_path / "again.zip", {"ROB1-4711.zip": download}),
+        zipped(tmp_path / "folder.zip", {"HW3/ROB1-4711.zip": download}),
+        zipped(tmp_path / "with.zip", {"HW3/d.zip": download, "HW3/points.csv": "points"}),
+        zipped(tmp_path / "unpacked.zip", {f"HW3/R/{name}": "0" for name in DOWNLOAD}),
+        zipped(
+            tmp_path / "outputs.zip",
+            {"HW3/points.csv": "", **{f"HW3/R/{name}": "0" for name in DOWNLOAD}},
+        ),
+    ]
+    for path in given:
+        found = list(all_handed_in([path], is_output=lambda entry: entry.name == "points.csv"))
+        assert [told(each) for each in found] == IN_DOWNLOAD, path
+        contents = [file.read() for each in found for file in each.files()]
+        assert contents in ([b"ada", b"ben"], [b"{}", b"{}"], [b"0", b"0"])
+
+
+def test_the_zip_file_or_folder_of_a_student_is_no_download(tmp_path: Path) -> None:
+    (tmp_path / ADA).mkdir()
+    (tmp_path / ADA / "mine.zip").write_bytes(packed())
+    save(tmp_path, "anna/table.csv", "anna/pose.csv", "bert/robot_10_200_a.csv", "bert/x.csv")
+    zipped(tmp_path / "cleo.zip", {"table.csv": "0", "pose.csv": "0"})
+    assert [learner for learner, _ in students(tmp_path)] == [
+        "Participant 1234", "anna", "bert", "cleo",
+    ]  # fmt: skip
+
+
+def test_a_student_in_two_downloads_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "ROB1.zip").write_bytes(packed())
+    for name in DOWNLOAD:
+        save(tmp_path / "ROB1", name)
+    with pytest.raises(UnusableClassError) as error:
+        list(all_handed_in([tmp_path]))
+    assert "Give only one of them." in str(error.value)
+    assert "ROB1.zip" in str(error.value)
+
+
+def test_a_download_that_cannot_be_read_in_a_zip_file_is_refused(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    given = zipped(tmp_path / "again.zip", {"ROB1.zip": packed()})
+    monkeypatch.setattr(handed_in, "MAX_INNER_ARCHIVE", 100)
+    with pytest.raises(UnusableClassError, match=r"Unpack .*again\.zip, and give ROB1\.zip"):
+        list(all_handed_in([given]))
+
+
+def test_a_zip_file_that_grows_is_refused_before_it_is_unpacked(tmp_path: Path) -> None:
+    bomb = io.BytesIO()
+    with zipfile.ZipFile(bomb, "w", zipfile.ZIP_STORED) as archive:
+        archive.writestr(f"{ADA}/table.csv", b"0" * 8_000_000)
+        archive.writestr(f"{BEN}/table.csv", b"0")
+    given = zipped(tmp_path / "again.zip", {"ROB1.zip": bomb.getvalue()})
+    assert given.stat().st_size < 40_000
+    tracemalloc.start()
+    with pytest.raises(UnusableClassError, match="too large"):
+        list(all_handed_in([given]))
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 4_000_000
+
+
+def test_outputs_among_the_submissions_are_left_out(tmp_path: Path) -> None:
+    save(tmp_path, "anna.csv", "points.csv", "class/index.html", f"{ADA}/points.csv")
+    seen = []
+
+    def is_output(entry: ClassEntry) -> bool:
+        seen.append((entry.name, list(entry.inside()), entry.start(""), entry.start("index.html")))
+        return entry.name in ("points.csv", "class")
+
+    found = all_handed_in([tmp_path], is_output=is_output)
+    # What a platform has named is from a student.
+    assert [told(each) for each in found] == [
+        ("Participant 1234", ["points.csv"]),
+        ("anna", ["anna.csv"]),
+    ]
+    assert sorted(seen) == [
+        ("anna.csv", [], b"{}", b""),
+        ("class", ["index.html"], b"", b"{}"),
+        ("points.csv", [], b"{}", b""),
+    ]

@@ -92,7 +92,9 @@ def test_two_files_that_differ_are_left_to_a_person(tmp_path: Path) -> None:
     wrong: made.Rows = [*RIGHT[:2], ["l1", 90, 0, "q2"], *RIGHT[3:]]
     found = grade_files(tmp_path, {"a.xlsx": made.xlsx(RIGHT), "b.csv": made.csv(wrong)})
     assert not found.is_complete
-    assert "has several answers to table, which differ" in found.problems[0]
+    assert found.problems == (
+        "a.xlsx, b.csv have answers to table that differ; leave only one of them",
+    )
 
 
 def test_scratch_sheets_and_blocks_beside_the_answer_do_not_matter(tmp_path: Path) -> None:

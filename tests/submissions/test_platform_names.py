@@ -1,6 +1,6 @@
 import pytest
 
-from service.submissions.platform_names import PlatformName, platform_name
+from service.submissions.platform_names import platform_name
 
 
 @pytest.mark.parametrize(
@@ -58,7 +58,25 @@ from service.submissions.platform_names import PlatformName, platform_name
 def test_the_student_in_a_platform_name_is_found(
     name: str, student: str, learner: str, file: str
 ) -> None:
-    assert platform_name(name) == PlatformName(student, learner, file)
+    found = platform_name(name)
+    assert found is not None
+    assert (found.student, found.learner, found.file) == (student, learner, file)
+
+
+@pytest.mark.parametrize(
+    ("name", "person"),
+    [
+        ("Ada Lovelace_1234_assignsubmission_file_", "Ada Lovelace"),
+        ("lovelaceada_LATE_12345_678_table.csv", "lovelaceada"),
+        ("anon_x7Gh2_678_table.csv", ""),
+        ("75842-1234567 - Ann-Marie Lee - Oct 3, 2026 405 PM", "Ann-Marie Lee"),
+        ("HW1_abyron_attempt_2026-10-03-16-05-33.txt", "abyron"),
+    ],
+)
+def test_the_person_in_a_platform_name_is_found(name: str, person: str) -> None:
+    found = platform_name(name)
+    assert found is not None
+    assert found.person == person
 
 
 @pytest.mark.parametrize(

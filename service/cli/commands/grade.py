@@ -1,11 +1,12 @@
 """`dh-grader grade`: grade submissions in files."""
 
 import os
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager
-from dataclasses import replace
+from dataclasses import KW_ONLY, dataclass, replace
 from datetime import UTC, datetime
 from functools import partial
+from itertools import count
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Final
 
@@ -15,7 +16,7 @@ from service.catalogue import load_exercise, read_regular
 from service.cli.choices import choice, listed, one_of, report_language
 from service.cli.files.output import console_of, write
 from service.cli.files.output_folder import UnusableFolderError, is_for_folder, write_folder
-from service.cli.files.written_files import remember, require_no_input, require_own
+from service.cli.files.written_files import remember, require_no_input, require_own, written_in
 from service.cli.language import spoken
 from service.cli.remote.server import (
     REQUESTS,
@@ -39,6 +40,7 @@ from service.cli.terminal import (
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.class_page import feedback_zip
 from service.formats.documents.gradebook import comment
+from service.formats.earlier_outputs import is_output
 from service.formats.shared.graded import GradedSubmission, Visibility
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import ReportFormat, Setting, UnusableSettingError
@@ -60,9 +62,9 @@ from service.submissions.assignment import (
     of_one,
     with_seeds,
 )
-from service.submissions.handed_in import HandedIn, all_handed_in
+from service.submissions.handed_in import HandedIn, UnusableClassError, all_handed_in
 from service.submissions.outline import SetExercise
-from service.translations import Language, joined, say
+from service.translations import Language, joined, say, say_count
 from service.variants.variant import NoVariantError
 
 if TYPE_CHECKING:
@@ -71,6 +73,8 @@ if TYPE_CHECKING:
 commands = typer.Typer(add_completion=False)
 
 
+# The most earlier outputs that one sentence names.
+_MOST_NAMED: Final = 10
 # The format for people comes first.
 _NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
@@ -150,6 +154,21 @@ def command(
             show_default=False,
         ),
     ] = None,
+    replace_grades: Annotated[
+        bool,
+        typer.Option(
+            "--replace-grades",
+            help="Replace grades and comments that are already in the worksheet. Otherwise they "
+            "stay.",
+        ),
+    ] = False,
+    force: Annotated[
+        bool,
+        typer.Option(
+            "--force",
+            help="Let --output and --worksheet replace an existing file that is no earlier report.",
+        ),
+    ] = False,
     pass_mark: Annotated[
         float | None,
         typer.Option(
@@ -256,8 +275,8 @@ def command(
     sheet = _worksheet(worksheet, column, shard)
     folders = [path for path in paths if path.is_dir()]
     if output is not None:
-        require_no_input(output, [*paths, *filter(None, [assignment])])
-        require_own(output, folders)
+        require_no_input(output, [*paths, *filter(None, [assignment, worksheet])])
+        require_own(output, folders, force=force)
     terms = GradingTerms(
         chosen,
         chosen.pass_mark if pass_mark is None else pass_mark,
@@ -266,16 +285,13 @@ def command(
         echo=echo or taken.shows_entries,
         language=report_language(settings, output_format),
     )
-    found = list(
-        all_handed_in(
-            paths,
-            folder_is_one=one_student or taken.is_single,
-            left_out=_no_submissions(output, worksheet),
-            parts=chosen.part_names,
-        )
+    found, left_out = _found(
+        paths,
+        folder_is_one=one_student or taken.is_single,
+        own=_no_submissions(output, worksheet),
+        parts=chosen.part_names,
+        sheet=sheet,
     )
-    if not found:
-        give_up(say("{paths}: holds no submission", paths=", ".join(map(str, paths))))
     own = found if shard is None else shard.of(found)
     is_class = bool(folders) and not one_student
     setting = Setting(
@@ -285,6 +301,7 @@ def command(
         os.environ,
         visibility,
         terms.language,
+        left_out=left_out,
     )
     try:
         with (
@@ -305,7 +322,9 @@ def command(
                 at_once = shown.is_shown or not taken.is_stream
                 write(pieces, output, at_once=at_once, quiet=quiet)
             remember(output, folders)
-        _fill(sheet, worksheet, run)
+        if sheet and worksheet:
+            filling = _Filling(sheet, worksheet, replaces=replace_grades, force=force, quiet=quiet)
+            run.exit_code = max(run.exit_code, filling.fill(run.grades))
     except UnusableFolderError as error:
         give_up(joined(": ", [str(output), error.args[0]]))
     except UnusableSettingError as error:
@@ -388,23 +407,120 @@ def _worksheet(file: Path | None, column: str | None, shard: Shard | None) -> Wo
         give_up(unreadable(file, error))
 
 
-def _fill(sheet: Worksheet | None, file: Path | None, run: "_Run") -> None:
-    if sheet is None or file is None:
-        return
-    content, problems = sheet.filled(run.grades)
-    write([content], _filled_name(file), at_once=True)
-    for problem in problems:
-        complain(problem)
+@dataclass(frozen=True, slots=True)
+class _Filling:
+    # Fills the worksheet of a platform, and says what was done.
+
+    sheet: Worksheet
+    file: Path
+    _: KW_ONLY
+    replaces: bool
+    force: bool
+    quiet: bool
+
+    def fill(self, grades: Iterable[Grade]) -> int:
+        """Write the filled worksheet; return the exit code."""
+        filled = self.sheet.filled(grades, replaces=self.replaces)
+        for problem in filled.problems:
+            complain(problem)
+        if filled.kept:
+            complain(say("To replace these grades, add --replace-grades."))
+        if filled.content == self.sheet.content:
+            complain(say("{file}: no grade was filled in; no file is written", file=str(self.file)))
+            return UNUSABLE if filled.is_foreign else 0
+        target, others = self._target(filled.content)
+        write([filled.content], target, at_once=True)
+        if others:
+            names = ", ".join(map(str, others))
+            complain(say("{files}: exists with other contents, and stays as it is", files=names))
+        if others or not self.quiet:
+            complain(
+                say(
+                    "{file}: is written. Grades filled in: {count}. Left for grading by hand: "
+                    "{left}.",
+                    file=str(target),
+                    count=filled.grades,
+                    left=filled.by_hand,
+                )
+            )
+        return 0
+
+    def _target(self, content: bytes) -> tuple[Path, list[Path]]:
+        # A tutor may have changed an earlier file, so that only an equal one is replaced.
+        others: list[Path] = []
+        for target in _filled_names(self.file):
+            if self.force or not target.exists() or _is_file_with(target, content):
+                return target, others
+            others.append(target)
+        raise AssertionError  # There is no end of names.
 
 
-def _filled_name(worksheet: Path) -> Path:
-    return worksheet.with_name(f"{worksheet.stem}-graded{worksheet.suffix}")
+def _is_file_with(path: Path, content: bytes) -> bool:
+    try:
+        return path.stat().st_size == len(content) and path.read_bytes() == content
+    except OSError:
+        return False
+
+
+def _filled_names(worksheet: Path) -> Iterator[Path]:
+    for i in count(1):
+        number = "" if i == 1 else f"-{i}"
+        yield worksheet.with_name(f"{worksheet.stem}-graded{number}{worksheet.suffix}")
+
+
+def _found(
+    paths: Sequence[Path],
+    *,
+    folder_is_one: bool,
+    own: Sequence[Path],
+    parts: Collection[str],
+    sheet: Worksheet | None,
+) -> tuple[list[HandedIn], tuple[str, ...]]:
+    # The submissions, and the paths of earlier outputs between them.
+    written = written_in(path for path in paths if path.is_dir())
+    outputs: list[str] = []
+    try:
+        found = list(
+            all_handed_in(
+                paths,
+                folder_is_one=folder_is_one,
+                left_out=[*own, *written],
+                parts=parts,
+                is_output=is_output,
+                outputs=outputs,
+            )
+        )
+    except UnusableClassError as error:
+        give_up(error)
+    left_out = [str(path) for path in written if not any(_is_same(path, each) for each in own)]
+    left_out += outputs
+    if left_out:
+        complain(
+            say_count(
+                "{count} entry is an earlier output or a worksheet, and is left out: {files}",
+                "{count} entries are earlier outputs or worksheets, and are left out: {files}",
+                count=len(left_out),
+                files=", ".join(map(visible, left_out[:_MOST_NAMED]))
+                + (", …" if len(left_out) > _MOST_NAMED else ""),
+            )
+        )
+    if not found:
+        give_up(say("{paths}: holds no submission", paths=", ".join(map(str, paths))))
+    if sheet is not None:
+        found = [
+            replace(each, person=sheet.person(each.name, each.learner) or each.person)
+            for each in found
+        ]
+    return found, tuple(left_out)
+
+
+def _is_same(path: Path, other: Path) -> bool:
+    return path.resolve() == other.resolve()
 
 
 def _no_submissions(output: Path | None, worksheet: Path | None) -> list[Path]:
     # The files of this command, which may be in the folder of the class.
-    filled = [worksheet, _filled_name(worksheet)] if worksheet else []
-    return [*filter(None, [output]), *filled]
+    return [*filter(None, [output, worksheet])]
 
 
 def _pieces(

@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from service.cli.files.output import write
+from service.cli.files.written_files import require_no_input, require_own
 from service.cli.running.shards import UnusableShardsError, merged
 from service.cli.terminal import BELOW_PASS_MARK, UNUSABLE, give_up
 
@@ -27,11 +28,20 @@ def command(
     output: Annotated[
         Path | None, typer.Option(metavar="F", help="Write to this file.", show_default=False)
     ] = None,
+    force: Annotated[
+        bool,
+        typer.Option(
+            "--force", help="Let --output replace an existing file that is no earlier report."
+        ),
+    ] = False,
 ) -> None:
     """Merge the shards that `grade --shard` has written into the JSON lines of one run.
 
     The lines and the exit code are the same as without --shard.
     """
+    if output is not None:
+        require_no_input(output, shards)
+        require_own(output, [], force=force)
     run = _Run(merged(shards))
     try:
         write(run.lines(), output, at_once=True)

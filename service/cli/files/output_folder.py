@@ -7,13 +7,12 @@ from contextlib import contextmanager
 from pathlib import Path, PurePosixPath
 from typing import Final
 
+from service.formats.earlier_outputs import WRITTEN
 from service.formats.shared.report_format import Document
 from service.translations import say
 
 # The name of a folder that is still being written begins with this.
 _UNFINISHED: Final = ".dh-grader-unfinished-"
-# The file that lists what a run has written, one path per line, so that a later run may replace it.
-WRITTEN: Final = ".dh-grader-written"
 _OLD: Final = "old"
 # A file with one of these endings holds all pages.
 _ONE_FILE: Final = (".html", ".htm", ".zip")

@@ -3,8 +3,8 @@
 from collections.abc import Iterable
 from pathlib import Path
 
-from service.cli.files.output_folder import WRITTEN
-from service.cli.terminal import give_up
+from service.cli.terminal import give_up, unreadable
+from service.formats.earlier_outputs import WRITTEN, is_earlier_output
 from service.translations import say
 
 
@@ -20,10 +20,20 @@ def require_no_input(output: Path, read: Iterable[Path]) -> None:
             )
 
 
-def require_own(output: Path, folders: Iterable[Path]) -> None:
-    """Exit with code 2 if the output would replace a student's file."""
-    # A file in one of the folders may be replaced only if an earlier run has written it.
-    if output.is_file() and _holds(folders, output) and output.name not in _written(output):
+def require_own(output: Path, folders: Iterable[Path], *, force: bool = False) -> None:
+    """Exit with code 2 if the output would replace a file that is no earlier output.
+
+    With ``force``, the output may replace any file that is not among the submissions.
+    """
+    if not output.is_file() or output.name in _written(output):
+        return
+    try:
+        is_own = is_earlier_output(output)
+    except OSError as error:
+        give_up(unreadable(output, error))
+    if is_own:
+        return
+    if _holds(folders, output):
         give_up(
             say(
                 "{file}: is among the submissions, and no earlier run has written it; name another "
@@ -31,6 +41,20 @@ def require_own(output: Path, folders: Iterable[Path]) -> None:
                 file=str(output),
             )
         )
+    if not force:
+        give_up(
+            say(
+                "{file}: exists, and is no earlier report of this program; name another --output, "
+                "or add --force to replace the file",
+                file=str(output),
+            )
+        )
+
+
+def written_in(folders: Iterable[Path]) -> list[Path]:
+    """Return the files in these folders that earlier runs have written."""
+    found = [folder / name for folder in folders for name in _written(folder / WRITTEN)]
+    return [path for path in found if path.is_file()]
 
 
 def remember(output: Path | None, folders: Iterable[Path]) -> None:

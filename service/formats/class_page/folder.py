@@ -15,6 +15,8 @@ from service.formats.shared.report_format import Document, Setting
 
 # The subfolder of the pages.
 PAGES: Final = "reports"
+# The name of the page of each student in the zip file for Moodle.
+FEEDBACK: Final = "feedback.html"
 
 # The student and the number in the names that Moodle gives.
 _MOODLE: Final = re.compile(r"(?P<name>.+?)_(?P<number>\d+)(?:_assignsubmission_.*)?")
@@ -30,7 +32,11 @@ def class_folder(page: Pages) -> Folder:
     """
 
     def documents(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[Document]:
-        overview = Overview({each.id: each for each in setting.exercises}, folder=setting.folder)
+        overview = Overview(
+            {each.id: each for each in setting.exercises},
+            folder=setting.folder,
+            left_out=setting.left_out,
+        )
         file_name = distinct_file_names(".html")
         for submission in submissions:
             path = f"{PAGES}/{file_name(submission.learner)}"
@@ -58,5 +64,5 @@ def feedback_zip(
             if found and submission.learner.endswith(f" {found['number']}"):
                 name = found["name"].replace("_", " ")
                 folder = f"{name}_{found['number']}_assignsubmission_file_"
-            archive.writestr(f"{folder}/feedback.html", b"".join(page([submission], setting)))
+            archive.writestr(f"{folder}/{FEEDBACK}", b"".join(page([submission], setting)))
     yield packed.getvalue()

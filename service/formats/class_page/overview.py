@@ -25,6 +25,7 @@ class SubmissionLine:
 
     name: str
     learner: str
+    person: str
     page: str
     points: str
     score: float
@@ -48,6 +49,8 @@ class Overview:
     graders: set[str] = field(default_factory=set)
     # The folder of the index, from which the paths to files lead; None if it is unknown.
     folder: Path | None = None
+    # The entries of the class that are no submissions.
+    left_out: tuple[str, ...] = ()
     _learners: Counter[str] = field(default_factory=Counter)
 
     def add(self, submission: GradedSubmission, page: str) -> None:
@@ -59,6 +62,7 @@ class Overview:
             SubmissionLine(
                 name=submission.name,
                 learner=submission.learner,
+                person=submission.person,
                 page=page,
                 points=points(submission.points, submission.max_points),
                 score=submission.score,
@@ -81,8 +85,14 @@ class Overview:
         return [self.lines[number] for number in numbers]
 
     def shown(self, line: SubmissionLine) -> str:
-        """Return the learner's name, or the submission's if the learner has several submissions."""
-        return line.learner if self._learners[line.learner] == 1 else line.name
+        """Return the learner's name, or the submission's if the learner has several submissions.
+
+        If the name in the gradebook is a number, the name of the person is before it.
+        """
+        if self._learners[line.learner] > 1:
+            return line.name
+        is_known = not line.person or line.person == line.learner
+        return line.learner if is_known else f"{line.person} ({line.learner})"
 
     @property
     def ungraded(self) -> list[SubmissionLine]:

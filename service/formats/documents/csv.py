@@ -1,5 +1,6 @@
 """Points as comma-separated values: a line for each submission, a column for each part."""
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -48,4 +49,4 @@ def _codes(part: PartReport) -> list[str]:
     return [f"{part.part}.{code}" for code in dict.fromkeys(found)]
 
 
-FORMAT: Final = ReportFormat(_pieces)
+FORMAT: Final = ReportFormat(_pieces, re.compile(re.escape(",".join(_HEAD)).encode()))

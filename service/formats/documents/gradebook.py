@@ -1,5 +1,6 @@
 """Grades for the gradebook of a course: one line for each learner, with Moodle's headings."""
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -41,4 +42,6 @@ def _earned(result: PartResult, language: Language) -> str:
     return points(result.points, result.max_points)
 
 
-FORMAT: Final = ReportFormat(_pieces)
+_MARK: Final = re.compile(re.escape(",".join(spreadsheet.GRADEBOOK_HEAD)).encode() + b"\r?\n")
+
+FORMAT: Final = ReportFormat(_pieces, _MARK)

@@ -1,6 +1,7 @@
 """Reports as a JSON list with one entry for each file."""
 
 import json
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -58,4 +59,4 @@ def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[byt
     yield b"[]\n" if opening == b"[\n" else b"\n]\n"
 
 
-FORMAT: Final = ReportFormat(_pieces)
+FORMAT: Final = ReportFormat(_pieces, re.compile(rb'\[\n\{"submission": "'))

@@ -1,5 +1,6 @@
 """Reports as JSON lines: one line for each file, written as soon as the file is graded."""
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -13,4 +14,7 @@ def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[byt
         yield entry + b"\n"
 
 
-FORMAT: Final = ReportFormat(_pieces, is_stream=True)
+# A shard begins with its number.
+_MARK: Final = re.compile(rb'\{"submission": "|\{"shard": \d+, "shards": ')
+
+FORMAT: Final = ReportFormat(_pieces, _MARK, is_stream=True)

@@ -3,6 +3,7 @@
 GitHub takes 1 MiB of summary for a step and 65,536 characters of a comment.
 """
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -47,4 +48,6 @@ def _details(submission: GradedSubmission, language: Language) -> str:
     return "".join(sections)
 
 
-FORMAT: Final = ReportFormat(_pieces, for_students=True)
+_MARK: Final = re.compile(rb"(?:\| [^|\n]{1,40} ){4}\|\n" + re.escape(_ALIGNED).encode())
+
+FORMAT: Final = ReportFormat(_pieces, _MARK, for_students=True)

@@ -3,6 +3,7 @@
 Signs carry the meaning, so the report can also be read without colours.
 """
 
+import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice
 from typing import Final
@@ -253,4 +254,10 @@ def _can_write(text: str, encoding: str) -> bool:
     return True
 
 
-FORMAT: Final = ReportFormat(_pieces, is_stream=True)
+# The first line of a report on a part, or a line of a class: ``passed   8 / 8   100 %   anna``.
+_MARK: Final = re.compile(
+    rb"(?:== [^\n]*\n)?[^\s()]{1,60} \([a-z_]{1,40}\): \S"
+    rb"|(?:[^\n]*\n){0,200}?[^\n]{1,60} [\d.]+ / [\d.]+ +[\d.]+ %   \S"
+)
+
+FORMAT: Final = ReportFormat(_pieces, _MARK, is_stream=True)

@@ -5,6 +5,7 @@ wiki, "Advanced Autograding". In Classroom 50, a score is a whole number, so the
 count hundredths of a point.
 """
 
+import re
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -74,4 +75,6 @@ def _test(result: PartResult) -> dict[str, Any]:
     }
 
 
-FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)
+_MARK: Final = re.compile(rb'\{\s*"schema": "classroom50/result/v1",')
+
+FORMAT: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)

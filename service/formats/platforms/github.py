@@ -6,6 +6,7 @@ https://github.com/actions/runner. The runner shows only ten errors of a step, s
 part share one annotation.
 """
 
+import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -61,4 +62,6 @@ def _escaped(text: str, replacements: tuple[tuple[str, str], ...]) -> str:
     return text
 
 
-FORMAT: Final = ReportFormat(_pieces, is_stream=True, for_students=True)
+_MARK: Final = re.compile(rb"::(?:notice|warning|error) (?:file|title)=")
+
+FORMAT: Final = ReportFormat(_pieces, _MARK, is_stream=True, for_students=True)

@@ -3,6 +3,7 @@
 Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "Output format".
 """
 
+import re
 from collections.abc import Iterator
 from typing import Any, Final
 
@@ -64,4 +65,9 @@ def _test(result: PartResult) -> dict[str, Any]:
     }
 
 
-FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)
+_MARK: Final = re.compile(
+    rb'\{\s*"score": [\d.]+,\s*"output": ".{0,60000}",'
+    rb'\s*"output_format": "text",\s*"test_name_format": "text",'
+)
+
+FORMAT: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)

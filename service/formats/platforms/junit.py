@@ -5,6 +5,7 @@ Jenkins (https://github.com/jenkinsci/xunit-plugin). GitLab shows the name of th
 suite, and drops the second of two tests that share class and name.
 """
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Final
@@ -68,4 +69,6 @@ def _element(tag: str, *children: Element, **attributes: str) -> Element:
     return made
 
 
-FORMAT: Final = ReportFormat(_pieces, for_students=True)
+_MARK: Final = re.compile(rb'<\?xml [^>]*>\s*<testsuites name="dh-grader">')
+
+FORMAT: Final = ReportFormat(_pieces, _MARK, for_students=True)

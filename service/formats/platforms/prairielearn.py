@@ -4,6 +4,7 @@ Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading
 unreadable submission is reported as not gradable, so it costs no attempt.
 """
 
+import re
 from typing import Any, Final
 
 from service.formats.shared.graded import GradedSubmission
@@ -54,4 +55,8 @@ def _not_gradable(results: list[PartResult]) -> dict[str, Any]:
     return {"gradable": False, "score": 0.0, "format_errors": list(dict.fromkeys(lines))}
 
 
-FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)
+_MARK: Final = re.compile(
+    rb'\{\s*"gradable": (?:true|false),\s*"score": [\d.]+,\s*"(?:message|format_errors|tests)": '
+)
+
+FORMAT: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)

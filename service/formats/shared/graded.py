@@ -109,6 +109,8 @@ class GradedSubmission:
     files: tuple[GradedFile, ...]
     # The score to reach, 0..1.
     pass_mark: float
+    # The name of the person, if it is known.
+    person: str = ""
 
     @property
     def points(self) -> float:

@@ -1,5 +1,6 @@
 """The type of report formats, and what a format needs besides the submissions."""
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from datetime import datetime
@@ -29,6 +30,8 @@ class Setting:
     language: Language = ENGLISH
     # The folder that the documents are written to, if they are several.
     folder: Path | None = None
+    # The entries of the class that are no submissions, but earlier outputs or worksheets.
+    left_out: tuple[str, ...] = ()
 
 
 class UnusableSettingError(ValueError):
@@ -50,6 +53,8 @@ class ReportFormat:
     # Takes submissions one by one and yields the document piece by piece. It decides no points and
     # no verdicts. It may raise UnusableSettingError before its first piece.
     pieces: Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
+    # Matches the beginning of each document, and of nothing that others write.
+    mark: re.Pattern[bytes]
     # A document holds exactly one submission.
     is_single: bool = False
     # The first pieces are useful before the others are written.

@@ -5,8 +5,8 @@ import tempfile
 import time
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from http import HTTPStatus
 from pathlib import Path, PurePosixPath
@@ -16,18 +16,35 @@ from pydantic import Base64Bytes, BaseModel, ConfigDict, Field, ValidationError
 
 from service.api.http.lookup import Catalogue, require_exercise
 from service.api.http.problems import ProblemError, invalid, message_of
+from service.formats.documents.gradebook import comment
+from service.formats.earlier_outputs import is_output
 from service.formats.shared.graded import GradedSubmission
+from service.formats.shared.plain_text import visible
+from service.formats.worksheets import Grade, UnusableWorksheetError, Worksheet, grade_of
 from service.local_grading import GradingTerms, graded
+from service.submissions.answers import of_file
 from service.submissions.assignment import PASS_MARK, Assignment, UnknownPartNameError, of_one
-from service.submissions.handed_in import MAX_FILES, HandedIn, all_handed_in
+from service.submissions.handed_in import (
+    MAX_FILES,
+    HandedIn,
+    UnusableClassError,
+    all_handed_in,
+    handed_in_out_of_place,
+    leads_out,
+)
 from service.submissions.strict_json import MAX_BODY_SIZE
-from service.translations import ENGLISH, Language, say
+from service.translations import ENGLISH, Language, say, told
 
 # Bytes after unpacking. A body has at most 256 KiB, but similar submissions compress well.
 MAX_UPLOAD: Final = 8 * 1024 * 1024
 MAX_SUBMISSIONS: Final = 500
-# The name of the gradebook in the archive.
+# The names in the archive: the gradebook, the filled worksheet, and what is told about it.
 GRADES: Final = "grades.csv"
+WORKSHEET: Final = "worksheet-graded.csv"
+TOLD: Final = "worksheet.txt"
+# Bytes and cells of a worksheet. A gradebook of 500 students has some 50,000 cells.
+MAX_SHEET: Final = 1024 * 1024
+MAX_SHEET_CELLS: Final = 100_000
 # Seconds. An ordinary class takes one or two; only files made to be costly take longer.
 MOST_SECONDS: Final = 60.0
 _LONGEST_PATH: Final = 1_000
@@ -81,6 +98,9 @@ class ClassUpload(BaseModel):
 
     exercise: str
     part: str | None = None
+    # The worksheet or gradebook of a platform, and its column for the grades.
+    worksheet: UploadedFile | None = None
+    column: Annotated[str, Field(max_length=_LONGEST_PATH)] | None = None
     files: Annotated[list[UploadedFile], Field(min_length=1, max_length=MAX_FILES)]
 
 
@@ -131,10 +151,11 @@ def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language 
         assignment = of_one(exercise, upload.part)
     except UnknownPartNameError as error:
         raise _unusable(message_of(error)) from error
+    sheet = _worksheet(upload)
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        _write(upload, folder)
-        found = list(all_handed_in([folder], parts=assignment.part_names))
+        misplaced = _write(upload, folder)
+        found, left_out = _found(folder, assignment, misplaced)
         if not found:
             raise _unusable(say("There is no submission among these files."))
         if len(found) > MAX_SUBMISSIONS:
@@ -145,11 +166,64 @@ def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language 
                     most=MAX_SUBMISSIONS,
                 )
             )
-        return _archive(found, assignment, folder, language)
+        if sheet is not None:
+            found = [
+                replace(each, person=sheet.person(each.name, each.learner) or each.person)
+                for each in found
+            ]
+        return _archive(_Class(found, left_out, assignment, folder, sheet), language)
 
 
-def _write(upload: ClassUpload, folder: Path) -> None:
+@dataclass(frozen=True, slots=True)
+class _Class:
+    found: list[HandedIn]
+    # The entries that are no submissions.
+    left_out: list[str]
+    assignment: Assignment
+    folder: Path
+    sheet: Worksheet | None
+
+
+def _worksheet(upload: ClassUpload) -> Worksheet | None:
+    if upload.worksheet is None:
+        return None
+    name, content = PurePosixPath(upload.worksheet.path).name, upload.worksheet.content
+    if len(content) > MAX_SHEET or sum(map(content.count, b",;\t\n")) > MAX_SHEET_CELLS:
+        raise _unusable(say("{name} is too large for this page.", name=name))
+    try:
+        return Worksheet(content, upload.column or None)
+    except UnusableWorksheetError as error:
+        raise _unusable(of_file(name, error.args[0])) from error
+
+
+def _found(
+    folder: Path, assignment: Assignment, misplaced: Sequence[str]
+) -> tuple[list[HandedIn], list[str]]:
+    outputs: list[str] = []
+    parts = assignment.part_names
+    above = f"{folder}/"
+    try:
+        found = list(all_handed_in([folder], parts=parts, is_output=is_output, outputs=outputs))
+    except UnusableClassError as error:
+        raise _unusable(message_of(error).replace(above, "")) from error
+    for path in misplaced:
+        other = handed_in_out_of_place(path, parts)
+        same = [i for i, each in enumerate(found) if each.learner == other.learner]
+        if len(same) == 1:
+            own = found[same[0]]
+            found[same[0]] = replace(own, entries=(*own.entries, *other.entries))
+        else:
+            found.append(other)
+    return found, [path.removeprefix(above) for path in outputs]
+
+
+def _write(upload: ClassUpload, folder: Path) -> list[str]:
+    # Return the paths that lead out of the class, of which nothing is written.
+    misplaced = []
     for file in upload.files:
+        if leads_out(file.path):
+            misplaced.append(file.path)
+            continue
         path = PurePosixPath(file.path)
         is_usable = all(
             step not in ("", ".", "..") and "\0" not in step
@@ -168,11 +242,10 @@ def _write(upload: ClassUpload, folder: Path) -> None:
             raise _unusable(
                 say("A file has a name that cannot be used here: {file}", file=shown)
             ) from error
+    return misplaced
 
 
-def _archive(
-    found: list[HandedIn], assignment: Assignment, folder: Path, language: Language
-) -> bytes:
+def _archive(own: _Class, language: Language) -> bytes:
     # Imported here, because grading over HTTP does not need them.
     from rich.console import Console
 
@@ -182,29 +255,55 @@ def _archive(
     chosen = report_format("html")
     assert chosen.folder is not None
     terms = GradingTerms(
-        assignment,
+        own.assignment,
         PASS_MARK,
         for_students=chosen.for_students,
         echo=chosen.shows_entries,
         language=language,
     )
     console = Console(file=io.StringIO())
-    setting = Setting(terms.answered, console, datetime.now(UTC), language=language)
+    setting = Setting(
+        terms.answered,
+        console,
+        datetime.now(UTC),
+        language=language,
+        left_out=tuple(own.left_out),
+    )
     packed = io.BytesIO()
     gradebook = report_format("gradebook")
     lines: list[bytes] = []
+    grades: list[Grade] = []
 
     def noted(submissions: Iterator[GradedSubmission]) -> Iterator[GradedSubmission]:
         for submission in submissions:
             heading, line = gradebook.pieces([submission], setting)
             lines.extend([line] if lines else [heading, line])
+            if own.sheet:
+                grades.append(grade_of(submission, comment(submission, language)))
             yield submission
 
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
-        for document in chosen.folder(noted(_all_graded(found, terms, folder)), setting):
+        for document in chosen.folder(noted(_all_graded(own.found, terms, own.folder)), setting):
             archive.writestr(document.path, b"".join(document.pieces))
         archive.writestr(GRADES, b"".join(lines))
+        if own.sheet:
+            _add_worksheet(archive, own.sheet, grades, language)
     return packed.getvalue()
+
+
+def _add_worksheet(
+    archive: zipfile.ZipFile, sheet: Worksheet, grades: Sequence[Grade], language: Language
+) -> None:
+    filled = sheet.filled(grades)
+    counts = say(
+        "Grades filled in: {count}. Left for grading by hand: {left}.",
+        count=filled.grades,
+        left=filled.by_hand,
+    )
+    sentences = [told(each, language.translation) for each in (counts, *filled.problems)]
+    archive.writestr(TOLD, "\n".join(map(visible, sentences)))
+    if filled.content != sheet.content:
+        archive.writestr(WORKSHEET, filled.content)
 
 
 def _all_graded(

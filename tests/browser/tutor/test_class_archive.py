@@ -101,3 +101,48 @@ def test_a_class_of_120_workbooks_with_pictures_is_graded(
     assert len(grades) == 120
     assert len(set(grades)) == 1
     assert float(grades[0]) > 0
+
+
+SHEET = (
+    "Identifier,Full name,Status,Grade,Maximum grade,Grade can be changed,"
+    "Last modified (submission),Last modified (grade),Feedback comments\r\n"
+    "Participant 1234,Ada Byron,Submitted,,4.00,Yes,-,-,\r\n"
+    "Participant 1235,Zoë Okri,Submitted,,4.00,Yes,-,-,\r\n"
+)
+
+
+@pytest.mark.long
+def test_the_worksheet_is_filled_and_a_download_in_a_zip_file_is_found(
+    visit: Callable[..., Visit], service: str, tmp_path: Path
+) -> None:
+    inner = io.BytesIO()
+    with zipfile.ZipFile(inner, "w") as archive:
+        for name in list(MOODLE)[:2]:
+            archive.writestr(name, MOODLE[name])
+        photo = random.Random(1).randbytes(400_000)
+        archive.writestr("Ada Byron_1234_assignsubmission_file/photo.png", photo)
+        archive.writestr("../Ben Out_1236_assignsubmission_file/x.csv", RIGHT)
+    chosen = tmp_path / "again.zip"
+    with zipfile.ZipFile(chosen, "w") as archive:
+        archive.writestr("HW3-4711.zip", inner.getvalue())
+    sheet = tmp_path / "Grades 3.csv"
+    sheet.write_bytes(SHEET.encode())
+    page = visit().page
+    upload(page, service, chosen)
+    state = page.get_by_role("status")
+    expect(state).to_have_text("3 submissions. The service does not keep them.")
+    expect(
+        page.frame_locator("#report").get_by_text("Ben Out (Participant 1236)").first
+    ).to_be_visible()
+    expect(page.get_by_role("button", name="Filled worksheet")).to_be_hidden()
+    # The worksheet may be chosen after the zip file.
+    page.get_by_label("Worksheet, if you have one").set_input_files(sheet)
+    told = page.get_by_role("list", name="Worksheet").get_by_role("listitem")
+    expect(told.first).to_have_text("Grades filled in: 2. Left for grading by hand: 0.")
+    expect(told).to_have_count(2)
+    filled = saved(page, "Filled worksheet", tmp_path)
+    assert filled.name == "Grades 3-graded.csv"
+    with filled.open(encoding="utf-8", newline="") as opened:
+        grades = {row["Identifier"]: row["Grade"] for row in csv.DictReader(opened)}
+    assert grades["Participant 1234"] == "4"
+    assert 0 < float(grades["Participant 1235"]) < 4

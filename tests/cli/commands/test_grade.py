@@ -3,6 +3,7 @@ import os
 import re
 import zipfile
 from collections.abc import Callable
+from html import unescape
 from pathlib import Path
 from typing import Any
 from urllib.parse import unquote
@@ -11,8 +12,10 @@ import pytest
 from typer.testing import Result
 
 from service.catalogue import shipped_folder
+from service.formats import FORMAT_NAMES, report_format
 from service.formats.documents.json import rendered
 from service.grading import Report, Submission, grade
+from tests.formats.submissions import CLASSROOM
 from tests.shipped import shipped_exercises
 from tests.translations.german import messages_in, offer_german
 
@@ -191,7 +194,8 @@ def test_output_writes_the_report_to_a_file(
 def test_an_interrupted_run_leaves_no_incomplete_file(
     run: Run, save: Save, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    answer, target = save(RIGHT), save(b"from yesterday", "out.csv")
+    before = b"submission,points,max_points,score,passed,problem,messages\n"
+    answer, target = save(RIGHT), save(before, "out.csv")
     graded = []
 
     def interrupted(*arguments: Any) -> Report:
@@ -204,7 +208,7 @@ def test_an_interrupted_run_leaves_no_incomplete_file(
     result = table_only(run, answer, answer, "--format", "csv", "--output", target)
     assert result.exit_code != 0
     assert len(graded) == 2
-    assert target.read_bytes() == b"from yesterday"
+    assert target.read_bytes() == before
     assert sorted(tmp_path.iterdir()) == sorted([answer, target])
 
 
@@ -589,3 +593,265 @@ def test_grades_and_feedback_go_back_to_moodle(run: Run, tmp_path: Path) -> None
         "Ada Byron_1234_assignsubmission_file_/feedback.html",
         "Ben Okri_1235_assignsubmission_file_/feedback.html",
     ]
+
+
+TABLE = "a, alpha, d, theta\n0, 0, 0, q1\nl1, 0, 0, q2\nl2, 0, 0, q3\nl3, 0, 0, 0\n"
+OTHER = TABLE.replace("l1", "l2")
+IN_TABLE = ("--exercise", "planar-rrr", "--part", "table")
+
+
+def zip_file(path: Path, members: dict[str, str | bytes]) -> Path:
+    with zipfile.ZipFile(path, "w") as archive:
+        for name, content in members.items():
+            archive.writestr(name, content)
+    return path
+
+
+OUT_OF_ZIP = "has a path in the zip file that leads out of it (../out.csv), so it was not read"
+
+
+def not_read(tmp_path: Path) -> dict[str, tuple[Path, str]]:
+    """Return hand-ins that no program reads: the file or folder, and the whole sentence."""
+    folder = tmp_path / "in"
+    for name, content in {
+        "Ada Byron_1_assignsubmission_file_/table.pdf": "%PDF-1.4",
+        "Ben Okri_2_assignsubmission_file_/a.csv": TABLE,
+        "Ben Okri_2_assignsubmission_file_/b.csv": OTHER,
+        "Cy Young_3_assignsubmission_file_/empty.csv": "",
+    }.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(content, encoding="utf-8")
+    (folder / "Di Lee_4_assignsubmission_file_").mkdir()
+    zip_file(folder / "Di Lee_4_assignsubmission_file_/mine.zip", {"../out.csv": TABLE})
+    return {
+        "Ada Byron_1": (
+            folder / "Ada Byron_1_assignsubmission_file_",
+            "table.pdf can only be graded by hand: a program cannot read .pdf",
+        ),
+        "Ben Okri_2": (
+            folder / "Ben Okri_2_assignsubmission_file_",
+            "a.csv, b.csv have answers to table that differ; leave only one of them",
+        ),
+        "Cy Young_3": (folder / "Cy Young_3_assignsubmission_file_", "empty.csv is empty"),
+        "Di Lee_4": (
+            folder / "Di Lee_4_assignsubmission_file_",
+            f"mine/out.csv {OUT_OF_ZIP}",
+        ),
+    }
+
+
+def plain(output: str, name: str) -> str:
+    """Return the texts of a document without the escapes of its format."""
+    if name in ("json", "jsonl") or report_format(name).is_single:
+        output = output.encode().decode("unicode_escape") if "\\u" in output else output
+    if name == "markdown" or report_format(name).is_single:
+        output = re.sub(r"\\+([.()/_-])", r"\1", output)
+    return unescape(unquote(output))
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", sorted(FORMAT_NAMES))
+def test_every_format_says_whose_file_was_not_read_and_why(
+    name: str, run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for variable, value in CLASSROOM.items():
+        monkeypatch.setenv(variable, value)
+    students = not_read(tmp_path)
+    taken = report_format(name)
+    command = ("grade", *IN_TABLE, "--format", name, "--jobs", "1")
+    results = (
+        [run(*command, path) for path, _ in students.values()]
+        if taken.is_single
+        else [run(*command, tmp_path / "in")]
+    )
+    assert {result.exit_code for result in results} == {2}
+    printed = "".join(plain(result.stdout, name) for result in results)
+    errors = "".join(result.stderr for result in results)
+    for student, (path, sentence) in students.items():
+        # Standard error names the student and the file.
+        [line] = [line for line in errors.splitlines() if line.endswith(sentence)]
+        assert student in line
+        assert str(path) in line
+        # The text report shows problems only there.
+        if name != "text":
+            assert sentence in printed
+
+
+def test_files_that_a_platform_names_after_the_student_are_told_by_the_student(
+    run: Run, tmp_path: Path
+) -> None:
+    given = zip_file(
+        tmp_path / "all.zip",
+        {
+            "byronada_LATE_12_771_a.csv": TABLE,
+            "byronada_12_772_b.csv": OTHER,
+            "okriben_13_773_a.csv": TABLE,
+        },
+    )
+    result = run("grade", given, *IN_TABLE, "--format", "csv")
+    [line] = result.stderr.splitlines()
+    assert line == (
+        f"{given}/byronada_12: b.csv, a.csv have answers to table that differ; leave only one of "
+        "them"
+    )
+
+
+@pytest.mark.parametrize("name", ["csv", "html", "json", "gradescope"])
+def test_the_output_replaces_only_earlier_outputs(
+    name: str, run: Run, save: Save, tmp_path: Path
+) -> None:
+    answer, target = save(RIGHT), save(b"a;b\n1;2\n", "mine.txt")
+    command = ("--format", name, "--output", target)
+    refused = table_only(run, answer, *command)
+    assert (refused.exit_code, target.read_bytes()) == (2, b"a;b\n1;2\n")
+    assert "mine.txt: exists, and is no earlier report" in refused.stderr
+    assert "--force" in refused.stderr
+    assert table_only(run, answer, *command, "--force").exit_code == 0
+    written = target.read_bytes()
+    assert written != b"a;b\n1;2\n"
+    # Another report replaces it, and a report of another format, too.
+    assert table_only(run, answer, *command).exit_code == 0
+    assert table_only(run, answer, "--format", "text", "--output", target).exit_code == 0
+    assert target.read_bytes() != written
+    # An empty file is nobody's work: GitHub makes one for the summary of a job.
+    target.write_bytes(b"")
+    assert table_only(run, answer, *command).exit_code == 0
+
+
+def test_the_output_does_not_replace_the_worksheet(run: Run, save: Save) -> None:
+    sheet = save(WORKSHEET.encode(), "Grades.csv")
+    result = table_only(run, save(RIGHT), "--worksheet", sheet, "--output", sheet, "--force")
+    assert result.exit_code == 2
+    assert "would be overwritten" in result.stderr
+    assert sheet.read_bytes() == WORKSHEET.encode()
+
+
+def test_earlier_outputs_in_the_folder_of_a_class_are_left_out(run: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "class"
+    (folder / "Ada Byron_1234_assignsubmission_file").mkdir(parents=True)
+    (folder / "Ada Byron_1234_assignsubmission_file" / "table.csv").write_text(TABLE)
+    (folder / "Grades.csv").write_bytes(WORKSHEET.encode())
+    command = ("grade", folder, *IN_TABLE)
+    for output in ("points.csv", "report.txt", "feedback.zip", "pages"):
+        name = {".csv": "csv", ".txt": "text"}.get(Path(output).suffix, "html")
+        run(*command, "--format", name, "--output", folder / output)
+    run(*command, "-q", "--worksheet", folder / "Grades.csv")
+    result = run(*command, "--format", "html", "--output", tmp_path / "out")
+    assert result.exit_code == 0
+    assert len(list((tmp_path / "out" / "reports").iterdir())) == 1
+    [line] = result.stderr.splitlines()
+    assert line.startswith("6 entries are earlier outputs or worksheets, and are left out: ")
+    overview = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    for name in ("points.csv", "report.txt", "feedback.zip", "pages", "Grades.csv",
+                 "Grades-graded.csv"):  # fmt: skip
+        assert str(folder / name) in line
+        assert str(folder / name) in overview
+
+
+def test_the_overview_shows_names_and_the_pages_of_students_do_not(
+    run: Run, tmp_path: Path
+) -> None:
+    given = zip_file(
+        tmp_path / "all.zip",
+        {
+            "Ada Byron_1234_assignsubmission_file/table.csv": TABLE,
+            "Participant 1235_1235_assignsubmission_file/table.csv": TABLE,
+        },
+    )
+    command = ("grade", given, *IN_TABLE, "--format", "html", "--output", tmp_path / "out")
+    assert run(*command).exit_code == 0
+    overview = tmp_path / "out" / "index.html"
+    assert ">Ada Byron (Participant 1234)<" in overview.read_text(encoding="utf-8")
+    assert ">Participant 1235<" in overview.read_text(encoding="utf-8")
+    pages = [page.read_text(encoding="utf-8") for page in (tmp_path / "out/reports").iterdir()]
+    assert "Byron" not in "".join(pages)
+    # The names in a worksheet are better than those of the files.
+    (tmp_path / "Grades.csv").write_text(
+        "Student,ID,SIS User ID,SIS Login ID,Section,HW 1 (501)\n"
+        '    Points Possible,,,,,8\n"King, Ada",12,,,,\n"Okri, Ben",13,,,,\n'
+    )
+    canvas = {f"{name}_771_t.csv": TABLE for name in ("kingada_12", "okriben_13")}
+    run("grade", zip_file(tmp_path / "canvas.zip", {**canvas}), *IN_TABLE, "--format", "html",
+        "--output", tmp_path / "canvas", "--worksheet", tmp_path / "Grades.csv")  # fmt: skip
+    overview = tmp_path / "canvas" / "index.html"
+    assert ">King, Ada (12)<" in overview.read_text(encoding="utf-8")
+
+
+def test_the_worksheet_says_what_was_written(run: Run, tmp_path: Path) -> None:
+    given = zip_file(
+        tmp_path / "all.zip",
+        {
+            "Ada Byron_1234_assignsubmission_file/table.csv": TABLE,
+            "Ben Okri_1235_assignsubmission_file/table.pdf": b"%PDF-1.4",
+        },
+    )
+    sheet = tmp_path / "Grades.csv"
+    sheet.write_bytes(WORKSHEET.encode())
+    command = ("grade", given, *IN_TABLE, "--worksheet", sheet)
+    first = tmp_path / "Grades-graded.csv"
+    said = f"{first}: is written. Grades filled in: 1. Left for grading by hand: 1."
+    assert run(*command).stderr.splitlines()[-1] == said
+    assert said not in run(*command, "--quiet").stderr
+    # The tutor enters Ben's grade by hand, and grades again.
+    changed = first.read_bytes().replace(b"grading,,8.00", b"grading,5,8.00")
+    assert changed != first.read_bytes()
+    first.write_bytes(changed)
+    again = run(*command, "--quiet").stderr.splitlines()
+    second = tmp_path / "Grades-graded-2.csv"
+    assert first.read_bytes() == changed
+    assert again[-2:] == [
+        f"{first}: exists with other contents, and stays as it is",
+        said.replace(str(first), str(second)),
+    ]
+    assert run(*command, "--force").exit_code == 2
+    assert first.read_bytes() == second.read_bytes() != changed
+
+
+def test_grades_that_a_tutor_entered_stay(run: Run, tmp_path: Path) -> None:
+    given = zip_file(
+        tmp_path / "all.zip", {"Ada Byron_1234_assignsubmission_file/table.csv": TABLE}
+    )
+    sheet = tmp_path / "Grades.csv"
+    sheet.write_bytes(WORKSHEET.replace("grading,,8.00", "grading,5.00,8.00", 1).encode())
+    command = ("grade", given, *IN_TABLE, "--worksheet", sheet)
+    kept = run(*command)
+    assert "Ada Byron_1234 (5.00 / 8)" in kept.stderr
+    assert "--replace-grades" in kept.stderr
+    assert "no file is written" in kept.stderr
+    assert not (tmp_path / "Grades-graded.csv").exists()
+    replaced = run(*command, "--replace-grades")
+    assert replaced.exit_code == 0
+    assert b"grading,8,8.00" in (tmp_path / "Grades-graded.csv").read_bytes()
+
+
+def test_the_worksheet_of_another_course_is_refused(run: Run, tmp_path: Path) -> None:
+    given = zip_file(
+        tmp_path / "all.zip",
+        {f"S T{i}_{i}_assignsubmission_file/table.csv": TABLE for i in range(10, 25)},
+    )
+    sheet = tmp_path / "Grades.csv"
+    sheet.write_bytes(WORKSHEET.encode())
+    result = run("grade", given, *IN_TABLE, "--format", "csv", "--worksheet", sheet)
+    assert result.exit_code == 2
+    told = result.stderr.splitlines()
+    assert len(told) == 2
+    assert "None of the 15 submissions is in the worksheet (S T10_10, S T11_11, S T12_12" in told[0]
+    assert "no file is written" in told[1]
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["Grades.csv", "all.zip"]
+
+
+def test_a_student_in_two_downloads_is_refused(run: Run, tmp_path: Path) -> None:
+    (tmp_path / "in" / "HW3" / "Ada Byron_1234_assignsubmission_file").mkdir(parents=True)
+    (tmp_path / "in" / "HW3" / "Ada Byron_1234_assignsubmission_file" / "t.csv").write_text(TABLE)
+    (tmp_path / "in" / "HW3" / "Ben Okri_1235_assignsubmission_file").mkdir()
+    (tmp_path / "in" / "HW3" / "Ben Okri_1235_assignsubmission_file" / "t.csv").write_text(TABLE)
+    zip_file(
+        tmp_path / "in" / "HW3.zip",
+        {
+            f"{name}_assignsubmission_file/t.csv": TABLE
+            for name in ("Ada Byron_1234", "Ben Okri_1235")
+        },
+    )
+    result = run("grade", tmp_path / "in", *IN_TABLE)
+    assert result.exit_code == 2
+    assert "Give only one of them." in result.stderr

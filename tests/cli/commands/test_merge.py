@@ -97,3 +97,19 @@ def test_a_shard_is_json_lines(run: Run, folder: Path) -> None:
     result = run(*GRADE[:-1], "csv", folder, "--shard", "1/3")
     assert result.exit_code == 2
     assert "add --format jsonl" in result.stderr
+
+
+def test_the_output_replaces_only_earlier_reports(run: Run, folder: Path, tmp_path: Path) -> None:
+    files = shards(run, folder, 2)
+    target = tmp_path / "mine.jsonl"
+    target.write_text("mine", encoding="utf-8")
+    refused = run("merge", *files, "--output", target)
+    assert (refused.exit_code, target.read_text(encoding="utf-8")) == (2, "mine")
+    assert "no earlier report" in refused.stderr
+    forced = run("merge", *files, "--output", target, "--force")
+    again = run("merge", *files, "--output", target)
+    assert forced.exit_code == again.exit_code
+    assert "no earlier report" not in again.stderr
+    shard = files[0].read_bytes()
+    assert "would be overwritten" in run("merge", *files, "--output", files[0]).stderr
+    assert files[0].read_bytes() == shard

@@ -6,12 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from service.cli.files.output_folder import (
-    WRITTEN,
-    UnusableFolderError,
-    is_for_folder,
-    write_folder,
-)
+from service.cli.files.output_folder import UnusableFolderError, is_for_folder, write_folder
+from service.formats.earlier_outputs import WRITTEN
 from service.formats.shared.report_format import Document
 
 NEEDS_LINKS = pytest.mark.skipif(os.name == "nt", reason="needs symbolic links")

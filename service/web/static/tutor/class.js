@@ -22,6 +22,10 @@ const MOST_UNPACKED = 8 * 1024 * 1024;
 const INDEX = "index.html";
 const GRADES = "grades.csv";
 const PAGES = "reports/";
+const FILLED = "worksheet-graded.csv";
+const TOLD = "worksheet.txt";
+const LARGEST_WORKSHEET = 1024 * 1024;
+const ARCHIVE = /\.zip$/i;
 const TOO_LARGE = worded("The files are too large for this page. Grade them on the command line.");
 
 const exercise = byId("exercise", HTMLSelectElement);
@@ -30,6 +34,10 @@ const frame = byId("report", HTMLIFrameElement);
 const bar = byId("report-bar", HTMLElement);
 const state = byId("state", HTMLElement);
 const back = byId("back", HTMLButtonElement);
+const worksheet = byId("worksheet", HTMLInputElement);
+const column = byId("column", HTMLInputElement);
+const filled = byId("filled", HTMLButtonElement);
+const told = byId("worksheet-told", HTMLUListElement);
 /** @type {Promise<unknown>} */
 let shown = Promise.resolve();
 
@@ -37,6 +45,8 @@ let shown = Promise.resolve();
 let archive = null;
 /** @type {Map<string, Front.ZipEntry>} */
 let found = new Map();
+/** @type {File[]} */
+let files = [];
 
 /** @param {string} text */
 const tell = (text) => (state.textContent = visible(text));
@@ -80,7 +90,17 @@ async function unpacked(file) {
   if (file.size > LARGEST_ARCHIVE) {
     throw new UnusableFilesError(worded("The zip file is too large for this page. Unpack it, and choose the folder."));
   }
-  const buffer = await file.arrayBuffer();
+  return filesIn(await file.arrayBuffer(), file.name.replace(ARCHIVE, "/"));
+}
+
+/**
+ * Return the files in an archive, without the folder around all of them if it has this name.
+ *
+ * @param {ArrayBuffer} buffer
+ * @param {string} folder
+ * @returns {ClassFile[]}
+ */
+function filesIn(buffer, folder) {
   let found;
   try {
     found = [...entries(buffer)];
@@ -92,7 +112,6 @@ async function unpacked(file) {
       worded("The zip file is encrypted, or packed in an unusual way. Unpack it, and choose the folder."),
     );
   }
-  const folder = file.name.replace(/\.zip$/i, "/");
   const start = found.every(([name]) => name.startsWith(folder)) ? folder.length : 0;
   return found.map(([name, entry]) => ({ path: name.slice(start), read: (most) => bytesOf(buffer, entry, most) }));
 }
@@ -155,30 +174,75 @@ function content(bytes) {
   }
 }
 
+/**
+ * Return the files with those in zip files of a class: a zip file that is the only file, or too large to be that of a
+ * student.
+ *
+ * @param {ClassFile[]} files
+ * @returns {Promise<ClassFile[]>}
+ */
+async function withInnerFiles(files) {
+  const all = [];
+  for (const file of files) {
+    const { path, read } = file;
+    const mayBeClass = ARCHIVE.test(path) && !path.includes("/");
+    const isLarge = mayBeClass && (files.length === 1 || !(await read(LARGEST_FILE)));
+    const bytes = isLarge ? await read(LARGEST_ARCHIVE) : null;
+    const folder = path.replace(ARCHIVE, "/");
+    try {
+      const inner = bytes ? filesIn(bytes.slice().buffer, folder) : null;
+      all.push(...(inner?.map((each) => ({ ...each, path: folder + each.path })) ?? [file]));
+    } catch (error) {
+      // The service lists the damaged file of one of several students.
+      if (files.length === 1) throw error;
+      all.push(file);
+    }
+  }
+  return all;
+}
+
 /** @param {ClassFile} file */
-const isHidden = ({ path }) => path.split("/").some((name) => name.startsWith(".") || name === "__MACOSX");
+const isHidden = ({ path }) => path.split("/").some((name) => /^\.(?!\.?$)/.test(name) || name === "__MACOSX");
 
 /** @param {File[]} chosen @returns {Promise<ClassFile[]>} */
 async function classFiles(chosen) {
   const [first] = chosen;
   const isArchive = chosen.length === 1 && !first.webkitRelativePath && /\.zip$/i.test(first.name);
   const files = isArchive ? await unpacked(first) : chosen.map(chosenFile);
-  return files.filter((file) => !isHidden(file));
+  const own = await withInnerFiles(files.filter((file) => !isHidden(file)));
+  return own.filter((file) => !isHidden(file));
+}
+
+/** Return the worksheet in the form that the service takes, or null. */
+async function sentWorksheet() {
+  const [file] = worksheet.files ?? [];
+  if (!file) return null;
+  if (file.size > LARGEST_WORKSHEET) {
+    throw new UnusableFilesError(worded("{name} is too large for this page.", { name: file.name }));
+  }
+  return { path: file.name, ...content(new Uint8Array(await file.arrayBuffer())) };
 }
 
 /** @param {File[]} chosen */
 async function grade(chosen) {
-  frame.hidden = bar.hidden = true;
+  files = chosen;
+  frame.hidden = bar.hidden = told.hidden = true;
   try {
-    const files = await classFiles(chosen);
-    if (!files.length) return tell(worded("No files found."));
-    if (files.length > MOST_FILES) {
+    const own = await classFiles(chosen);
+    if (!own.length) return tell(worded("No files found."));
+    if (own.length > MOST_FILES) {
       return tell(
-        worded("{count} files are too many for this page. Grade them on the command line.", { count: files.length }),
+        worded("{count} files are too many for this page. Grade them on the command line.", { count: own.length }),
       );
     }
-    tell(wordedFor("Grading {count} file …", "Grading {count} files …", files.length));
-    const upload = { exercise: exercise.value, part: part.value || null, files: await sent(files) };
+    tell(wordedFor("Grading {count} file …", "Grading {count} files …", own.length));
+    const upload = {
+      exercise: exercise.value,
+      part: part.value || null,
+      worksheet: await sentWorksheet(),
+      column: column.value.trim() || null,
+      files: await sent(own),
+    };
     const packed = new Blob([JSON.stringify(upload)]).stream().pipeThrough(new CompressionStream("gzip"));
     const body = await new Response(packed).arrayBuffer();
     if (body.byteLength > MOST_PACKED) return tell(TOO_LARGE);
@@ -192,10 +256,20 @@ async function grade(chosen) {
         pages().length,
       ),
     );
+    await showWorksheet(archive);
     bar.hidden = false;
   } catch (error) {
     tell(error instanceof UnusableFilesError ? error.message : refusal(error));
   }
+}
+
+/** @param {ArrayBuffer} graded */
+async function showWorksheet(graded) {
+  const entry = found.get(TOLD);
+  filled.hidden = !found.has(FILLED);
+  told.hidden = !entry;
+  const lines = entry ? (await textOf(graded, entry)).split("\n") : [];
+  told.replaceChildren(...lines.map((line) => h("li", {}, line)));
 }
 
 /** Return the entries of the pages for students. */
@@ -255,15 +329,18 @@ function follow(event) {
 async function download(name, made) {
   if (!archive) return;
   const address = URL.createObjectURL(await made(archive));
-  h("a", { href: address, download: `${exercise.value}-${name}` }).click();
+  h("a", { href: address, download: name }).click();
   setTimeout(() => URL.revokeObjectURL(address), 1000);
 }
 
-/** @param {ArrayBuffer} graded */
-async function gradebook(graded) {
-  const entry = found.get(GRADES);
+/** @param {ArrayBuffer} graded @param {string} name */
+async function table(graded, name) {
+  const entry = found.get(name);
   return new Blob(entry ? [await bytesOf(graded, entry) ?? ""] : [], { type: "text/csv" });
 }
+
+/** Return the name of the filled worksheet: `Grades-graded.csv` for `Grades.csv`. */
+const filledName = () => (worksheet.files?.[0]?.name ?? FILLED).replace(/(\.[^.]*)?$/, "-graded$1");
 
 exercise.addEventListener("change", showParts);
 for (const id of ["zip", "folder", "files"]) {
@@ -275,13 +352,20 @@ for (const id of ["zip", "folder", "files"]) {
   });
 }
 back.addEventListener("click", () => show(INDEX));
+// A worksheet or a column that is chosen after the files is used at once.
+for (const input of [worksheet, column]) {
+  input.addEventListener("change", () => {
+    if (files.length) grade(files);
+  });
+}
+filled.addEventListener("click", () => download(filledName(), (graded) => table(graded, FILLED)));
 /** @type {[string, string, (archive: ArrayBuffer) => Blob | Promise<Blob>][]} */
 const DOWNLOADS = [
-  ["grades", "grades.csv", gradebook],
+  ["grades", "grades.csv", (graded) => table(graded, GRADES)],
   ["pages", "feedback.zip", (graded) => archiveOf(graded, pages())],
   ["all", "class.zip", (graded) => new Blob([graded], { type: "application/zip" })],
 ];
 for (const [id, file, made] of DOWNLOADS) {
-  byId(id, HTMLButtonElement).addEventListener("click", () => download(file, made));
+  byId(id, HTMLButtonElement).addEventListener("click", () => download(`${exercise.value}-${file}`, made));
 }
 showParts();
