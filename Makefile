@@ -88,6 +88,7 @@ pages: $(dev) ## write all that is made from the code: pages of docs, types of s
 	$(call written,tests.docs.settings,docs/settings.md)
 	$(call written,tests.docs.problems,docs/problems.md)
 	$(call written,tests.docs.notice,NOTICE)
+	$(call written,tests.catalogue.checked,exercises/checked.json)
 	$(call written,tests.front.api_types,service/web/types/api.d.ts)
 	$(python) -m tests.translations.catalogues
 
