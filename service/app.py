@@ -9,14 +9,12 @@ gc.disable()
 from fastapi import FastAPI
 
 from service.catalogue import CatalogueError
-from service.kinds_check import check_kinds
 from service.server.installed import installed_app
 from service.settings import SettingsError, load_settings
 
 
 def create() -> FastAPI:
     """Return the service; exit with a message if a setting or exercise is invalid."""
-    check_kinds()
     try:
         return installed_app(load_settings())
     except (SettingsError, CatalogueError) as error:

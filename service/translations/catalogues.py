@@ -7,6 +7,7 @@ In a checkout, a catalogue is compiled when it is first read, and again after it
 # hatch_build.py runs this file by itself, so it needs nothing but the standard library.
 
 import hashlib
+import os
 import re
 import struct
 from collections.abc import Iterator, Sequence
@@ -15,7 +16,6 @@ from gettext import GNUTranslations
 from io import BytesIO
 from pathlib import Path
 from typing import Final
-from uuid import uuid4
 
 _LINE: Final = re.compile(
     r'(?:(msgctxt|msgid|msgid_plural|msgstr(?:\[\d+\])?)[ \t]+)?"((?:[^"\\]|\\.)*)"\s*'
@@ -111,7 +111,7 @@ def _write(file: Path, content: bytes) -> None:
     """Write a file as a whole, or not at all where the folder is read-only."""
     # Several processes may do so at once, and under Windows a file cannot be replaced while
     # another process reads it.
-    new = file.with_name(f"{file.stem}.{uuid4().hex}.mo")
+    new = file.with_name(f"{file.stem}.{os.urandom(8).hex()}.mo")
     with suppress(OSError):
         try:
             new.write_bytes(content)

@@ -9,7 +9,7 @@ _GOES_ON = re.compile(r"\.?\w+")
 
 
 @for_causes("ambiguous_shorthand")
-def repair(failure: Failure) -> Repair:
+def repair_ambiguous_shorthand(failure: Failure) -> Repair:
     """Suggest brackets for sin2q1; explain that sin45 is ambiguous."""
     function, names = failure.details["function"], failure.details["names"]
     digits = "".join(letter for letter in failure.written if letter.isdigit())

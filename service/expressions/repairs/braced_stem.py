@@ -17,7 +17,7 @@ _TAKEN = re.compile(r"(?:[_^]|\\([A-Za-z]+))\s*$")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_braced_stem(failure: Failure) -> Repair:
     """Suggest the name without braces, if this is readable."""
     source, (start, end) = failure.source, failure.span
     for match in _BRACED.finditer(source):

@@ -9,7 +9,7 @@ _BRACKETED = re.compile(r"(?<=[\w.)}])\s{0,4}([(\[])\s{0,4}(°|deg|rad)\s{0,4}[)
 
 
 @for_causes("grammar", "ambiguous_unit")
-def repair(failure: Failure) -> Repair:
+def repair_bracketed_unit(failure: Failure) -> Repair:
     """Suggest the unit without brackets."""
     found = _BRACKETED.search(failure.source)
     if found is None:

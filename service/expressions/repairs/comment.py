@@ -11,7 +11,7 @@ _WORD = re.compile(r"(?!(?:deg|rad|sin|cos|tan)\b)[^\W\d_]{3,}")
 _OPERATOR = re.compile(r"[-+*/^=(,]")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_comment(failure: Failure) -> Repair:
     """Suggest the text without the comment, or one slash instead of two."""
     match = _COMMENT.search(failure.source)
     if match is None:

@@ -8,7 +8,7 @@ from service.translations import say
 _DASH = re.compile(r"[-–—−‐‑‒―]+")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_dash(failure: Failure) -> Repair:
     """Suggest 0, and say that a dash may mean zero or nothing."""
     if _DASH.fullmatch(failure.source.strip()) is None:
         return None

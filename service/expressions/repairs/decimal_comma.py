@@ -12,7 +12,7 @@ _IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
 
 
 @for_causes("grammar", "transpose")
-def repair(failure: Failure) -> Repair:
+def repair_decimal_comma(failure: Failure) -> Repair:
     """Suggest a decimal point, or explain that 1,000 is ambiguous."""
     if failure.cause == "transpose":
         return _apostrophe(failure)

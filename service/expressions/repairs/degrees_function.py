@@ -10,7 +10,7 @@ _MODULE = re.compile(r"[A-Za-z]+\.$")
 
 
 @for_causes("degrees")
-def repair(failure: Failure) -> Repair:
+def repair_degrees_function(failure: Failure) -> Repair:
     """Suggest the function that returns the angle in radians: acos for acosd."""
     plain = IN_DEGREES.get(failure.details["name"], "")
     start, end = failure.span

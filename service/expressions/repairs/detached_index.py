@@ -11,7 +11,7 @@ _DETACHED = re.compile(rf"([A-Za-z{greek.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_detached_index(failure: Failure) -> Repair:
     """Suggest name and index without the space, if the result is a known name."""
     match = _DETACHED.match(failure.source, failure.span[0])
     if match is None or match.end(1) != failure.span[1]:

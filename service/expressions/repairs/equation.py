@@ -10,7 +10,7 @@ _EQUALS = re.compile(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z
 _NAME = re.compile(r"\s*\\?[^\W\d]\w{0,20}\s*")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_equation(failure: Failure) -> Repair:
     """Suggest the right side of the equation if each left side is a name."""
     signs = list(_EQUALS.finditer(failure.source))
     if not signs or right_side(failure.source, failure.vocabulary)[1] is not None:

@@ -14,7 +14,7 @@ _POWER = re.compile(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_euler_and_imaginary(failure: Failure) -> Repair:
     """Suggest exp(x) for a power of e; for i and j, say that there are no complex numbers."""
     reason = _REASONS.get(failure.details["run"])
     if reason is None:

@@ -9,7 +9,7 @@ _OF_TIME = re.compile(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_function_of_time(failure: Failure) -> Repair:
     """Suggest the text without (t)."""
     without_time, count = _OF_TIME.subn("", failure.source)
     if failure.details["run"] != "t" or not count:

@@ -11,7 +11,7 @@ _END = re.compile(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)")
 
 
 @for_causes("function_power")
-def repair(failure: Failure) -> Repair:
+def repair_function_power(failure: Failure) -> Repair:
     """Suggest the inverse function for ^-1. Show how to write other powers: (sin(x))^p."""
     name, exponent = failure.details["name"], failure.details["exponent"]
     place = failure.details["function"]

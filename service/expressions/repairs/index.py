@@ -10,7 +10,7 @@ _NUMBERED = re.compile(r"\[\s{0,8}\d+\s{0,8}\]")
 
 
 @for_causes("index", "name")
-def repair(failure: Failure) -> Repair:
+def repair_index(failure: Failure) -> Repair:
     """Say how the index is counted, and suggest the name without brackets."""
     if failure.cause == "name":
         return _no_number(failure)

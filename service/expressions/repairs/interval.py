@@ -11,7 +11,7 @@ _BETWEEN = re.compile(
 _LIST = re.compile(r"\s*(?:\[[^\[\]()]*,[^\[\]()]*[\])]|\([^\[\]()]*,[^\[\]()]*\])\s*")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_interval(failure: Failure) -> Repair:
     """Ask the student for one value."""
     match = _LIST.fullmatch(failure.source) or _BETWEEN.search(failure.source)
     if match is None:

@@ -22,7 +22,7 @@ _WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise."
 
 
 @for_causes("name", "quantity")
-def repair(failure: Failure) -> Repair:
+def repair_length_unit(failure: Failure) -> Repair:
     """Ask for a number without a unit; suggest this number if the unit is metres."""
     if failure.cause == "quantity":
         return _quantity(failure)

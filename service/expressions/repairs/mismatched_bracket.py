@@ -10,7 +10,7 @@ _COMMAND = re.compile(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
 
 
 @for_causes("mismatch")
-def repair(failure: Failure) -> Repair:
+def repair_mismatched_bracket(failure: Failure) -> Repair:
     """Name both brackets and say where they are. Suggest the closing bracket that fits."""
     opener, wanted = failure.details["opener"], failure.details["wanted"]
     first = quoted(failure.source[slice(*opener)])

@@ -9,7 +9,7 @@ _NUMBER = re.compile(r"([0-9.]+)\s*$")
 
 
 @for_causes("mixed_number")
-def repair(failure: Failure) -> Repair:
+def repair_mixed_number(failure: Failure) -> Repair:
     """Explain that 2½ may be a sum or a product, and suggest the sum."""
     fraction = failure.details["fraction"]
     start, end = failure.span

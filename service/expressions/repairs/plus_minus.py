@@ -9,7 +9,7 @@ _TYPED = re.compile(r"\+\s*/\s*-")
 
 
 @for_causes("plus_minus", "grammar")
-def repair(failure: Failure) -> Repair:
+def repair_plus_minus(failure: Failure) -> Repair:
     """Ask the student for one of the two values."""
     typed = _TYPED.search(failure.source) if failure.cause == "grammar" else None
     if failure.cause == "grammar" and typed is None:

@@ -17,7 +17,7 @@ _PHRASES = {
 _NUMBERS = {"zero": "0", "one": "1", "two": "2", "ninety": "90", "half": "1/2", "nil": "0"}
 
 
-def repair(failure: Failure) -> Repair:
+def repair_prose(failure: Failure) -> Repair:
     """Ask the student for a number or a formula."""
     text = failure.source.strip().lower()
     number = _NUMBERS.get(text)

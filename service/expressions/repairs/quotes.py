@@ -12,7 +12,7 @@ _QUOTED = re.compile(
 _BETWEEN_DIGITS = re.compile(r"[0-9][\"'“”‘’]+[0-9]")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_quotes(failure: Failure) -> Repair:
     """Suggest the text without quotation marks."""
     match = _QUOTED.search(failure.source)
     if match is None or _BETWEEN_DIGITS.search(failure.source):

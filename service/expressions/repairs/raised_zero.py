@@ -13,7 +13,7 @@ _RAISED = re.compile(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o"
 
 
 @for_causes("raised_zero", "name")
-def repair(failure: Failure) -> Repair:
+def repair_raised_zero(failure: Failure) -> Repair:
     """Suggest the degree sign, or explain that 90^0 may also be a power."""
     span = _raised_letter(failure) if failure.cause == "name" else failure.span
     if span is None:

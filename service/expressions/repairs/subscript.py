@@ -14,7 +14,7 @@ _JOINTS = re.compile(r"[1-9]{1,9}(?:\+[1-9]{1,9}|-[1-9](?![1-9])){1,9}")
 
 
 @for_causes("subscript")
-def repair(failure: Failure) -> Repair:
+def repair_subscript(failure: Failure) -> Repair:
     r"""Ask for a plain index, and suggest a cosine such as cos(θ1+θ2) for c_{\theta_1+\theta_2}."""
     start, end = failure.span
     inside = failure.details["index"]

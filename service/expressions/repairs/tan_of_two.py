@@ -13,7 +13,7 @@ _KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
 
 
 @for_causes("name", "grammar")
-def repair(failure: Failure) -> Repair:
+def repair_tan_of_two(failure: Failure) -> Repair:
     """Suggest atan2."""
     match = _TAN2.search(failure.source)
     if match is None or match.end() > failure.span[1] or match.group() in _KNOWN:

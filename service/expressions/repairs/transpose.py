@@ -11,7 +11,7 @@ _RAISED_T = re.compile(r"\^\s*\{?\s*(?:\\top|T)\s*\}?|\.'")
 
 
 @for_causes("transpose", "name", "command", "character")
-def repair(failure: Failure) -> Repair:
+def repair_transpose(failure: Failure) -> Repair:
     """Suggest the text without the prime."""
     # There is no suggestion if this would join digits.
     span = failure.span

@@ -16,7 +16,7 @@ _BRACKETS = re.compile(r"[(\[{|\\]")
 
 
 @for_causes("unit_on_variable")
-def repair(failure: Failure) -> Repair:
+def repair_unit_on_variable(failure: Failure) -> Repair:
     """Ask the student to write the unit after a number."""
     name = quoted(failure.source[slice(*failure.details["variable"])])
     message = say("A unit belongs after a number. Write it there, and not after {name}.", name=name)

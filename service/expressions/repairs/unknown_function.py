@@ -35,7 +35,7 @@ def _after_factor(failure: Failure) -> str | None:
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_unknown_function(failure: Failure) -> Repair:
     """List the functions that can be used; for cosine, suggest the known name cos."""
     name = failure.details["run"].replace("_", "")
     if name in REFUSED:

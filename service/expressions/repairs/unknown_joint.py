@@ -16,7 +16,7 @@ _AS_TYPED = re.compile(r"[^0-9₀-₉]*(?:[0-9]+|[₀-₉]+)(?:\s*\})?")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_unknown_joint(failure: Failure) -> Repair:
     """List the robot's joints; suggest the sum of angles for theta12."""
     vocabulary = failure.vocabulary
     match = _JOINT.fullmatch(normal_form(failure.details["run"]))

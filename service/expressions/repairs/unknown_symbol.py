@@ -21,7 +21,7 @@ _LISTED: Final = 8
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_unknown_symbol(failure: Failure) -> Repair:
     """Suggest the most similar declared name, or list the names that may be meant."""
     run, vocabulary = failure.details["run"], failure.vocabulary
     message = undeclared(failure)

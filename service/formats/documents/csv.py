@@ -48,4 +48,4 @@ def _codes(part: PartReport) -> list[str]:
     return [f"{part.part}.{code}" for code in dict.fromkeys(found)]
 
 
-FORMAT: Final = ReportFormat(_pieces)
+CSV: Final = ReportFormat(_pieces)

@@ -41,4 +41,4 @@ def _earned(result: PartResult, language: Language) -> str:
     return points(result.points, result.max_points)
 
 
-FORMAT: Final = ReportFormat(_pieces)
+GRADEBOOK: Final = ReportFormat(_pieces)

@@ -55,6 +55,6 @@ def _columns_of(rows: Sequence[RowReport]) -> list[str]:
     return [cell.label for cell in max((row.cells for row in rows), key=len)]
 
 
-FORMAT: Final = ReportFormat(
+HTML: Final = ReportFormat(
     _pieces, for_students=True, shows_entries=True, folder=class_folder(_pieces)
 )

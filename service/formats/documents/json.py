@@ -58,4 +58,4 @@ def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[byt
     yield b"[]\n" if opening == b"[\n" else b"\n]\n"
 
 
-FORMAT: Final = ReportFormat(_pieces)
+JSON: Final = ReportFormat(_pieces)

@@ -13,4 +13,4 @@ def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[byt
         yield entry + b"\n"
 
 
-FORMAT: Final = ReportFormat(_pieces, is_stream=True)
+JSONL: Final = ReportFormat(_pieces, is_stream=True)

@@ -47,4 +47,4 @@ def _details(submission: GradedSubmission, language: Language) -> str:
     return "".join(sections)
 
 
-FORMAT: Final = ReportFormat(_pieces, for_students=True)
+MARKDOWN: Final = ReportFormat(_pieces, for_students=True)

@@ -253,4 +253,4 @@ def _can_write(text: str, encoding: str) -> bool:
     return True
 
 
-FORMAT: Final = ReportFormat(_pieces, is_stream=True)
+TEXT: Final = ReportFormat(_pieces, is_stream=True)

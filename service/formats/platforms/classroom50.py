@@ -74,4 +74,4 @@ def _test(result: PartResult) -> dict[str, Any]:
     }
 
 
-FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)
+CLASSROOM50: Final = ReportFormat(single(_document), is_single=True, for_students=True)

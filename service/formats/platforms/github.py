@@ -61,4 +61,4 @@ def _escaped(text: str, replacements: tuple[tuple[str, str], ...]) -> str:
     return text
 
 
-FORMAT: Final = ReportFormat(_pieces, is_stream=True, for_students=True)
+GITHUB: Final = ReportFormat(_pieces, is_stream=True, for_students=True)

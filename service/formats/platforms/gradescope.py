@@ -64,4 +64,4 @@ def _test(result: PartResult) -> dict[str, Any]:
     }
 
 
-FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)
+GRADESCOPE: Final = ReportFormat(single(_document), is_single=True, for_students=True)

@@ -68,4 +68,4 @@ def _element(tag: str, *children: Element, **attributes: str) -> Element:
     return made
 
 
-FORMAT: Final = ReportFormat(_pieces, for_students=True)
+JUNIT: Final = ReportFormat(_pieces, for_students=True)

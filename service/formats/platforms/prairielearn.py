@@ -54,4 +54,4 @@ def _not_gradable(results: list[PartResult]) -> dict[str, Any]:
     return {"gradable": False, "score": 0.0, "format_errors": list(dict.fromkeys(lines))}
 
 
-FORMAT: Final = ReportFormat(single(_document), is_single=True, for_students=True)
+PRAIRIELEARN: Final = ReportFormat(single(_document), is_single=True, for_students=True)
