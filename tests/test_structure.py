@@ -24,8 +24,8 @@ TESTS = ROOT / "tests"
 
 # Each package or file of service/ may import those listed before it.
 PACKAGES = (
-    "version", "time_slices", "translations", "expressions", "grids", "typeset", "kinematics",
-    "catalogue", "learning", "grading", "solutions", "figures", "hints", "authoring",
+    "version", "time_slices", "regex", "translations", "expressions", "grids", "typeset",
+    "kinematics", "catalogue", "learning", "grading", "solutions", "figures", "hints", "authoring",
     "importing", "variants", "submissions", "contract", "statistics", "formats",
     "local_grading", "bundles", "attempts", "access", "courses", "lti", "client", "settings",
     "api", "web", "server", "cli", "app", "__main__",

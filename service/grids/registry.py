@@ -37,6 +37,7 @@ from service.grids.scripts.session import session_outputs
 from service.grids.scripts.styled_names import without_styles
 from service.grids.scripts.titles import without_fence, without_pictures, without_titles
 from service.grids.scripts.toolbox_print import describes_print, read_print
+from service.regex import regex
 from service.time_slices import checkpoint
 from service.translations import say
 
@@ -58,7 +59,7 @@ _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\"
 FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］【】｛｝＆＠　", ",;()|=-+:[][]{}&@ ")
 
 # The first line of a CSV file that names its separator to a spreadsheet.
-_SEPARATOR_LINE: Final = re.compile(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
+_SEPARATOR_LINE: Final = regex(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
 
 # LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"

@@ -66,7 +66,8 @@ def test_help_and_version_do_not_import_the_grader() -> None:
     for option in ("--help", "--version"):
         modules, _ = loaded(option)
         assert {name for name in modules if name.startswith("service.")} <= {
-            "service.cli", "service.cli.language", "service.cli.program", "service.version",
+            "service.cli", "service.cli.language", "service.cli.program", "service.regex",
+            "service.version",
             "service.translations", "service.translations.catalogues",
             "service.translations.languages", "service.translations.sentence",
         }  # fmt: skip

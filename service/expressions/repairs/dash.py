@@ -1,11 +1,10 @@
 """A dash alone, which tables print for an empty cell or for zero."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.regex import regex
 from service.translations import say
 
-_DASH = re.compile(r"[-–—−‐‑‒―]+")
+_DASH = regex(r"[-–—−‐‑‒―]+")
 
 
 def repair_dash(failure: Failure) -> Repair:

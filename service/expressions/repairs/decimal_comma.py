@@ -3,12 +3,13 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_THOUSANDS = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
+_THOUSANDS = regex(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
 # A number with an apostrophe as decimal mark, and one in which it may separate thousands.
-_APOSTROPHE = re.compile(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
-_IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
+_APOSTROPHE = regex(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
+_IN_THOUSANDS = regex(r"[1-9][0-9]{0,2}\W[0-9]{3}")
 
 
 @for_causes("grammar", "transpose")

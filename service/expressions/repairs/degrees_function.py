@@ -1,12 +1,11 @@
 """Functions such as acosd and rad2deg, which return degrees, in a text with radians."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.vocabulary.functions import IN_DEGREES
+from service.regex import regex
 from service.translations import say
 
-_MODULE = re.compile(r"[A-Za-z]+\.$")
+_MODULE = regex(r"[A-Za-z]+\.$")
 
 
 @for_causes("degrees")

@@ -1,13 +1,12 @@
 """An equation in place of a value: sin(q1) = 0.5, a = b = c."""
 
-import re
-
 from service.expressions.parsing.equation import right_side
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.regex import regex
 from service.translations import say
 
-_EQUALS = re.compile(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
-_NAME = re.compile(r"\s*\\?[^\W\d]\w{0,20}\s*")
+_EQUALS = regex(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
+_NAME = regex(r"\s*\\?[^\W\d]\w{0,20}\s*")
 
 
 def repair_equation(failure: Failure) -> Repair:

@@ -1,8 +1,7 @@
 """The letters e, i and j, which are not constants in a formula."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
+from service.regex import regex
 from service.translations import paragraph, say
 
 _REASONS = {
@@ -10,7 +9,7 @@ _REASONS = {
     "i": say("There are no complex numbers here."),
     "j": say("There are no complex numbers here."),
 }
-_POWER = re.compile(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]+))")
+_POWER = regex(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]+))")
 
 
 @for_causes("name")

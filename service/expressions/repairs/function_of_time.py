@@ -1,11 +1,10 @@
 """q1(t): a joint variable as a function of time."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_OF_TIME = re.compile(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
+_OF_TIME = regex(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
 
 
 @for_causes("name")

@@ -1,11 +1,10 @@
 r"""A number before a fraction, which may be a sum or a product: 2½, 2\frac{1}{2}."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
-_NUMBER = re.compile(r"([0-9.]+)\s*$")
+_NUMBER = regex(r"([0-9.]+)\s*$")
 
 
 @for_causes("mixed_number")

@@ -1,11 +1,10 @@
 """±, +/- and +-, which mean two values."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_TYPED = re.compile(r"\+\s*/\s*-")
+_TYPED = regex(r"\+\s*/\s*-")
 
 
 @for_causes("plus_minus", "grammar")

@@ -1,15 +1,14 @@
 """A raised 0 or o as degree sign: 90⁰, 90^0, 90^o."""
 
-import re
-
 from service.expressions.errors import Span
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
 _LETTER = "[oO]"
 _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
 # The second form, 90o, comes from copying a raised sign as plain text.
-_RAISED = re.compile(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o")
+_RAISED = regex(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o")
 
 
 @for_causes("raised_zero", "name")

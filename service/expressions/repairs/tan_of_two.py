@@ -1,13 +1,10 @@
 """tan2(y, x) instead of atan2(y, x)."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_TAN2 = re.compile(
-    r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()"
-)
+_TAN2 = regex(r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()")
 
 _KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
 

@@ -1,18 +1,17 @@
 """A unit after a variable: (q1 + 90)deg. Only numbers have units."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
 _UNITS = {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}
 _IN_DEGREES = {"°", "deg", "degree", "degrees"}
 # A number without a unit that is a term by itself.
-_TERM = re.compile(
+_TERM = regex(
     r"(?<![\w.^*/°])(?:(?<=^)|(?<=[-+(\[{,;=\s]))((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?![\w.^]))"
     r"(?=\s*(?:[-+)\]},;]|$))"
 )
-_BRACKETS = re.compile(r"[(\[{|\\]")
+_BRACKETS = regex(r"[(\[{|\\]")
 
 
 @for_causes("unit_on_variable")

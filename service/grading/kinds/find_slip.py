@@ -36,6 +36,7 @@ from service.kinematics.chain import COLUMNS
 from service.kinematics.factors import CellIndex
 from service.learning.find_slip import DrawnSlip, NoSlipError, TableBlame, drawn_slip
 from service.learning.table_texts import TableTexts, as_rows
+from service.regex import regex
 from service.translations import say
 
 MARKED: Final = "marked"
@@ -43,7 +44,7 @@ TABLE: Final = "table"
 # The classes of wrong cells and tables, whose records are about tables.
 _OF_TABLES: Final = (WrongCell, Rereadable, StudentTable)
 # The line before a pasted table that marks the slip, also in LaTeX.
-_MARK_LINE: Final = re.compile(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.IGNORECASE)
+_MARK_LINE: Final = regex(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
