@@ -91,4 +91,5 @@ class StrictModel(BaseModel):
     docs/exercise-fields.md is generated from the strings below the keys.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # Built when first used: most models are used only within others, which build them again.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
