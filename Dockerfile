@@ -15,7 +15,7 @@ RUN python -m venv --without-pip /opt/dh-grader \
 COPY requirements-build.lock ./
 RUN python -m pip install --require-hashes -r requirements-build.lock
 
-COPY pyproject.toml README.md LICENSE NOTICE ./
+COPY pyproject.toml hatch_build.py README.md LICENSE NOTICE ./
 COPY exercises exercises
 COPY service service
 RUN python -m pip wheel --no-deps --no-build-isolation --wheel-dir dist . \

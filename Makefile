@@ -88,6 +88,7 @@ pages: $(dev) ## write all that is made from the code: pages of docs, types of s
 	$(call written,tests.docs.settings,docs/settings.md)
 	$(call written,tests.docs.problems,docs/problems.md)
 	$(call written,tests.docs.notice,NOTICE)
+	$(call written,tests.catalogue.checked,exercises/checked.json)
 	$(call written,tests.front.api_types,service/web/types/api.d.ts)
 	$(python) -m tests.translations.catalogues
 
@@ -188,6 +189,7 @@ clean: ## remove .venv and every cache
 	@[ ! -e "$(VENV)" ] || [ -f "$(VENV)/pyvenv.cfg" ] || { echo '$(VENV) is no virtual environment; not removed.'; exit 1; }
 	rm -rf "$(VENV)" .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache build dist
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+	rm -f service/translations/*/*.mo
 
 $(runtime): pyproject.toml requirements.lock requirements-build.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo \

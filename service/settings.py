@@ -14,6 +14,7 @@ from pydantic_settings import BaseSettings, NoDecode, SettingsConfigDict
 from service.access.keys import SHORTEST_SECRET, Secret
 from service.access.open_access import OpenAccess, open_access
 from service.catalogue import FeedbackLevel, shipped_folder
+from service.regex import regex
 from service.submissions.field_errors import field_error
 from service.submissions.lookup import nearest
 from service.translations import LANGUAGES, Sentence, joined, language_named, say
@@ -24,11 +25,11 @@ SHIPPED = "shipped"
 
 
 # A scheme, a host with an optional port, and an optional path whose parts are not empty.
-_PUBLIC_URL: Final = re.compile(
+_PUBLIC_URL: Final = regex(
     r"https?://(?:[a-z0-9._-]+|\[[0-9a-f:.]+\])(?::[0-9]+)?(?:/[a-z0-9._~%-]+)*/?",
     re.ASCII | re.IGNORECASE,
 )
-_SERVER: Final = re.compile(r"https?://[^\s/?#@]+(?:/[^\s?#]*)?", re.IGNORECASE)
+_SERVER: Final = regex(r"https?://[^\s/?#@]+(?:/[^\s?#]*)?", re.IGNORECASE)
 _SHORT_SECRET = say(
     "the secret is short; it needs {count} characters, such as openssl rand -hex 32",
     count=SHORTEST_SECRET,

@@ -123,10 +123,15 @@ def test_a_wheel_contains_the_program_and_the_catalogue(tmp_path: Path) -> None:
     program = {
         path.relative_to(ROOT).as_posix()
         for path in (ROOT / "service").rglob("*")
-        if path.is_file() and "__pycache__" not in path.parts
+        if path.is_file() and "__pycache__" not in path.parts and path.suffix != ".mo"
     }
+    # Of the translations, a wheel has the compiled catalogues only.
+    texts = {name for name in program if name.endswith(".po")}
+    compiled = {f"{name.removesuffix('.po')}.mo" for name in texts}
     assert exercises
-    assert exercises | program <= carried
+    assert compiled
+    assert exercises | program - texts | compiled <= carried
+    assert not texts & carried
     licences = {name.partition("/licenses/")[2] for name in carried if "/licenses/" in name}
     assert licences == {"LICENSE", "NOTICE"}
     assert not [name for name in carried if name.startswith(("tests/", "exercises/"))]

@@ -4,12 +4,19 @@
 
 import ast
 from collections import defaultdict
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from functools import cache
 from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
+from typing import get_args
 
 import pytest
+
+from service.catalogue.parts import SPECS
+from service.cli.program import COMMANDS, PLACES
+from service.grading.kinds import KINDS
+from service.grids import FORMATS
+from service.solutions.kinds import ANSWERS, LAZY
 
 ROOT = Path(__file__).parents[1]
 SERVICE = ROOT / "service"
@@ -17,11 +24,11 @@ TESTS = ROOT / "tests"
 
 # Each package or file of service/ may import those listed before it.
 PACKAGES = (
-    "version", "time_slices", "translations", "expressions", "grids", "typeset", "kinematics",
-    "catalogue", "learning", "grading", "solutions", "figures", "hints", "authoring",
+    "version", "time_slices", "regex", "translations", "expressions", "grids", "typeset",
+    "kinematics", "catalogue", "learning", "grading", "solutions", "figures", "hints", "authoring",
     "importing", "variants", "submissions", "contract", "statistics", "formats",
     "local_grading", "bundles", "attempts", "access", "courses", "lti", "client", "settings",
-    "kinds_check", "api", "web", "server", "cli", "app", "__main__",
+    "api", "web", "server", "cli", "app", "__main__",
 )  # fmt: skip
 
 # The packages of grading, in layers: each may import earlier layers, and packages of its own layer
@@ -152,6 +159,60 @@ def test_no_file_is_longer_than_one_can_read_at_once() -> None:
         for file in SERVICE.rglob("*.py")
     }
     assert {module: length for module, length in lengths.items() if length > LINES} == {}
+
+
+# The folders whose files each have an entry in a table of their package.
+TABLES: Mapping[str, Callable[[], Iterable[object]]] = {
+    "catalogue/parts": SPECS.values,
+    "grading/kinds": lambda: (each for kind in KINDS.values() for each in (kind.read, kind.judge)),
+    "solutions/kinds": lambda: [*ANSWERS.values(), *LAZY.values()],
+}
+
+
+@pytest.mark.parametrize("folder", TABLES)
+def test_each_module_of_a_kind_is_in_the_table_of_its_package(folder: str) -> None:
+    modules = {module_name(file) for file in (SERVICE / folder).glob("*.py")}
+    listed = [str(each.__module__) for each in TABLES[folder]()]
+    assert set(listed) == modules - {"service." + folder.replace("/", ".")}
+
+
+def test_the_tables_have_the_same_kinds() -> None:
+    assert list(SPECS) == list(KINDS) == list(ANSWERS) == list(LAZY) == sorted(SPECS)
+    for kind, spec in SPECS.items():
+        assert get_args(spec.model_fields["kind"].annotation) == (kind,)
+
+
+def test_importing_the_diagnosis_imports_each_of_its_modules() -> None:
+    package = "service.grading.diagnosis"
+    modules = {name for name in trees() if name.startswith(f"{package}.")}
+    with_code = {name for name in modules if trees()[name].body[1:]}
+    assert with_code <= imports()[package]
+
+
+def modules_with(name: str, folder: str) -> set[str]:
+    """Return the modules of a folder that assign a name at their top level."""
+    found = set()
+    for file in (SERVICE / folder).rglob("*.py"):
+        for each in trees()[module_name(file)].body:
+            match each:
+                case ast.Assign(targets=[ast.Name(id=known)]) if known == name:
+                    found.add(module_name(file))
+                case ast.AnnAssign(target=ast.Name(id=known)) if known == name:
+                    found.add(module_name(file))
+    return found
+
+
+def test_each_format_of_pasted_text_is_tried() -> None:
+    assert len(FORMATS) == len(modules_with("FORMAT", "grids")) > 10
+    assert modules_with("FORMAT", "grids") <= imports()["service.grids.registry"]
+
+
+def test_each_command_can_be_called() -> None:
+    # A file with commands of a group is imported by the file of the group.
+    listed = {place.partition(":")[0] for place in PLACES.values()}
+    others = {name for module in trees() for name in imports()[module] if ".cli." in module}
+    assert listed <= modules_with("commands", "cli") <= listed | others
+    assert list(PLACES) == list(COMMANDS)
 
 
 def public_types(tree: ast.Module) -> Iterator[str]:

@@ -1,5 +1,6 @@
 """Build the HTTP service from its routes, limits and headers."""
 
+import asyncio
 import gc
 from collections.abc import AsyncIterator, Callable, Iterable
 from contextlib import asynccontextmanager
@@ -37,7 +38,6 @@ from service.api.http.request_context import HEADER
 from service.api.monitor import Monitor
 from service.api.permissions.access import Access
 from service.api.permissions.authentication import AuthenticationMiddleware, RequestRates
-from service.api.permissions.rights import require_entries
 from service.api.recording import listing as recorded
 from service.api.recording import managing as tutoring
 from service.api.recording import new_attempts as attempts
@@ -55,7 +55,7 @@ from service.api.routes import (
 )
 from service.api.routes import solutions as model_solutions
 from service.api.web_pages import WebPages
-from service.catalogue import FeedbackLevel
+from service.catalogue import FeedbackLevel, LateCatalogue
 from service.catalogue.drafts import CatalogueWithDrafts
 from service.submissions.strict_json import MAX_BODY_SIZE
 from service.variants.robots.practice_catalogue import CatalogueWithPractice
@@ -76,6 +76,15 @@ def _freeze_gc() -> None:
         gc.collect()
     gc.freeze()
     gc.enable()
+
+
+async def _compile_rest(catalogue: Catalogue) -> None:
+    # One at a time, so that the first requests need not wait for all.
+    if isinstance(catalogue, LateCatalogue):
+        for _ in catalogue.compile_one_by_one():
+            await asyncio.sleep(0)
+        gc.collect()
+        gc.freeze()
 
 
 def _sending(
@@ -137,7 +146,9 @@ class _Api(FastAPI):
         for each in sending:
             each.start()
         _freeze_gc()
+        compiling = asyncio.create_task(_compile_rest(self._catalogue))
         yield
+        compiling.cancel()
         for each in sending:
             each.close()
         if self._pages is not None:
@@ -237,5 +248,4 @@ def application(
     app.include_router(reference.routes(), dependencies=permitted)
     if pages is not None:
         app.include_router(pages.routes, dependencies=permitted)
-    require_entries(app.router)
     return app

@@ -1,7 +1,6 @@
 """Checks of symbols and numbers: ambiguous names, bad ranges, and degrees without a unit."""
 
 import math
-import re
 from collections import defaultdict
 from collections.abc import Iterator
 from typing import Final
@@ -11,9 +10,10 @@ from service.catalogue import Exercise, Variable
 from service.expressions import Expression
 from service.expressions.parsing.degrees import in_degrees
 from service.expressions.tree import Node, Number, Unit, children
+from service.regex import regex
 from service.translations import say
 
-_SHORTHAND: Final = re.compile(r"[cCsS][0-9]+")
+_SHORTHAND: Final = regex(r"[cCsS][0-9]+")
 # Names, and what students may mistake them for.
 _MISLEADING: Final = {
     "e": say("Euler's number"),

@@ -14,6 +14,7 @@ from pathlib import Path
 
 from service.bundles.archive import BundledFile, zipped
 from service.catalogue import shipped_folder
+from service.translations.catalogues import compiled_catalogue
 
 _NAME = "dh-grader"
 _WHEEL = "Wheel-Version: 1.0\nGenerator: dh-grader\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
@@ -46,8 +47,16 @@ def _program() -> Iterator[BundledFile]:
 
 def _below(folder: Path, name: str) -> Iterator[BundledFile]:
     for file in sorted(folder.rglob("*")):
-        if file.is_file() and "__pycache__" not in file.parts:
-            yield BundledFile(f"{name}/{file.relative_to(folder).as_posix()}", file.read_bytes())
+        if not file.is_file() or "__pycache__" in file.parts:
+            continue
+        place, content = f"{name}/{file.relative_to(folder).as_posix()}", file.read_bytes()
+        # A wheel has the compiled catalogues of translations, a checkout has their texts.
+        if file.suffix == ".po":
+            yield BundledFile(
+                place.removesuffix(".po") + ".mo", compiled_catalogue(content, file.name)
+            )
+        elif file.suffix != ".mo" or not file.with_suffix(".po").is_file():
+            yield BundledFile(place, content)
 
 
 def _metadata(installed: Distribution, folder: str) -> Iterator[BundledFile]:

@@ -6,7 +6,7 @@ from service.catalogue.files.regular_file import read_regular
 from service.catalogue.files.schema import CheckSpec
 from service.catalogue.files.toml_file import CatalogueError, Fault
 from service.catalogue.level import ExerciseLevel
-from service.catalogue.live import open_catalogue
+from service.catalogue.live import LateCatalogue, open_catalogue
 from service.catalogue.load import (
     ID_ADVICE,
     exercise_files,
@@ -33,6 +33,7 @@ __all__ = [
     "FeedbackLevel",
     "FormulaGrid",
     "Joint",
+    "LateCatalogue",
     "PartSpec",
     "PosePartSpec",
     "ReferenceTable",

@@ -1,7 +1,6 @@
 """Drafts (exercises that are still being written) for the preview in the editor."""
 
 import os
-import re
 import secrets
 import shutil
 import time
@@ -13,11 +12,12 @@ from typing import Final
 from service.catalogue.exercise import Exercise
 from service.catalogue.files.temporary import temporary_place
 from service.catalogue.load import read_exercise
+from service.regex import regex
 
 MOST_DRAFTS: Final = 32
 # Seconds since a draft was last written.
 KEPT: Final = 3600.0
-_ID: Final = re.compile(r"draft-[0-9a-f]{32}")
+_ID: Final = regex(r"draft-[0-9a-f]{32}")
 
 
 def drafts_folder() -> Path:

@@ -1,4 +1,4 @@
-"""A catalogue that reloads changed files while the service runs."""
+"""Catalogues of a running service: of the files as they were, or as they are now."""
 
 import logging
 import time
@@ -7,8 +7,16 @@ from pathlib import Path
 from typing import Final
 
 from service.catalogue.exercise import Exercise
-from service.catalogue.files.toml_file import CatalogueError
-from service.catalogue.load import exercise_files, load_catalogue, load_exercise
+from service.catalogue.files.toml_file import CatalogueError, Fault
+from service.catalogue.load import (
+    checked_digests,
+    digest_of,
+    exercise_content,
+    exercise_files,
+    exercise_in,
+    load_catalogue,
+    load_exercise,
+)
 from service.catalogue.order import in_order
 
 # The time between two checks of the files (seconds).
@@ -24,7 +32,57 @@ def open_catalogue(folders: Sequence[Path], *, reload: bool) -> Mapping[str, Exe
 
     Raises CatalogueError for a faulty file.
     """
-    return LiveCatalogue(folders) if reload else load_catalogue(*folders)
+    return LiveCatalogue(folders) if reload else LateCatalogue(folders)
+
+
+class LateCatalogue(Mapping[str, Exercise]):
+    """The exercises by id, as their files were at the start.
+
+    Files that the tests of the program have checked are compiled when they are first used, or when
+    all exercises are listed. All others are compiled at once; CatalogueError has their faults.
+    """
+
+    def __init__(self, folders: Sequence[Path]) -> None:
+        checked = checked_digests()
+        self._compiled: dict[str, Exercise] = {}
+        self._waiting: dict[str, tuple[Path, bytes]] = {}
+        faults: list[Fault] = []
+        files = exercise_files(*folders)
+        for file in files:
+            try:
+                content = exercise_content(file)
+                if checked.get(file.stem) == digest_of(content):
+                    self._waiting[file.stem] = file, content
+                else:
+                    self._compiled[file.stem] = exercise_in(file, content)
+            except CatalogueError as error:
+                faults.extend(error.faults)
+        if faults:
+            raise CatalogueError(faults)
+        self._ids = [file.stem for file in files]
+        # All exercises, once they are compiled.
+        self._in_order: Mapping[str, Exercise] = {}
+
+    def __getitem__(self, exercise_id: str) -> Exercise:
+        waiting = self._waiting.get(exercise_id)
+        if waiting is not None and exercise_id not in self._compiled:
+            # If two threads come at once, both get the first one's exercise.
+            self._compiled.setdefault(exercise_id, exercise_in(*waiting))
+            self._waiting.pop(exercise_id, None)
+        return self._compiled[exercise_id]
+
+    def __iter__(self) -> Iterator[str]:
+        if not self._in_order:
+            self._in_order = in_order(self[exercise_id] for exercise_id in self._ids)
+        return iter(self._in_order)
+
+    def __len__(self) -> int:
+        return len(self._ids)
+
+    def compile_one_by_one(self) -> Iterator[Exercise]:
+        """Compile the exercises that were not used yet, one at each step."""
+        for exercise_id in list(self._waiting):
+            yield self[exercise_id]
 
 
 class LiveCatalogue(Mapping[str, Exercise]):

@@ -1,8 +1,12 @@
 """Load exercise files from folders."""
 
+import hashlib
+import json
 import re
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
+from typing import Final
 
 from service.catalogue.exercise import Exercise
 from service.catalogue.files.fields import IDENTIFIER
@@ -10,9 +14,10 @@ from service.catalogue.files.refusals import exercise_table
 from service.catalogue.files.toml_file import (
     CatalogueError,
     Fault,
+    built_of,
     fault_reason,
-    load_toml,
     read_toml,
+    toml_content,
 )
 from service.catalogue.order import in_order
 from service.catalogue.varying.build import exercise_of
@@ -20,6 +25,9 @@ from service.translations import say
 
 ID_ADVICE = say("write small letters and digits, with - or _ between them, such as elbow-arm")
 _LONGEST_ID = 60
+# Among the exercises that come with the program: the digests of the files that the tests have
+# checked, by the ids of the exercises.
+CHECKED: Final = "checked.json"
 
 
 def shipped_folder() -> Path:
@@ -57,6 +65,20 @@ def exercise_files(*folders: Path) -> list[Path]:
     return list(files.values())
 
 
+def checked_digests() -> Mapping[str, str]:
+    """Return the digests of the exercise files that the tests of the program have checked."""
+    try:
+        found: dict[str, str] = json.loads((shipped_folder() / CHECKED).read_bytes())
+    except FileNotFoundError:
+        return {}
+    return found
+
+
+def digest_of(content: bytes) -> str:
+    """Return the digest of an exercise file, whatever its line ends are."""
+    return hashlib.blake2b(content.replace(b"\r\n", b"\n"), digest_size=16).hexdigest()
+
+
 def load_catalogue(*folders: Path) -> dict[str, Exercise]:
     """Load all exercises of the folders, by id. Raises CatalogueError with all faults."""
     exercises: dict[str, Exercise] = {}
@@ -78,8 +100,21 @@ def is_exercise_id(name: str) -> bool:
 
 def load_exercise(file: Path) -> Exercise:
     """Load the exercise of a file; its id is the file's name. Raises CatalogueError."""
+    return exercise_in(file, exercise_content(file))
+
+
+def exercise_content(file: Path) -> bytes:
+    """Return the bytes of an exercise file. Raises CatalogueError."""
     _require_id(file)
-    return load_toml(file, partial(exercise_of, file.stem), exercise_table)
+    return toml_content(file)
+
+
+def exercise_in(file: Path, content: bytes) -> Exercise:
+    """Return the exercise in the bytes of a file; its id is the file's name.
+
+    Raises CatalogueError.
+    """
+    return built_of(file, content, partial(exercise_of, file.stem), exercise_table)
 
 
 def read_exercise(file: Path, text: str) -> Exercise:

@@ -8,9 +8,11 @@ from collections.abc import Iterator
 from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from typing import Final
 
+from service.regex import regex
+
 _PROGRAM: Final = "dh-grader"
-_LICENCE_FILE: Final = re.compile(r"(licen[cs]e|copying|notice|authors)[^/]*$", re.IGNORECASE)
-_NAME: Final = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]*")
+_LICENCE_FILE: Final = regex(r"(licen[cs]e|copying|notice|authors)[^/]*$", re.IGNORECASE)
+_NAME: Final = regex(r"[A-Za-z0-9][A-Za-z0-9._-]*")
 _CLASSIFIER: Final = "License :: "
 
 

@@ -3,7 +3,7 @@
 import gc
 import os
 import sys
-from importlib import import_module
+from pkgutil import resolve_name
 from typing import Annotated, Any, Final
 
 import typer
@@ -12,8 +12,7 @@ from typer.core import TyperGroup
 from service.cli.language import spoken, translate_help
 from service.translations import paragraph, say
 
-# The help of each command. Each is a file of ``commands/``, which is imported when the command is
-# called: the help of the program needs neither the grader nor the web framework.
+# The help of each command. The help of the program needs neither the grader nor the web framework.
 COMMANDS: Final = {
     "serve": "Start the service. Configure it by environment variables DH_GRADER_….",
     "exercises": "The catalogue of exercises.",
@@ -31,14 +30,28 @@ COMMANDS: Final = {
     "doctor": "Check this installation, and say how to mend it. Nothing is changed.",
     "bundle": "Write a zip file for a grading platform.",
 }
-# Those whose file is in ``operations/`` instead.
-_OPERATIONS: Final = {"learners", "backup", "restore", "doctor"}
+# Where each command is. It is imported when it is called.
+PLACES: Final = {
+    "serve": "service.cli.commands.serve:commands",
+    "exercises": "service.cli.commands.exercises:commands",
+    "assignments": "service.cli.commands.assignments:commands",
+    "grade": "service.cli.commands.grade:commands",
+    "merge": "service.cli.commands.merge:commands",
+    "attempts": "service.cli.commands.attempts:commands",
+    "courses": "service.cli.commands.courses:commands",
+    "lti": "service.cli.lti.lti:commands",
+    "keys": "service.cli.commands.keys:commands",
+    "learners": "service.cli.operations.learners:commands",
+    "backup": "service.cli.operations.backup:commands",
+    "restore": "service.cli.operations.restore:commands",
+    "doctor": "service.cli.operations.doctor:commands",
+    "bundle": "service.cli.commands.bundle:commands",
+}
 
 
 def commands_of(name: str | None) -> typer.Typer:
     """Import the module of a command and return its typer application."""
-    room = "operations" if name in _OPERATIONS else "lti" if name == "lti" else "commands"
-    found: typer.Typer = import_module(f"service.cli.{room}.{name}").commands
+    found: typer.Typer = resolve_name(PLACES[name or ""])
     return found
 
 
@@ -60,11 +73,9 @@ class _Commands(TyperGroup):
         from service.catalogue import CatalogueError
         from service.cli.running.interrupts import INTERRUPTED
         from service.cli.terminal import BROKEN_PIPE, complain, give_up
-        from service.kinds_check import check_kinds
         from service.settings import SettingsError
         from service.submissions.lookup import UnknownExerciseError
 
-        check_kinds()
         try:
             return super().invoke(ctx)
         except UnknownExerciseError as error:

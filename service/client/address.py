@@ -1,15 +1,15 @@
 """Check the address of a server, and make the options of an httpx client."""
 
-import re
 from typing import Any, Final
 
 import httpx
 
+from service.regex import regex
 from service.translations import say
 from service.version import VERSION
 
 # The characters of a token of ``Authorization: Bearer`` (RFC 6750).
-_KEY: Final = re.compile(r"[A-Za-z0-9._~+/-]+=*")
+_KEY: Final = regex(r"[A-Za-z0-9._~+/-]+=*")
 
 
 def checked_server(server: str) -> str:

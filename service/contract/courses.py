@@ -17,6 +17,7 @@ from pydantic import (
 from service.catalogue import FeedbackLevel
 from service.catalogue.attempts import HintPrices
 from service.contract.attempts import Learner
+from service.regex import regex
 from service.translations import say
 
 MOST_LEARNERS: Final = 5000
@@ -40,8 +41,8 @@ _Zone = Annotated[
     StringConstraints(min_length=1, max_length=64),
     Field(description="The IANA name of the time zone, such as `Europe/Berlin`."),
 ]
-_DAY: Final = re.compile(r"\d{4}-\d\d-\d\d")
-_MOMENT: Final = re.compile(
+_DAY: Final = regex(r"\d{4}-\d\d-\d\d")
+_MOMENT: Final = regex(
     rf"{_DAY.pattern}[T ]\d\d:\d\d(:\d\d(\.\d+)?)?(Z|[+-]\d\d:\d\d)?", re.IGNORECASE
 )
 

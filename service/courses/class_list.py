@@ -3,7 +3,6 @@
 import codecs
 import csv
 import io
-import re
 from typing import Final
 
 from pydantic import ValidationError
@@ -11,6 +10,7 @@ from pydantic import ValidationError
 from service.contract.courses import MOST_LEARNERS, NewLearner
 from service.courses.errors import CourseError
 from service.formats.shared.plain_text import visible
+from service.regex import regex
 from service.translations import say
 
 # The headings of each field in small letters, the preferred one first, as English, German, Spanish,
@@ -34,7 +34,7 @@ _HEADINGS: Final = {
 # Lines of Canvas that are no learners: one below the headings, and the view of a student.
 _NO_LEARNERS: Final = ("points possible", "student, test")
 # Chinese names have the family name first, and no space.
-_HAN: Final = re.compile(r"[\u3400-\u9fff]")
+_HAN: Final = regex(r"[\u3400-\u9fff]")
 
 
 def decoded(data: bytes) -> str:

@@ -1,7 +1,6 @@
 """Read a typed formula in four stages: characters, tokens, syntax tree, program."""
 
 import math
-import re
 from bisect import bisect_left
 from collections.abc import Iterable, Mapping
 from functools import lru_cache
@@ -28,6 +27,7 @@ from service.expressions.reading_work import symbols_in
 from service.expressions.repairs import Failure, explain
 from service.expressions.tree import Binary, Node, Number, SymbolNode, children
 from service.expressions.vocabulary.symbols import Kind, Vocabulary
+from service.regex import regex
 from service.time_slices import checkpoint
 
 AngleUnit = Literal["radians", "degrees"]
@@ -49,7 +49,7 @@ _LEVELS: Final = {
     "NAME": 0, "NUMBER": 0, "LEFT": 0, "RIGHT": 0, "OPEN": 0, "CLOSE": 0, END: 0, "FUNCTION": 4,
 }  # fmt: skip
 _LEVELS_OF_OPERAND: Final = 3
-_DECIMAL: Final = re.compile(r"\d\.|\.\d")
+_DECIMAL: Final = regex(r"\d\.|\.\d")
 # The number of repaired texts that may be tried for one unreadable text, and the number of symbols
 # in all of them (about two texts of the longest that are repaired).
 _ATTEMPTS: Final = 6

@@ -2,17 +2,17 @@
 
 # Every machine gets the same result.
 
-import re
 from collections import Counter
 from functools import lru_cache
 from typing import Final, NamedTuple
 
 from service.expressions.characters.unicode import SUBSCRIPTS, SUPERSCRIPTS
+from service.regex import regex
 
 # A name, a number or a sign. Long runs of letters are counted in pairs. Blanks are free.
-_SYMBOL: Final = re.compile(r"\\[A-Za-z]+|[A-Za-z]{1,2}|[0-9.]+|[^A-Za-z0-9. ]")
+_SYMBOL: Final = regex(r"\\[A-Za-z]+|[A-Za-z]{1,2}|[0-9.]+|[^A-Za-z0-9. ]")
 # Characters that become several: ½ ² ₁.
-_COMPOSED: Final = re.compile("[¼-¾⅐-⅞↉" + "".join((*SUPERSCRIPTS, *SUBSCRIPTS)) + "]")
+_COMPOSED: Final = regex("[¼-¾⅐-⅞↉" + "".join((*SUPERSCRIPTS, *SUBSCRIPTS)) + "]")
 _SYMBOLS_IN_COMPOSED: Final = 5
 # Every character costs a little, also a blank.
 _CHARACTERS_PER_SYMBOL: Final = 16
@@ -20,25 +20,25 @@ _CHARACTERS_PER_SYMBOL: Final = 16
 # A fraction in LaTeX costs as much as ten of its braces, a root as six, a quotient as three.
 _EXTRA: Final = {r"\frac": 9, r"\dfrac": 9, r"\tfrac": 9, r"\sqrt": 5, "√": 5, "/": 2}
 # A function of degrees becomes two operations. A name of one or two letters is a whole factor.
-_OF_DEGREES: Final = re.compile(r"(?:sin|cos|tan)d")
-_SHORT_NAME: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]{1,2}(?![A-Za-z0-9_])")
+_OF_DEGREES: Final = regex(r"(?:sin|cos|tan)d")
+_SHORT_NAME: Final = regex(r"(?<![A-Za-z\\])[A-Za-z]{1,2}(?![A-Za-z0-9_])")
 # Each match becomes a leaf of the tree. A long name such as ``numpy`` counts once.
-_NAME_OR_NUMBER: Final = re.compile(r"(?<![A-Za-z\\])[A-Za-z]+|[0-9][0-9.]*")
-_NUMBER: Final = re.compile(r"[0-9][0-9.]*")
+_NAME_OR_NUMBER: Final = regex(r"(?<![A-Za-z\\])[A-Za-z]+|[0-9][0-9.]*")
+_NUMBER: Final = regex(r"[0-9][0-9.]*")
 # ½ is a quotient in brackets.
-_FRACTION: Final = re.compile("[¼-¾⅐-⅞↉]")
+_FRACTION: Final = regex("[¼-¾⅐-⅞↉]")
 _EXTRA_OF_FRACTION: Final = 5
 # c12 is the cosine of a sum.
-_SHORTHAND: Final = re.compile(r"(?<![A-Za-z\\])[cs]\d{2}")
+_SHORTHAND: Final = regex(r"(?<![A-Za-z\\])[cs]\d{2}")
 # The sine of a number is checked for a note, because degrees may be meant.
-_OF_NUMBER: Final = re.compile(r"(?:sin|cos|tan)\(\d")
+_OF_NUMBER: Final = regex(r"(?:sin|cos|tan)\(\d")
 _EXTRA_OF_DEGREES, _EXTRA_OF_SHORT_NAME, _EXTRA_OF_SHORTHAND, _EXTRA_OF_NUMBER = 10, 4, 5, 2
 # The extra cost of shorter texts is ignored: the largest answers have only 300 of them.
 _WORTH_IT: Final = 40
 
 # Text that is counted as a unit. Only the last pattern above may match across such words.
-_NAME: Final = re.compile(r"\\?[A-Za-z0-9_.]+")
-_WORD: Final = re.compile(rf"{_NAME.pattern}|[^ ]")
+_NAME: Final = regex(r"\\?[A-Za-z0-9_.]+")
+_WORD: Final = regex(rf"{_NAME.pattern}|[^ ]")
 # A formula has few distinct words, which are memoized. Other texts are counted as a whole.
 _MOST_WORDS: Final = 100
 # More symbols than any text has.

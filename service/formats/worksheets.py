@@ -20,6 +20,7 @@ from typing import Final
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.plain_text import number, points
 from service.formats.shared.spreadsheet import without_formulas
+from service.regex import regex
 from service.translations import Sentence, paragraph, say, say_count
 
 # Bytes.
@@ -31,16 +32,14 @@ _BOMS: Final = (
     (codecs.BOM_UTF16_BE, "utf-16-be"),
 )
 _SEPARATORS: Final = (",", ";", "\t")
-_NUMBER: Final = re.compile(r"\d+(?:[.,]\d+)?")
+_NUMBER: Final = regex(r"\d+(?:[.,]\d+)?")
 # "Participant 1234", "Teilnehmer/in1234", "参与人1234".
-_PARTICIPANT: Final = re.compile(r"\D*\D(\d+)")
+_PARTICIPANT: Final = regex(r"\D*\D(\d+)")
 # Moodle writes dates in the language of the user, and "-" for no date.
-_DATE: Final = re.compile(r"-|(?=.*\b(?:19|20)\d\d(?!\d))(?=.*\d[:.h]\d\d).*", re.DOTALL)
-_CANVAS_COLUMN: Final = re.compile(r".*\(\d+\)", re.DOTALL)
-_BRIGHTSPACE_COLUMN: Final = re.compile(r".* Points Grade <.*MaxPoints:([\d.,]+).*>", re.DOTALL)
-_BLACKBOARD_COLUMN: Final = re.compile(
-    r".*\[[^\]\d]*([\d.,]+)[^\]]*\]\s*\|\s*\d+(?:_\d+)*", re.DOTALL
-)
+_DATE: Final = regex(r"-|(?=.*\b(?:19|20)\d\d(?!\d))(?=.*\d[:.h]\d\d).*", re.DOTALL)
+_CANVAS_COLUMN: Final = regex(r".*\(\d+\)", re.DOTALL)
+_BRIGHTSPACE_COLUMN: Final = regex(r".* Points Grade <.*MaxPoints:([\d.,]+).*>", re.DOTALL)
+_BLACKBOARD_COLUMN: Final = regex(r".*\[[^\]\d]*([\d.,]+)[^\]]*\]\s*\|\s*\d+(?:_\d+)*", re.DOTALL)
 # Identifier, status, grade, maximum, whether it can be changed, and the time of the last change.
 _FEWEST_COLUMNS: Final = 6
 _EXCUSED: Final = "EX"

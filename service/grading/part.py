@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache, lru_cache
-from typing import Any, Protocol
+from typing import Any
 
 from service.catalogue import Exercise
 from service.expressions import Expression, Vocabulary
@@ -211,18 +211,14 @@ class Judged:
         return self.slips > 0 or Verdict.INCORRECT in cells
 
 
-class AnswerKind(Protocol):
+@dataclass(frozen=True, slots=True)
+class AnswerKind:
     """The functions that read and judge a kind of answer."""
 
     # Pure: the result depends only on part, answer and samples.
 
-    def read(self, part: Any, answer: object, grading: Grading) -> Any:
-        """Convert a JSON value to the form that ``judge`` expects; None for an empty answer.
-
-        Raises UnreadableAnswerError if nothing can be read.
-        """
-        ...
-
-    def judge(self, part: Any, answer: Any, grading: Grading) -> Judged:
-        """Judge an answer that ``read`` has returned."""
-        ...
+    # Takes a part and a JSON value, and returns the form that ``judge`` expects, or None for an
+    # empty answer. Raises UnreadableAnswerError if nothing can be read.
+    read: Callable[[Any, object, Grading], Any]
+    # Takes a part and an answer that ``read`` has returned.
+    judge: Callable[[Any, Any, Grading], Judged]

@@ -4,13 +4,13 @@ Work is counted instead of timed, so that the same submission gives the same rep
 """
 
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, Final, Self
 
 from service.expressions.reading_work import reading_cost
 from service.grids.cutting.limits import GRID_LIMITS
+from service.regex import regex
 from service.time_slices import checkpoint
 
 # The pose of a seven-joint arm, multiplied out without simplification and printed as LaTeX or
@@ -50,7 +50,7 @@ SYMBOLS_PER_FIGURE = 2_200
 SYMBOLS_PER_PRINTED_NODE = 2.5
 
 
-_SIGN: Final = re.compile(r"""[][(){}'"]""")
+_SIGN: Final = regex(r"""[][(){}'"]""")
 
 
 @dataclass(slots=True)

@@ -9,21 +9,24 @@ from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.line_ends import without_last_signs
 from service.grids.cutting.once import remembers
 from service.grids.cutting.source_text import SourceText
-from service.grids.formats import (
-    columns,
-    csv,
-    html,
-    latex,
-    markdown,
-    named_values,
-    semicolons,
-    stacked,
-    tsv,
-)
+from service.grids.formats.columns import FORMAT as COLUMNS
+from service.grids.formats.csv import FORMAT as CSV
 from service.grids.formats.data_frame import without_frame
 from service.grids.formats.decimal_commas import with_decimal_points
-from service.grids.matrices import bracketed, drawn_matrix, eigen, maple, matlab_rows, word
+from service.grids.formats.html import FORMAT as HTML
+from service.grids.formats.latex import FORMAT as LATEX
+from service.grids.formats.markdown import FORMAT as MARKDOWN
+from service.grids.formats.named_values import FORMAT as NAMED_VALUES
+from service.grids.formats.semicolons import FORMAT as SEMICOLONS
+from service.grids.formats.stacked import FORMAT as STACKED
+from service.grids.formats.tsv import FORMAT as TSV
+from service.grids.matrices.bracketed import FORMAT as BRACKETED
+from service.grids.matrices.drawn_matrix import FORMAT as DRAWN_MATRIX
+from service.grids.matrices.eigen import FORMAT as EIGEN
 from service.grids.matrices.identity import identity
+from service.grids.matrices.maple import FORMAT as MAPLE
+from service.grids.matrices.matlab_rows import FORMAT as MATLAB_ROWS
+from service.grids.matrices.word import FORMAT as WORD
 from service.grids.scripts.given_values import (
     check_script,
     without_definitions,
@@ -44,22 +47,23 @@ from service.grids.scripts.titles import (
     without_titles,
 )
 from service.grids.scripts.toolbox_print import describes_print, read_print
+from service.regex import regex
 from service.time_slices import checkpoint
 from service.translations import say
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
 FORMATS: Final[tuple[GridFormat, ...]] = (
-    named_values.FORMAT, stacked.FORMAT, eigen.FORMAT, maple.FORMAT, html.FORMAT, word.FORMAT,
-    latex.FORMAT, drawn_matrix.FORMAT, bracketed.FORMAT, markdown.FORMAT, matlab_rows.FORMAT,
-    tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT,
+    NAMED_VALUES, STACKED, EIGEN, MAPLE, HTML, WORD,
+    LATEX, DRAWN_MATRIX, BRACKETED, MARKDOWN, MATLAB_ROWS,
+    TSV, SEMICOLONS, CSV, COLUMNS,
 )  # fmt: skip
 
 # The formats in which a sign separates cells.
-_SEPARATED: Final = FORMATS[FORMATS.index(markdown.FORMAT) :]
+_SEPARATED: Final = FORMATS[FORMATS.index(MARKDOWN) :]
 # The formats in which any line may be a row.
-_PLAIN: Final = (tsv.FORMAT, semicolons.FORMAT, csv.FORMAT, columns.FORMAT)
+_PLAIN: Final = (TSV, SEMICOLONS, CSV, COLUMNS)
 # The formats in which a comma separates no cells.
-_WITHOUT_COMMAS: Final = (html.FORMAT, markdown.FORMAT, tsv.FORMAT, semicolons.FORMAT)
+_WITHOUT_COMMAS: Final = (HTML, MARKDOWN, TSV, SEMICOLONS)
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 
@@ -67,7 +71,7 @@ _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\"
 FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］【】｛｝＆＠　", ",;()|=-+:[][]{}&@ ")
 
 # The first line of a CSV file that names its separator to a spreadsheet.
-_SEPARATOR_LINE: Final = re.compile(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
+_SEPARATOR_LINE: Final = regex(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
 
 # LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"
@@ -81,9 +85,9 @@ def read_grid(text: str, *, of_table: bool = False) -> Grid:
     source = pasted_source(text)
     if not of_table and (named := identity(source)):
         return named
-    if named_values.FORMAT.matches(source.text):
+    if NAMED_VALUES.matches(source.text):
         # The label of the first row would be a title.
-        return named_values.FORMAT.parse(source)
+        return NAMED_VALUES.parse(source)
     source = without_function(source)
     if of_table:
         source = without_print(without_uses(source))

@@ -21,6 +21,7 @@ from service.grids.matrices.identity import identity
 from service.grids.matrices.lists import lines_of
 from service.grids.registry import grid_of, pasted_source
 from service.grids.scripts.program_text import MAKERS, TAIL, without_harmless_lines, without_remarks
+from service.regex import regex
 
 _HIDDEN: Final = "\x01"
 # A name such as A_1, T(q1) or A{2}; the content of its brackets is masked.
@@ -29,23 +30,21 @@ _NAME: Final = (
     rf"(?:[\w.^\\'*@→ \t]|[({{\[]{_HIDDEN}{{0,40}}[)}}\]]){{0,48}}"
 )
 _NUMBERED: Final = r"(?:[A-Za-z]{1,14}[ \t]{1,3}){0,3}[A-Za-z_^]{0,4}[\d_^→]{1,8}"
-_HEADING: Final = re.compile(
+_HEADING: Final = regex(
     rf"(?:^|[;,\n])[ \t]*(?P<name>{_NAME})(?::=|[:=])(?!=)"
     rf"|(?:^|\n)[ \t]*(?P<line>{_NUMBERED})[ \t]*(?=\r?\n)"
 )
-_COMMENT: Final = re.compile(rf"^[ \t]*(?:%+|#+|//+)[ \t]*({_NUMBERED})[ \t:=]*$", re.MULTILINE)
-_PRODUCT: Final = re.compile(
-    r"(?:[A-Za-z]{1,12}\()?[^\W\d]\w{0,20}(?:\s?[*@.]\s?[^\W\d]\w{0,20})+\)?"
-)
-_PROSE: Final = re.compile(r"[^\W\d]{0,20}(?:[ \n,.:;]{1,3}[^\W\d]{1,20}){0,40}")
+_COMMENT: Final = regex(rf"^[ \t]*(?:%+|#+|//+)[ \t]*({_NUMBERED})[ \t:=]*$", re.MULTILINE)
+_PRODUCT: Final = regex(r"(?:[A-Za-z]{1,12}\()?[^\W\d]\w{0,20}(?:\s?[*@.]\s?[^\W\d]\w{0,20})+\)?")
+_PROSE: Final = regex(r"[^\W\d]{0,20}(?:[ \n,.:;]{1,3}[^\W\d]{1,20}){0,40}")
 # The brackets of a matrix, of a list around it, and of a function around the list.
 _NESTING: Final = 3
 # Each row of each matrix may be in brackets of its own.
 _MOST_GROUPS: Final = GRID_LIMITS.rows**2
-_GROUP: Final = re.compile(
+_GROUP: Final = regex(
     rf"(?:(?<![\w.])(?P<maker>[A-Za-z_][\w.]{{0,60}})[ \t]*)?[\[({{]{_HIDDEN}*[\])}}]"
 )
-_BLANK_LINES: Final = re.compile(r"\n(?:[ \t]*\r?\n)+")
+_BLANK_LINES: Final = regex(r"\n(?:[ \t]*\r?\n)+")
 
 
 @dataclass(frozen=True, slots=True)

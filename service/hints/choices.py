@@ -4,7 +4,6 @@ The x or z axis of a frame may point the other way. If the next axis is parallel
 slide along its z axis. The grader decides which of these changes the exercise allows.
 """
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -16,12 +15,13 @@ from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading import Submission, grade
 from service.grading.report import Verdict
 from service.kinematics.dh import Convention
+from service.regex import regex
 from service.translations import say
 
 MOST: Final = 3
 # Each is graded.
 MOST_TRIED: Final = 12
-_SIMPLE: Final = re.compile(r"-?[^\s+\-*/()]+")
+_SIMPLE: Final = regex(r"-?[^\s+\-*/()]+")
 _HALF_TURNS: Final = ("180°", "-180°", "180deg", "-180deg", "pi", "-pi", "π", "-π")
 
 # A row: a, alpha, d and theta as texts.

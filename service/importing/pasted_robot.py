@@ -39,17 +39,18 @@ from service.importing.table_rows import (
 from service.kinematics.chain import ALPHA, COLUMNS, THETA, A, D, Row, Table
 from service.kinematics.dh import Convention
 from service.kinematics.transforms import Numbers
+from service.regex import regex
 from service.translations import Sentence, joined, listed, say
 
 _MOST_JOINTS: Final = 10
 # A cell that adds up more letters is refused.
 _MOST_ROUNDS: Final = 6
-_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
+_NAME: Final = regex(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
 # The letter O is often a zero, and a unit is no letter.
 _NO_LETTERS: Final = frozenset({"o", "O", *METRES})
 _UNKNOWN: Final = frozenset({"unknown_symbol", "unknown_joint", "letter_case"})
-_JOINT_NAME: Final = re.compile(r"(?:q|th|theta|θ)i?\d*")
-_SLIDE_NAME: Final = re.compile(r"d\d+")
+_JOINT_NAME: Final = regex(r"(?:q|th|theta|θ)i?\d*")
+_SLIDE_NAME: Final = regex(r"d\d+")
 # Names of the joint variable of their row, without its number.
 _OWN: Final = ("q", "qi", "th", "thi", "theta", "thetai")
 _OWN_SLIDE: Final = frozenset({"d", "di", "d_i"})
@@ -60,15 +61,15 @@ _VARIABLES: Final = (
 )
 # The index of a variable of a sliding joint with a star, beside that of a turning joint.
 _STARRED: Final = 100
-_STAR: Final = re.compile(r"[\s})]*(?:\^\s*\{?\s*)?(?:\*|\\ast|\\star)")
-_LITERAL: Final = re.compile(r"(?<![\w.}])(\d+\.?\d*|\.\d+)(?=\s*rad|(?![\w.°]))")
-_PI: Final = re.compile(r"π|(?<![a-z])pi(?![a-z])", re.IGNORECASE)
-_ANGLE: Final = re.compile(r"°|π|circ|(?<![a-z_])(?:pi|deg|degrees|rad)(?![a-z])", re.IGNORECASE)
+_STAR: Final = regex(r"[\s})]*(?:\^\s*\{?\s*)?(?:\*|\\ast|\\star)")
+_LITERAL: Final = regex(r"(?<![\w.}])(\d+\.?\d*|\.\d+)(?=\s*rad|(?![\w.°]))")
+_PI: Final = regex(r"π|(?<![a-z])pi(?![a-z])", re.IGNORECASE)
+_ANGLE: Final = regex(r"°|π|circ|(?<![a-z_])(?:pi|deg|degrees|rad)(?![a-z])", re.IGNORECASE)
 _JOINT_TYPES: Final = {
-    "R": re.compile(r"r|rev\w*|rot\w*|dreh\w*|gir\w*|.*转动.*|.*旋转.*", re.IGNORECASE),
-    "P": re.compile(r"p|pris\w*|trans\w*|lin\w*|slid\w*|schub\w*|.*移动.*", re.IGNORECASE),
+    "R": regex(r"r|rev\w*|rot\w*|dreh\w*|gir\w*|.*转动.*|.*旋转.*", re.IGNORECASE),
+    "P": regex(r"p|pris\w*|trans\w*|lin\w*|slid\w*|schub\w*|.*移动.*", re.IGNORECASE),
 }
-_MODIFIED: Final = re.compile(r"modifi|proximal|craig|khalil|改进", re.IGNORECASE)
+_MODIFIED: Final = regex(r"modifi|proximal|craig|khalil|改进", re.IGNORECASE)
 # A larger angle is in degrees, whatever the text says.
 _LARGEST_ANGLE: Final = 2 * math.tau
 # A number of degrees is rarely less than 1, and a number of radians is rarely whole.

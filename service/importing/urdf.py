@@ -1,7 +1,6 @@
 """Read a serial robot arm from a URDF file: its joints, their places and their axes."""
 
 import math
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
@@ -11,6 +10,7 @@ import numpy as np
 
 from service.importing.snapping import Snaps
 from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y, rot_z
+from service.regex import regex
 from service.translations import say
 
 MOST_BYTES: Final = 2**20
@@ -18,7 +18,7 @@ _MOST_LINKS: Final = 200
 _MOST_ELEMENTS: Final = 20_000
 _DEEPEST: Final = 40
 _MOST_JOINTS: Final = 10
-_NUMBER: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,2})?")
+_NUMBER: Final = regex(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d{1,2})?")
 _TURNING: Final = ("revolute", "continuous")
 _SHOWN: Final = 60
 _MOST_ENDS: Final = 5

@@ -15,6 +15,7 @@ from service.attempts.recording import insert_or_ignore
 from service.attempts.storage import lti_tables as tables
 from service.courses.times import zone_named
 from service.lti.problems import LtiError
+from service.regex import regex
 from service.translations import joined, say
 
 LAUNCH_PATH: Final = "/lti/launch"
@@ -23,7 +24,7 @@ KEYS_PATH: Final = "/lti/jwks.json"
 NOTICES_PATH: Final = "/lti/notices"
 LOCAL_HOSTS: Final = ("localhost", "127.0.0.1", "::1")
 # An address without characters that separate directives of a Content-Security-Policy.
-_ADDRESS: Final = re.compile(r"https?://[^\s;,'\"<>\\@]+", re.ASCII)
+_ADDRESS: Final = regex(r"https?://[^\s;,'\"<>\\@]+", re.ASCII)
 
 # Issuers in the cloud, and the domain in which each of their customers has a host.
 _CUSTOMERS: Final = (

@@ -8,21 +8,20 @@ from collections.abc import Callable, Iterator, Mapping
 from typing import Final
 
 from service.grids import ASSIGNMENT
+from service.regex import regex
 
-_ENVIRONMENT: Final = re.compile(
-    r"\\begin\{(tabular[x*]?|longtable|array|smallmatrix|[pbBvV]?matrix)\}"
-)
+_ENVIRONMENT: Final = regex(r"\\begin\{(tabular[x*]?|longtable|array|smallmatrix|[pbBvV]?matrix)\}")
 
-_ASSIGNED: Final = re.compile(r"^[ \t]*([A-Za-z]\w{0,60})[ \t]*=[ \t]*\[", re.MULTILINE)
+_ASSIGNED: Final = regex(r"^[ \t]*([A-Za-z]\w{0,60})[ \t]*=[ \t]*\[", re.MULTILINE)
 
-_NAME: Final = re.compile(r"[A-Za-z]\w*")
+_NAME: Final = regex(r"[A-Za-z]\w*")
 # An assignment to a variable, except of itself as a symbol: q1 = sym('q1').
-_GIVEN: Final = re.compile(
+_GIVEN: Final = regex(
     r"(?:^|[;,])[ \t]*([A-Za-z]\w{0,60})[ \t]*=(?!=)(?![ \t]*sym\(['\"]\1['\"][,)])", re.MULTILINE
 )
-_SEVERAL_GIVEN: Final = re.compile(r"\][ \t]*=(?!=)")
+_SEVERAL_GIVEN: Final = regex(r"\][ \t]*=(?!=)")
 # An assignment to a variable or to some of its entries.
-_CHANGED: Final = re.compile(r"\b([A-Za-z]\w{0,60})[ \t]*(?:\([^()\n]{0,80}\)[ \t]*)?=(?!=)")
+_CHANGED: Final = regex(r"\b([A-Za-z]\w{0,60})[ \t]*(?:\([^()\n]{0,80}\)[ \t]*)?=(?!=)")
 
 
 def pasted_from(text: str, suffix: str) -> str:
@@ -43,7 +42,7 @@ def pasted_from(text: str, suffix: str) -> str:
 
 
 # A line of a CSV file that is one cell in quotation marks.
-_QUOTED: Final = re.compile(r'\s{0,9}"((?:[^"]|"")*)"\s{0,9}')
+_QUOTED: Final = regex(r'\s{0,9}"((?:[^"]|"")*)"\s{0,9}')
 
 
 def _column(text: str) -> Iterator[str]:

@@ -1,14 +1,14 @@
 """Pydantic's errors in words: a sentence for each type of error."""
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any, Final
 
+from service.regex import regex
 from service.translations import Sentence, say, say_count, template
 
 # A longer pattern does not help a reader. It is the one of names, which are one visible line.
 _LONGEST_PATTERN: Final = 200
-_QUOTED: Final = re.compile(r"'([^']*)'")
+_QUOTED: Final = regex(r"'([^']*)'")
 
 _OBJECT: Final = template("This must be a JSON object.")
 _TEXT: Final = template("This must be a text.")

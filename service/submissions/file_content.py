@@ -13,6 +13,7 @@ from pathlib import Path, PurePosixPath
 from typing import Any, Final
 
 from service.catalogue import read_regular
+from service.regex import regex
 from service.submissions.documents import pasted_from
 from service.submissions.office_files import (
     OFFICE_ENDINGS,
@@ -236,8 +237,8 @@ def _recognised(text: str) -> FileContent:
     return FileContent(text, is_pasted=True)
 
 
-_TAGS: Final = re.compile("</(?:p|div|span)>|<br ?/?>", re.IGNORECASE)
-_HAS_TABLE: Final = re.compile("<t(?:able|r)[ >]", re.IGNORECASE)
+_TAGS: Final = regex("</(?:p|div|span)>|<br ?/?>", re.IGNORECASE)
+_HAS_TABLE: Final = regex("<t(?:able|r)[ >]", re.IGNORECASE)
 
 
 def _toml(text: str) -> object:

@@ -7,7 +7,6 @@ its folder, and a zip file of a student like a folder of the student's files.
 
 import io
 import os
-import re
 import sys
 import zipfile
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
@@ -18,6 +17,7 @@ from itertools import chain, islice
 from pathlib import Path, PurePosixPath
 from typing import Final, Protocol
 
+from service.regex import regex
 from service.submissions.file_content import STANDARD_INPUT, ending, most_bytes, read_file
 from service.submissions.office_files import (
     UNREADABLE_ARCHIVE,
@@ -51,7 +51,7 @@ _MOST_LEVELS: Final = 4
 MAX_START: Final = 64 * 1024
 _ARCHIVE: Final = ".zip"
 _INDEX: Final = "index.html"
-_DRIVE: Final = re.compile("[A-Za-z]:/")
+_DRIVE: Final = regex("[A-Za-z]:/")
 # The flag of a zip file whose names are UTF-8.
 _SAYS_UTF_8: Final = 0x800
 

@@ -19,6 +19,7 @@ from itertools import groupby, islice
 from typing import Any, Final
 from xml.etree import ElementTree as ET
 
+from service.regex import regex
 from service.submissions.documents import pasted_from
 from service.submissions.strict_json import MalformedError, read_json
 from service.translations import say
@@ -215,13 +216,13 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
     yield from _of_sheets(sheets)
 
 
-_OF_SHEETS: Final = re.compile(
+_OF_SHEETS: Final = regex(
     r"\[Content_Types\]\.xml$|_rels/\.rels$|docProps/(core|app)\.xml$|xl/(_rels/)?workbook\.xml(\.rels)?$|"
     r"xl/(styles|sharedStrings)\.xml$|xl/worksheets/[^/]+\.xml$"
 )
-_CELL_OF_XLSX: Final = re.compile(rb"<(?:\w+:)?c[ >/]")
-_ROW_OF_XLSX: Final = re.compile(rb"<(?:\w+:)?row[ >/]")
-_WITHOUT_VALUE: Final = re.compile(rb"</(?:\w+:)?f>\s*(?:<v\s*/>|<v></v>|</(?:\w+:)?c>)")
+_CELL_OF_XLSX: Final = regex(rb"<(?:\w+:)?c[ >/]")
+_ROW_OF_XLSX: Final = regex(rb"<(?:\w+:)?row[ >/]")
+_WITHOUT_VALUE: Final = regex(rb"</(?:\w+:)?f>\s*(?:<v\s*/>|<v></v>|</(?:\w+:)?c>)")
 
 
 def _require_few_cells(content: bytes) -> None:
@@ -648,17 +649,17 @@ def _outputs(cell: Mapping[str, Any]) -> Iterator[str]:
 
 # --- Web pages ---
 
-_TABLE: Final = re.compile(r"<(?:table|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
+_TABLE: Final = regex(r"<(?:table|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
 # What begins a new line on a web page.
-_BREAK: Final = re.compile(
+_BREAK: Final = regex(
     r"</?(?:p|div|br|li|ul|ol|pre|h[1-6]|blockquote|section|article|body|html|head)"
     r"(?![A-Za-z0-9-])[^<>]{0,2000}>",
     re.IGNORECASE,
 )
 # The start of an element that a browser does not show.
-_HIDDEN: Final = re.compile(r"<(head|style|script|title)(?![A-Za-z0-9-])|<!--|<!", re.IGNORECASE)
-_TAG: Final = re.compile(r"</?[A-Za-z][^<>]{0,2000}>")
-_RAISED: Final = re.compile(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)
+_HIDDEN: Final = regex(r"<(head|style|script|title)(?![A-Za-z0-9-])|<!--|<!", re.IGNORECASE)
+_TAG: Final = regex(r"</?[A-Za-z][^<>]{0,2000}>")
+_RAISED: Final = regex(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)
 
 
 def typed_text(page: str) -> str:

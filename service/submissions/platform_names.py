@@ -10,27 +10,24 @@ For anonymous students, ``anon_x7Gh2`` replaces the name and the number. Brights
 a file. Blackboard names a file ``HW1_abyron_attempt_2026-10-03-16-05-33_table.csv``.
 """
 
-import re
 from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import Final
 
-_MOODLE: Final = re.compile(
-    r"(?P<student>.+?)_(?P<id>\d+)_assignsubmission_[a-z]+(?:_(?P<file>.*))?"
-)
+from service.regex import regex
+
+_MOODLE: Final = regex(r"(?P<student>.+?)_(?P<id>\d+)_assignsubmission_[a-z]+(?:_(?P<file>.*))?")
 # Canvas removes all but letters, digits and _ from a name; it keeps marks of many scripts.
-_CANVAS: Final = re.compile(
+_CANVAS: Final = regex(
     r"(?:(?P<student>[^\s.,()-]+?)_)??(?:LATE_)?(?P<id>\d{2,}|anon_[A-Za-z0-9]+)"
     r"_(?:\d{3,}_(?P<file>.+)|(?P<entry>(?:text|link)(?:-\d+)?\.html))"
 )
 # The date has a year, and no `` - ``.
 _DATE: Final = r"(?:(?! - ).)*\d{4}(?:(?! - ).)*"
-_BRIGHTSPACE: Final = re.compile(
-    rf"(?P<id>\d+-\d+) ?- ?(?P<student>.+?) ?- {_DATE}(?: - (?P<file>.+))?"
-)
+_BRIGHTSPACE: Final = regex(rf"(?P<id>\d+-\d+) ?- ?(?P<student>.+?) ?- {_DATE}(?: - (?P<file>.+))?")
 # The text that a student typed has the name of the attempt, without a name of a file.
-_BLACKBOARD: Final = re.compile(
+_BLACKBOARD: Final = regex(
     r"(?P<student>.+_(?P<user>[^_]+))_attempt_\d{4}(?:-\d\d){5}(?:_(?P<file>.+)|(?P<text>\.txt))"
 )
 # No file system takes a longer name; a zip file does.
@@ -38,7 +35,7 @@ _LONGEST: Final = 255
 # The name of Blackboard's receipt of an attempt, which holds what the student typed.
 RECEIPT: Final = "attempt.txt"
 # The number of a second download or a resubmission: ``table-1.csv``, ``table (1).csv``.
-_COPY: Final = re.compile(r"(?:-\d+| ?\(\d+\))$")
+_COPY: Final = regex(r"(?:-\d+| ?\(\d+\))$")
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,13 +6,13 @@ the other values unreadable.
 
 import json
 import math
-import re
 from collections import Counter
 from collections.abc import Iterable
 from dataclasses import dataclass
 from itertools import chain
 from typing import Final
 
+from service.regex import regex
 from service.translations import Sentence, say, template
 
 MAX_BODY_SIZE: Final = 256 * 1024
@@ -41,8 +41,8 @@ _SYNTAX_ERRORS: Final = frozenset(
     )
 )
 _DIGITS_OF_A_FLOAT: Final = 308
-_SURROGATE_ESCAPE: Final = re.compile(r"\\u[dD][89a-fA-F]")
-_LONE_SURROGATE: Final = re.compile(r"[\ud800-\udfff]")
+_SURROGATE_ESCAPE: Final = regex(r"\\u[dD][89a-fA-F]")
+_LONE_SURROGATE: Final = regex(r"[\ud800-\udfff]")
 
 
 @dataclass(eq=False)

@@ -3,9 +3,11 @@
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from gettext import GNUTranslations, NullTranslations
+from gettext import NullTranslations
 from pathlib import Path
 from typing import Final
+
+from service.translations.catalogues import has_catalogue, read_catalogue
 
 _FOLDER: Final = Path(__file__).parent
 # The catalogues of a language: the sentences of reports, those of pages, and the command line's.
@@ -49,10 +51,8 @@ class Language:
         # A template that no catalogue has stays English.
         found = NullTranslations()
         for domain in reversed(domains):
-            file = _FOLDER / self.code / f"{domain}.mo"
-            if file.is_file():
-                with file.open("rb") as content:
-                    read = GNUTranslations(content)
+            read = read_catalogue(_FOLDER / self.code, domain)
+            if read is not None:
                 read.add_fallback(found)
                 found = read
         return found
@@ -70,7 +70,7 @@ _KNOWN: Final = (
 LANGUAGES: Final[Mapping[str, Language]] = {
     each.code: each
     for each in _KNOWN
-    if each is ENGLISH or (_FOLDER / each.code / "sentences.mo").is_file()
+    if each is ENGLISH or has_catalogue(_FOLDER / each.code, "sentences")
 }
 
 

@@ -1,6 +1,5 @@
 """Formulas and matrices in MathML, made from plain text."""
 
-import re
 from collections.abc import Iterator
 from html import escape
 from typing import Final
@@ -11,6 +10,7 @@ from service.expressions.printing.text import to_text
 from service.expressions.tree import Binary, Node
 from service.expressions.vocabulary.functions import RESERVED
 from service.grids import GridError, read_grid
+from service.regex import regex
 from service.typeset.names import typeset
 
 # In characters of plain text; with more, a formula is too wide for a phone.
@@ -18,9 +18,7 @@ _LONGEST_TERM: Final = 36
 # A matrix with more entries is shown as text.
 _MOST_ENTRIES: Final = 64
 # The e of 1e-3 is no name.
-_NAME: Final = re.compile(
-    r"(?:(?<![0-9.])|(?![eE][-+]?[0-9]))[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*"
-)
+_NAME: Final = regex(r"(?:(?<![0-9.])|(?![eE][-+]?[0-9]))[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
 
 
 def formula(text: str) -> str:

@@ -20,12 +20,13 @@ from typing import Final, NamedTuple
 
 from service.expressions.characters import greek
 from service.expressions.printing.mathml import scripted
+from service.regex import regex
 
 # These are also English words, or kinds of robots.
 _WORDS: Final = {"a", "A", "I", "delta", "iota"}
 _SPELLED: Final = [name for name in greek.LETTERS if name.islower() and name not in _WORDS]
 _INDEX: Final = rf"[0-9A-Za-z{greek.CLASS}]+|\{{[^{{}}\s]{{1,8}}\}}"
-_NAME: Final = re.compile(
+_NAME: Final = regex(
     r"(?<!\w)\w{1,20}://\S+"
     r"|(?<![\w\\@#$'’}])(?:"
     r"(?P<frame>\{[0-9A-Za-z](?:[-−+]?[0-9])?\})"
@@ -35,17 +36,17 @@ _NAME: Final = re.compile(
     r")(?![^\W²³]|[{@]|['’][^\W\d_]{2})"
 )
 # A hyphen that is a sign: before a number or a name, and after nothing that it could join.
-_SIGN: Final = re.compile(
+_SIGN: Final = regex(
     rf"(?<![^\s(\[,;=])-(?=[0-9({greek.CLASS}]|[A-Za-z][0-9_]|(?:{'|'.join(_SPELLED)})(?![A-Za-z]))"
 )
 # An axis by its letter, in each language: the x axis, die x-Achse, x 轴, l’axe x, el eje x.
-_AXIS: Final = re.compile(
+_AXIS: Final = regex(
     r"[xyz](?=[\s-]+(?:ax[ei]s|Achsen?)(?![A-Za-z])|\s?轴)"
     r"|(?:(?<=\baxe |\beje )|(?<=\baxes |\bejes )|(?<=\bAchse ))[xyz](?![\w'’])"
 )
 # A formula, an argument in brackets, and the signs that must stay in one line with them.
 _FORMULA: Final = r'(?:<span class="math inline">)?<math[^>]*>(?:(?!</math>).)*</math>(?:</span>)?'
-_RUN: Final = re.compile(
+_RUN: Final = regex(
     rf"(?<![(\[−])[(\[−]{{1,20}}{_FORMULA}(?:\({_FORMULA})?[),.;:!?\]²³]*|{_FORMULA}(?:\({_FORMULA}[),.;:!?\]²³]*|[),.;:!?\]²³]+)"
 )
 _LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")

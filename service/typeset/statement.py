@@ -14,6 +14,7 @@ from functools import cache, lru_cache
 from html import escape
 from typing import TYPE_CHECKING, Any, Final
 
+from service.regex import regex
 from service.typeset.formulas import matrix
 from service.typeset.names import in_one_line, unbound
 
@@ -37,9 +38,9 @@ _ATTRIBUTES: Final = frozenset({
 _LONGEST: Final = 2_000
 # For model solutions, which are not written by strangers.
 _LONGEST_SOLVED: Final = 20_000
-_LINKS: Final = re.compile(r"(?:https?://|mailto:|#)", re.IGNORECASE)
+_LINKS: Final = regex(r"(?:https?://|mailto:|#)", re.IGNORECASE)
 # Characters that change the direction of text, so that it could be read as another text.
-_TURNING: Final = re.compile("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
+_TURNING: Final = regex("[\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 
 
 # The name of what the Markdown library passes to our rules.

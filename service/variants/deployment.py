@@ -12,6 +12,7 @@ from service.authoring.answers import failed_checks, model_answer
 from service.authoring.lazy import lazy_answers, lazy_shares
 from service.authoring.remarks import Remark
 from service.catalogue import Exercise
+from service.regex import regex
 from service.translations import say
 from service.variants.comparison import Form, VariantDifficulty, difficulty_of, form_of
 from service.variants.variant import built
@@ -20,8 +21,8 @@ from service.variants.variant import built
 _DRAWS: Final = 40
 _LETTERS: Final = "abcdefghijkmnpqrstuvwxyz23456789"
 _LENGTH: Final = 8
-_TABLE: Final = re.compile(r"^\[vary\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
-_DEPLOYED: Final = re.compile(r"^deployed[ \t]*=[ \t]*\[[^\]]*\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
+_TABLE: Final = regex(r"^\[vary\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
+_DEPLOYED: Final = regex(r"^deployed[ \t]*=[ \t]*\[[^\]]*\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
 _PER_LINE: Final = 8
 
 

@@ -3,16 +3,16 @@
 # English needs none.
 
 import json
-import re
 from collections.abc import Iterable
 from typing import Any, Final, NamedTuple
 
+from service.regex import regex
 from service.translations import Language
 
 # A sentence in a script: the first argument of `worded`, or the first two of `wordedFor`.
 _TEXT: Final = r"\s*(\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
-_WORDED: Final = re.compile(rf"\bworded\({_TEXT}")
-_COUNTED: Final = re.compile(rf"\bwordedFor\({_TEXT},{_TEXT}")
+_WORDED: Final = regex(rf"\bworded\({_TEXT}")
+_COUNTED: Final = regex(rf"\bwordedFor\({_TEXT},{_TEXT}")
 # The place in words.js for the names of the dictionaries.
 _PLACE: Final = "const FILES = {};"
 

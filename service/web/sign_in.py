@@ -20,6 +20,7 @@ from service.api.permissions.access import (
     is_same_origin,
 )
 from service.api.permissions.access_problems import access_problem
+from service.regex import regex
 from service.translations import say
 from service.web.assets import Assets
 from service.web.page_answer import page_answer
@@ -30,7 +31,7 @@ from service.web.pages import page
 SESSION: Final = timedelta(hours=10)
 HOME: Final = "/tutor"
 # Paths of tutors' pages, as browsers send them.
-_OURS: Final = re.compile(r"/tutor(?:[/?][A-Za-z0-9/?._~%&=+:@!$'()*,;-]*)?", re.ASCII)
+_OURS: Final = regex(r"/tutor(?:[/?][A-Za-z0-9/?._~%&=+:@!$'()*,;-]*)?", re.ASCII)
 _LONGEST: Final = 2000
 _MOST_FIELDS: Final = 10
 

@@ -3,17 +3,21 @@
 import logging
 import os
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
 from service.catalogue import (
     CatalogueError,
+    Exercise,
     exercise_files,
     load_catalogue,
     open_catalogue,
+    shipped_folder,
 )
-from service.catalogue.live import LiveCatalogue
+from service.catalogue.live import LateCatalogue, LiveCatalogue
+from service.catalogue.load import exercise_in
 from tests.catalogue.test_faults import VALID
 
 
@@ -167,7 +171,7 @@ def test_a_broken_file_prevents_the_start(folder: Path) -> None:
 
 def test_only_reload_returns_a_live_catalogue(folder: Path) -> None:
     assert isinstance(open_catalogue([folder], reload=True), LiveCatalogue)
-    assert isinstance(open_catalogue([folder], reload=False), dict)
+    assert isinstance(open_catalogue([folder], reload=False), LateCatalogue)
 
 
 def test_the_files_are_checked_once_a_second(
@@ -194,3 +198,63 @@ def test_a_folder_for_exercises_to_come_may_be_empty(tmp_path: Path) -> None:
         exercise_files(own, other)
     (other / "arm.toml").write_text("", encoding="utf-8")
     assert exercise_files(own, other) == [other / "arm.toml"]
+
+
+@pytest.fixture
+def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
+    """The ids of the exercises that were compiled, in this order."""
+    found: list[str] = []
+
+    def compile_and_note(file: Path, content: bytes) -> Exercise:
+        found.append(file.stem)
+        return exercise_in(file, content)
+
+    monkeypatch.setattr("service.catalogue.live.exercise_in", compile_and_note)
+    return found
+
+
+def test_a_checked_exercise_is_compiled_when_it_is_first_used(compiled: list[str]) -> None:
+    shipped = shipped_folder()
+    catalogue = open_catalogue([shipped], reload=False)
+    assert len(catalogue) == len(list(shipped.glob("*.toml")))
+    assert compiled == []
+    assert catalogue["planar-rr"] is catalogue["planar-rr"]
+    with pytest.raises(KeyError):
+        catalogue["planar"]
+    assert compiled == ["planar-rr"]
+    assert isinstance(catalogue, LateCatalogue)
+    assert len(list(catalogue.compile_one_by_one())) == len(catalogue) - 1
+    assert sorted(compiled) == sorted(file.stem for file in shipped.glob("*.toml"))
+    at_once = load_catalogue(shipped)
+    assert [(name, each.version) for name, each in catalogue.items()] == [
+        (name, each.version) for name, each in at_once.items()
+    ]
+    assert len(compiled) == len(catalogue)
+
+
+def test_every_file_of_an_author_is_checked_at_the_start(
+    tmp_path: Path, compiled: list[str]
+) -> None:
+    text = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
+    write(tmp_path, "planar-rr", text)  # a copy
+    write(tmp_path, "rrrp", text)  # the text of another exercise
+    write(tmp_path, "arm", VALID)
+    catalogue = open_catalogue([tmp_path], reload=False)
+    assert compiled == ["arm", "rrrp"]
+    # The exercise is that of the start, although the file has changed.
+    write(tmp_path, "planar-rr", "title = ")
+    assert catalogue["planar-rr"].title == load_catalogue(shipped_folder())["planar-rr"].title
+    write(tmp_path, "other", "source = ")
+    with pytest.raises(CatalogueError) as error:
+        open_catalogue([tmp_path], reload=False)
+    assert [(fault.file.stem, fault.reason.partition(":")[0]) for fault in error.value.faults] == [
+        ("other", "is not TOML"), ("planar-rr", "is not TOML"),
+    ]  # fmt: skip
+
+
+def test_threads_that_come_at_once_get_one_exercise() -> None:
+    catalogue = open_catalogue([shipped_folder()], reload=False)
+    names = [file.stem for file in shipped_folder().glob("*.toml")] * 4
+    with ThreadPoolExecutor(8) as pool:
+        found = list(pool.map(catalogue.__getitem__, names))
+    assert all(each is catalogue[name] for name, each in zip(names, found, strict=True))

@@ -10,7 +10,7 @@ import pytest
 
 from service.formats import FORMAT_NAMES, report_format
 from service.formats.class_page import feedback_zip
-from service.formats.documents.html import FORMAT as HTML
+from service.formats.documents.html import HTML
 from service.formats.earlier_outputs import WRITTEN, is_document, is_earlier_output, is_output
 from service.submissions.handed_in import MAX_START, all_handed_in
 from service.translations import LANGUAGES

@@ -12,7 +12,6 @@ import json
 import re
 import sys
 from collections.abc import Iterable, Iterator
-from datetime import UTC, datetime
 from functools import cache
 from io import BytesIO
 from pathlib import Path
@@ -22,7 +21,6 @@ from typing import Any, Final
 import typer
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract
-from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po, write_po
 
 from service.cli.language import paragraphs, with_help
@@ -40,7 +38,6 @@ _KEYWORDS: Final[dict[str, dict[str, Any]]] = {
 }
 # The sentences without a translation. Git ignores this file.
 UNTRANSLATED: Final = ROOT / "untranslated.json"
-_NO_DATE: Final = datetime(2000, 1, 1, tzinfo=UTC)
 # What a text quotes: a name or a piece of a formula.
 _IN_PAGES: Final = re.compile(r"%\(\w+\)s")
 _QUOTED: Final = re.compile(r"`[^`]+`")
@@ -137,7 +134,7 @@ def as_po(found: Catalog) -> bytes:
     # Babel's own comment names a holder of rights and a year.
     found.header_comment = "# Translations of DH Grader; the terms are those of glossary.md."
     write_po(
-        out, found, width=0, omit_header=False, no_location=True, sort_by_file=True,
+        out, found, width=0, omit_header=False, no_location=True, sort_output=True,
         ignore_obsolete=True,
     )  # fmt: skip
     kept = [
@@ -148,22 +145,10 @@ def as_po(found: Catalog) -> bytes:
     return b"".join(kept)
 
 
-def as_mo(found: Catalog) -> bytes:
-    """Return the content of a ``.mo`` file, without untranslated sentences."""
-    # The text has no date, so the header would have that of today.
-    found.creation_date = _NO_DATE
-    out = BytesIO()
-    write_mo(out, found)
-    return out.getvalue()
-
-
 def write(code: str, domain: str, found: Catalog) -> None:
-    """Write the ``.po`` and the ``.mo`` file of a catalogue."""
+    """Write the ``.po`` file of a catalogue."""
     (FOLDER / code).mkdir(exist_ok=True)
-    text = as_po(found)
-    (FOLDER / code / f"{domain}.po").write_bytes(text)
-    compiled = as_mo(read_po(BytesIO(text), locale=code, domain=domain))
-    (FOLDER / code / f"{domain}.mo").write_bytes(compiled)
+    (FOLDER / code / f"{domain}.po").write_bytes(as_po(found))
 
 
 def faults(found: Catalog) -> Iterator[str]:

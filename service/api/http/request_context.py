@@ -7,10 +7,12 @@ from dataclasses import dataclass, field
 from time import perf_counter
 from typing import Final
 
+from service.regex import regex
+
 # The header with the id of a request. The id of a client is kept, and sent with the answer.
 HEADER: Final = "X-Request-ID"
 # Ids as proxies and tracers write them, without characters that a log would have to quote.
-_WELL_FORMED: Final = re.compile(r"[A-Za-z0-9._:=+/-]{1,128}", re.ASCII)
+_WELL_FORMED: Final = regex(r"[A-Za-z0-9._:=+/-]{1,128}", re.ASCII)
 
 
 @dataclass(slots=True)

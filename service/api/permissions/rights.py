@@ -10,7 +10,6 @@ from functools import partial
 from typing import Final
 
 from fastapi import Request
-from fastapi.routing import APIRouter, iter_route_contexts
 
 from service.access.caller import Scope
 
@@ -185,14 +184,3 @@ RIGHTS: Final[Mapping[str, Right]] = {
 def right_of(request: Request) -> Right:
     """Return the right that the route of this request needs."""
     return RIGHTS[f"{request.method} {request.scope['route'].path}"]
-
-
-def require_entries(router: APIRouter) -> None:
-    """Check that the table ``RIGHTS`` has every route of ``router``. Raises LookupError."""
-    routes = {
-        f"{method} {route.path}"
-        for route in iter_route_contexts(router.routes)
-        for method in (route.methods or {"ANY"}) - {"HEAD"}
-    }
-    if absent := sorted(routes - RIGHTS.keys()):
-        raise LookupError(f"RIGHTS has no entry for {', '.join(absent)}")

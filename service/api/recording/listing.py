@@ -1,7 +1,6 @@
 """Routes for tutors and for learners with a token: read recorded attempts."""
 
 import json
-import re
 from dataclasses import replace
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -31,6 +30,7 @@ from service.contract.attempts import (
 )
 from service.contract.courses import CourseName
 from service.contract.statistics import ExerciseStatistics
+from service.regex import regex
 from service.translations import Language, say
 
 if TYPE_CHECKING:  # they load the drivers of databases
@@ -54,7 +54,7 @@ def _written_out(moment: object) -> object:
     return moment
 
 
-_DATE: Final = re.compile(r"\d{4}-\d\d-\d\d[Tt ]")
+_DATE: Final = regex(r"\d{4}-\d\d-\d\d[Tt ]")
 Moment = Annotated[AwareDatetime, BeforeValidator(_written_out), AfterValidator(_in_utc)]
 Since = Annotated[
     Moment | None,

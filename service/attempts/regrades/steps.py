@@ -1,6 +1,5 @@
 """Regrading in steps, each short enough for one request."""
 
-import re
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +12,7 @@ from service.attempts.errors import BadCursorError, StoreDownError
 from service.attempts.regrades.outdated import BATCH, RegradedAttempt, Regrading
 from service.attempts.results.listing import TimePlace, cursor_of, place_of
 from service.attempts.storage.database import in_transaction, reason
+from service.regex import regex
 
 # A step ends after the batch with which it reaches this time or this number of attempts.
 _SECONDS: Final = 1.0
@@ -20,7 +20,7 @@ _MOST: Final = 20 * BATCH
 # The batch size of a preview: fifty costly answers would take seconds.
 _PREVIEW_BATCH: Final = 10
 # The place where a step ended, and the number of attempts that are left after it.
-_CURSOR: Final = re.compile(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<left>[0-9a-f]{1,15})")
+_CURSOR: Final = regex(r"(?P<place>[0-9a-f]{1,20}\.[0-9a-f]{1,20})?:(?P<left>[0-9a-f]{1,15})")
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,6 +1,5 @@
 """Read recorded attempts: lists page by page, or one attempt with its history."""
 
-import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime, timedelta
@@ -19,12 +18,13 @@ from service.attempts.storage.tables import (
     overrides,
 )
 from service.contract.attempts import TakenHint
+from service.regex import regex
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
 _TICK: Final = timedelta(microseconds=1)
 # No number in a database is larger.
 _LARGEST: Final = 2**62
-_CURSOR: Final = re.compile(r"[0-9a-f]+\.[0-9a-f]+")
+_CURSOR: Final = regex(r"[0-9a-f]+\.[0-9a-f]+")
 
 
 def condition(wanted: AttemptFilter) -> ColumnElement[bool]:

@@ -4,7 +4,6 @@ A formula is text in the students' notation (``"l1 + 0.1"``, ``"-90deg"``). ``co
 because it needs the exercise's symbols.
 """
 
-import re
 from typing import Annotated, Final, Literal
 
 from pydantic import (
@@ -20,6 +19,7 @@ from pydantic import (
 )
 from pydantic.fields import FieldInfo
 
+from service.regex import regex
 from service.translations import Sentence, say, template
 
 
@@ -31,7 +31,7 @@ def _no_boolean(value: object) -> object:
 
 # Control characters and the two others that XML forbids (XML 1.0, "Char"), which break a page or a
 # figure; and marks that reorder text, so that it looks different (Unicode, annex 9, "embeddings").
-_HIDDEN: Final = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
+_HIDDEN: Final = regex("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ufffe\uffff]")
 # The longest statement of the shipped exercises has 1,500 characters. Rendering the formulas of a
 # text of this length takes a quarter of a second.
 _LONGEST: Final = 20_000
@@ -91,4 +91,5 @@ class StrictModel(BaseModel):
     docs/exercise-fields.md is generated from the strings below the keys.
     """
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    # Built when first used: most models are used only within others, which build them again.
+    model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)

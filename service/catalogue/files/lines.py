@@ -6,17 +6,18 @@ The text must be valid TOML: this module does not check its syntax.
 import re
 from typing import Final
 
+from service.regex import regex
 from service.translations import say
 
-_BLANK: Final = re.compile(r"(?:[ \t\r\n]|#[^\n]*)*")
-_KEY: Final = re.compile(r"""[ \t]*("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[A-Za-z0-9_-]+)[ \t]*""")
+_BLANK: Final = regex(r"(?:[ \t\r\n]|#[^\n]*)*")
+_KEY: Final = regex(r"""[ \t]*("(?:[^"\\\n]|\\.)*"|'[^'\n]*'|[A-Za-z0-9_-]+)[ \t]*""")
 _STRINGS: Final = (
     r'"""(?:[^\\]|\\.)*?"{3,5}(?!")',
     r"'''.*?'{3,5}(?!')",
     r'"(?:[^"\\\n]|\\.)*"',
     r"'[^'\n]*'",
 )
-_SCALAR: Final = re.compile("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
+_SCALAR: Final = regex("|".join((*_STRINGS, r"[^,\]}#\n]*")), re.DOTALL)
 
 
 def with_line(field: str, line: int | None) -> str:

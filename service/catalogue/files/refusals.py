@@ -2,7 +2,6 @@
 
 import difflib
 import inspect
-import re
 import reprlib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any, Final, get_args
@@ -21,6 +20,7 @@ from service.catalogue.files.schema import (
 )
 from service.catalogue.parts import SPECS
 from service.catalogue.robots.formulas import FieldError
+from service.regex import regex
 from service.translations import Sentence, say, template
 
 _Detail = Mapping[str, Any]
@@ -29,7 +29,7 @@ TableAt = Callable[[_Location], type[BaseModel]]
 
 # For a field of several types, pydantic has a finding for each, with the type at the end of its
 # location.
-_FORM: Final = re.compile(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
+_FORM: Final = regex(r"(?:literal|str-enum)\[.*\]|str|float|constrained-int")
 _CHOICES: Final = {"literal_error": "expected", "enum": "expected",
                    "union_tag_invalid": "expected_tags"}  # fmt: skip
 # What pydantic says; the program adds advice.
@@ -54,7 +54,7 @@ _RANGES: Final[Mapping[str, str]] = {
     "less_than": template("is {value}; write a number less than {limit}"),
     "less_than_equal": template("is {value}; write a number less than or equal to {limit}"),
 }
-_QUOTED: Final = re.compile(r"'([^']*)'")
+_QUOTED: Final = regex(r"'([^']*)'")
 
 
 def refusals(

@@ -45,9 +45,24 @@ class CatalogueError(Exception):
 
 def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
     """Read a TOML file, and return what ``build`` makes of its content. Raises CatalogueError."""
+    return built_of(file, toml_content(file), build, table_at)
+
+
+def toml_content(file: Path) -> bytes:
+    """Return the bytes of a TOML file. Raises CatalogueError."""
     try:
-        text = read_regular(file, _LARGEST).decode()
-    except (OSError, ValueError) as error:
+        return read_regular(file, _LARGEST)
+    except OSError as error:
+        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
+
+
+def built_of(
+    file: Path, content: bytes, build: Callable[[dict[str, Any]], Built], table_at: TableAt
+) -> Built:
+    """Return what ``build`` makes of the bytes of a TOML file. Raises CatalogueError."""
+    try:
+        text = content.decode()
+    except ValueError as error:
         raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
     return read_toml(file, text, build, table_at)
 

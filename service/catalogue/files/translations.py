@@ -7,10 +7,11 @@ from typing import Final
 
 from service.catalogue.files.schema import ExerciseSpec, TranslationSpec
 from service.catalogue.robots.formulas import FieldError
+from service.regex import regex
 from service.translations import say
 
 LANGUAGE_CODES: Final = ("de", "es", "fr", "zh")
-_FORMULA: Final = re.compile(r"(?<!\\)(\$\$?)(.+?)(?<!\\)\1", re.DOTALL)
+_FORMULA: Final = regex(r"(?<!\\)(\$\$?)(.+?)(?<!\\)\1", re.DOTALL)
 
 
 def check_translations(spec: ExerciseSpec) -> None:

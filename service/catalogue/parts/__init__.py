@@ -1,50 +1,40 @@
-"""The answer kinds in exercise files.
+"""The answer kinds in exercise files: the subclass of ``PartSpec`` of each kind."""
 
-A module ``<kind>.py`` has one subclass of ``PartSpec``. This package finds all kinds by their
-modules; nothing else lists them.
-"""
-
-import inspect
 from collections.abc import Mapping
 from functools import reduce
-from importlib import import_module
 from operator import or_
-from pkgutil import iter_modules
-from types import ModuleType
-from typing import TYPE_CHECKING, Annotated, Final, get_args, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Final, get_type_hints
 
 from pydantic import Field
 
 from service.catalogue.part import PartSpec
+from service.catalogue.parts.dh_row import DhRowSpec
+from service.catalogue.parts.dh_table import DhTableSpec
+from service.catalogue.parts.euler_angles import EulerAnglesSpec
+from service.catalogue.parts.find_slip import FindSlipSpec
+from service.catalogue.parts.frames import FramesSpec
+from service.catalogue.parts.link_transforms import LinkTransformsSpec
+from service.catalogue.parts.matrix import MatrixSpec
+from service.catalogue.parts.position import PositionSpec
+from service.catalogue.parts.rotation import RotationSpec
+from service.catalogue.parts.screw_axes import ScrewAxesSpec
+from service.catalogue.parts.transform import TransformSpec
+from service.catalogue.parts.vector import VectorSpec
 from service.catalogue.shapes import AnswerShape
 
-
-class KindError(RuntimeError):
-    """A file of an answer kind is missing or unusable, so that the program cannot start."""
-
-
-def _spec(module: ModuleType) -> type[PartSpec]:
-    kind = module.__name__.rpartition(".")[2]
-    found = [
-        member
-        for member in vars(module).values()
-        if inspect.isclass(member)
-        and issubclass(member, PartSpec)
-        and member.__module__ == module.__name__
-        and not inspect.isabstract(member)
-    ]
-    named = [get_args(spec.model_fields["kind"].annotation) for spec in found]
-    if named != [(kind,)]:
-        raise KindError(
-            f"{module.__file__}: write one subclass of PartSpec with a shape(…) and with "
-            f'kind: Literal["{kind}"], the name of the file'
-        )
-    return found[0]
-
-
 SPECS: Final[Mapping[str, type[PartSpec]]] = {
-    module.name: _spec(import_module(f"{__name__}.{module.name}"))
-    for module in iter_modules(__path__)
+    "dh_row": DhRowSpec,
+    "dh_table": DhTableSpec,
+    "euler_angles": EulerAnglesSpec,
+    "find_slip": FindSlipSpec,
+    "frames": FramesSpec,
+    "link_transforms": LinkTransformsSpec,
+    "matrix": MatrixSpec,
+    "position": PositionSpec,
+    "rotation": RotationSpec,
+    "screw_axes": ScrewAxesSpec,
+    "transform": TransformSpec,
+    "vector": VectorSpec,
 }
 
 _SHAPES: Final[Mapping[str, type[AnswerShape]]] = {

@@ -7,6 +7,7 @@ from typing import Final, TypeAlias
 
 from service.catalogue.files.fields import IDENTIFIER
 from service.catalogue.robots.formulas import FieldError
+from service.regex import regex
 from service.translations import say, say_count
 
 # A number or text, or a group of them: {{side.sign}} is the field ``sign`` of the group ``side``.
@@ -17,7 +18,7 @@ DEPLOYED: Final = "deployed"
 MOST_NAMES: Final = 40
 MOST_CHOICES: Final = 1000
 MOST_DEPLOYED: Final = 500
-_NAME: Final = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
+_NAME: Final = regex(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
 _RANGE: Final = ("from", "to", "step")
 _EXPECTED: Final = say(
     "write a list of choices, such as [0.3, 0.4, 0.5], or a range, such as "

@@ -1,6 +1,5 @@
 """The conditions in ``[vary]``: comparisons of formulas with the varied numbers."""
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
@@ -12,10 +11,11 @@ from numpy.typing import NDArray
 from service.catalogue.robots.formulas import FieldError
 from service.catalogue.varying.choices import VaryValue
 from service.expressions import Expression, ExpressionError, Symbol, Vocabulary, read
+from service.regex import regex
 from service.translations import say
 
 # Signs of two characters come first.
-_SIGN: Final = re.compile("<=|>=|!=|==|[<>=≤≥≠]")
+_SIGN: Final = regex("<=|>=|!=|==|[<>=≤≥≠]")
 # Numbers in a file have a few decimals: a difference below this is rounding.
 _EQUAL: Final = 1e-9
 

@@ -5,7 +5,6 @@ The same exercise id and seed give the same values in every process and Python v
 
 import hashlib
 import json
-import re
 from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from typing import Any, Final
@@ -28,13 +27,14 @@ from service.catalogue.varying.conditions import (
     read_formula,
     vocabulary_of,
 )
+from service.regex import regex
 from service.translations import say
 
 # A seed takes the first of these draws that meets all conditions.
 _DRAWS: Final = 256
 # Draws are checked in groups of this size, because most seeds need one or two.
 _GROUP: Final = 16
-_PLACE: Final = re.compile(r"\{\{([^{}]{1,200})\}\}")
+_PLACE: Final = regex(r"\{\{([^{}]{1,200})\}\}")
 # The fields of a file that do not affect grading.
 _NOT_GRADING: Final = frozenset({
     "checks", "feedback", "attempts", "view", "level", "order", "minutes", "summary", "keywords",

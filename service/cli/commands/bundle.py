@@ -1,7 +1,6 @@
 """`dh-grader bundle`: write a zip file for a grading platform."""
 
 import os
-import re
 from pathlib import Path
 from secrets import token_hex
 from typing import Annotated, Final
@@ -13,11 +12,12 @@ from service.catalogue import exercise_files
 from service.cli.commands.grade import chosen_assignment
 from service.cli.files.output import write
 from service.cli.terminal import give_up, installed_exercise, unwritable
+from service.regex import regex
 from service.settings import load_settings
 from service.translations import say
 from service.variants.variant import NoVariantError
 
-_SECRET: Final = re.compile(r"[0-9a-f]{64}")
+_SECRET: Final = regex(r"[0-9a-f]{64}")
 
 commands = typer.Typer(
     help="Write a zip file for a grading platform.",

@@ -5,7 +5,6 @@ Each line is a JSON object with a report, and the digest of its submission and o
 
 import hashlib
 import json
-import re
 from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
@@ -14,9 +13,10 @@ from typing import Final
 from service.cli.terminal import complain
 from service.formats.documents.json import read_report, rendered
 from service.grading import Report
+from service.regex import regex
 from service.translations import say
 
-_LINE: Final = re.compile(rb'\{"digest": "([0-9a-f]{64})", "report": (\{.*\})\}\n')
+_LINE: Final = regex(rb'\{"digest": "([0-9a-f]{64})", "report": (\{.*\})\}\n')
 # The name of a journal without an output file.
 _DEFAULT_NAME: Final = "dh-grader"
 

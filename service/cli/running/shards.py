@@ -18,6 +18,7 @@ from typing import BinaryIO, Final, TypeVar
 
 import typer
 
+from service.regex import regex
 from service.translations import say
 
 _Item = TypeVar("_Item")
@@ -25,7 +26,7 @@ _Item = TypeVar("_Item")
 MOST_SHARDS: Final = 1000
 # The longest header; a file of something else may have lines of any length.
 _LONGEST_HEADER: Final = 1000
-_FORM: Final = re.compile(r"([0-9]{1,4})/([0-9]{1,4})", re.ASCII)
+_FORM: Final = regex(r"([0-9]{1,4})/([0-9]{1,4})", re.ASCII)
 
 
 class UnusableShardsError(ValueError):

@@ -3,13 +3,14 @@
 A semicolon separates arguments: atan2(1,5; 2).
 """
 
-import re
 from typing import Final
 
+from service.regex import regex
+
 # A number with one comma. In 1,2,3 and in 1.5,2 a comma separates values.
-_NUMBER: Final = re.compile(r"(?<![0-9A-Za-z_.])(?<![0-9],)([0-9]+),([0-9]+)(?![0-9]|[.,][0-9])")
+_NUMBER: Final = regex(r"(?<![0-9A-Za-z_.])(?<![0-9],)([0-9]+),([0-9]+)(?![0-9]|[.,][0-9])")
 # A semicolon between the arguments of a function.
-_BETWEEN_ARGUMENTS: Final = re.compile(r";(?=[^();]*(?:\([^()]*\)[^();]*)*\))")
+_BETWEEN_ARGUMENTS: Final = regex(r";(?=[^();]*(?:\([^()]*\)[^();]*)*\))")
 
 
 def with_points(text: str) -> str:

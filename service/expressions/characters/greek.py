@@ -4,6 +4,8 @@ import re
 from itertools import product
 from typing import Final
 
+from service.regex import regex
+
 NAMES: Final = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
     "η": "eta", "θ": "theta", "ι": "iota", "κ": "kappa", "λ": "lambda", "μ": "mu", "ν": "nu",
@@ -19,7 +21,7 @@ VARIANTS: Final = {"ϑ": "θ", "ϕ": "φ", "ϵ": "ε", "ϱ": "ρ", "ς": "σ", "
 CLASS: Final = "".join(NAMES)
 # A letter's name must begin a word: theta1, but not the eta in beta.
 _SPELLED: Final = "|".join(sorted(LETTERS, key=len, reverse=True))
-_PARTS: Final = re.compile(rf"(?<![^\W\d_])(?:{_SPELLED})|.", re.DOTALL)
+_PARTS: Final = regex(rf"(?<![^\W\d_])(?:{_SPELLED})|.", re.DOTALL)
 
 
 def spellings(name: str) -> set[str]:

@@ -5,6 +5,7 @@ from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.characters.unicode import MARKER
+from service.regex import regex
 
 FUNCTIONS: Final = {
     **{name: name for name in ("sin", "cos", "tan", "exp", "atan", "asin", "acos", "tg", "abs")},
@@ -53,21 +54,21 @@ SWITCHES: Final = frozenset({
 IGNORED: Final = frozenset({"hspace", "vspace", "phantom", "hphantom", "vphantom", "label"})
 BLANK_SYMBOLS: Final = frozenset(",;:!> /()[]")
 
-COMMAND: Final = re.compile(r"\\(?:([A-Za-z]+)\*?|(.))", re.DOTALL)
+COMMAND: Final = regex(r"\\(?:([A-Za-z]+)\*?|(.))", re.DOTALL)
 # Environments around one formula.
-ENVIRONMENT: Final = re.compile(
+ENVIRONMENT: Final = regex(
     r"\s*\{\s*(?:equation|displaymath|math|align|aligned|gather|gathered|split|multline)\*?\s*\}"
 )
 # The product sign of SymPy's latex(..., mul_symbol="ldot").
-DOT_BETWEEN_SPACES: Final = re.compile(r"\\,\s*\.\s*\\,")
+DOT_BETWEEN_SPACES: Final = regex(r"\\,\s*\.\s*\\,")
 # A letter as Mathematica writes it in plain text: \[Theta].
-NAMED_LETTER: Final = re.compile(r"\\\[(Capital|Curly)?([A-Z][a-z]+)\]")
-_BRACE: Final = re.compile(r"\\.|[{}]", re.DOTALL)
-RAISED_CIRCLE: Final = re.compile(
+NAMED_LETTER: Final = regex(r"\\\[(Capital|Curly)?([A-Z][a-z]+)\]")
+_BRACE: Final = regex(r"\\.|[{}]", re.DOTALL)
+RAISED_CIRCLE: Final = regex(
     r"\^\s*(?:\\(?:circ|degree)(?![A-Za-z])|\{\s*\\(?:circ|degree)\s*\}|[°∘◦]|\{\s*[°∘◦]\s*\})"
 )
 _STAR: Final = r"(?:[*∗⋆]|\\(?:ast|star)(?![A-Za-z]))"
-RAISED_STAR: Final = re.compile(rf"\^\s*(?:{_STAR}(?!\*)|\{{\s*{_STAR}\s*\}})|⋆")
+RAISED_STAR: Final = regex(rf"\^\s*(?:{_STAR}(?!\*)|\{{\s*{_STAR}\s*\}})|⋆")
 
 
 def known_prefix(name: str) -> str | None:

@@ -5,22 +5,22 @@ Look-alike or invisible characters are errors. \frac{a}{b} becomes ⟨{a}/{b}⟩
 private brackets that no student can type.
 """
 
-import re
 from typing import Final
 
 from service.expressions.characters import greek, latex_commands, unicode
 from service.expressions.characters.writer import Characters, CharacterWriter
 from service.expressions.errors import Cause, Span, UnreadableError
 from service.expressions.limits import LIMITS
+from service.regex import regex
 
-_PLAIN: Final = re.compile(r"[ -#%-\[\]^_a-z|]*")
-_CHUNK: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} +\-*/().,|\[\]{{}}]+")
-_INDEX: Final = re.compile(rf"[A-Za-z0-9{greek.CLASS} _*]*")
+_PLAIN: Final = regex(r"[ -#%-\[\]^_a-z|]*")
+_CHUNK: Final = regex(rf"[A-Za-z0-9{greek.CLASS} +\-*/().,|\[\]{{}}]+")
+_INDEX: Final = regex(rf"[A-Za-z0-9{greek.CLASS} _*]*")
 # An index as Word writes it in one line: θ_(1).
-_BRACKETED_INDEX: Final = re.compile(r"\(\s*([A-Za-z0-9]+)\s*\)")
-_PLAIN_INDEX: Final = re.compile(r"_[A-Za-z0-9]+")
+_BRACKETED_INDEX: Final = regex(r"\(\s*([A-Za-z0-9]+)\s*\)")
+_PLAIN_INDEX: Final = regex(r"_[A-Za-z0-9]+")
 # An index with a blank before the underscore, or in round brackets.
-_SPACED_INDEX: Final = re.compile(r" _|_\(")
+_SPACED_INDEX: Final = regex(r" _|_\(")
 
 
 def normalise(source: str) -> Characters:

@@ -1,11 +1,11 @@
 """Single characters: their plain spellings, and look-alikes of plain characters."""
 
-import re
 import unicodedata
 from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.errors import Cause
+from service.regex import regex
 
 # Brackets around a fraction with a bar, and the star that marks a joint variable. No student can
 # type them: a typed character of Unicode's private area is refused.
@@ -62,7 +62,7 @@ _CAUSES: Final[dict[str, Cause]] = {
     **dict.fromkeys("ᵒ⁰", "raised_zero"),
     **dict.fromkeys(LOOK_ALIKES, "look_alike"),
 }
-_FRACTION: Final = re.compile("[0-9]⁄[0-9]+")
+_FRACTION: Final = regex("[0-9]⁄[0-9]+")
 
 
 def is_invisible(letter: str) -> bool:

@@ -1,17 +1,17 @@
 """Collect plain characters with their positions in the typed text."""
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Final
 
 from service.expressions.characters import latex_commands, unicode
 from service.expressions.errors import UnreadableError
+from service.regex import regex
 
-_DECIMAL_COMMA: Final = re.compile(r"(?<=[0-9])\{,\}(?=[0-9])")
+_DECIMAL_COMMA: Final = regex(r"(?<=[0-9])\{,\}(?=[0-9])")
 # Words in braces that are longer cannot be the stem of a name.
 _LONGEST_STEM: Final = 24
-_POWER: Final = re.compile(r"[+-]?[0-9]+|[A-Za-z]")
+_POWER: Final = regex(r"[+-]?[0-9]+|[A-Za-z]")
 # These separate cells or lines, so they do not stand for a product.
 BREAKS: Final = frozenset("\t\n\r\v\f\x1c\x1d\x1e\x85\u2028\u2029")
 

@@ -11,12 +11,13 @@ from service.expressions.characters import greek
 from service.expressions.errors import Note, Span
 from service.expressions.parsing.lexing.words import split
 from service.expressions.vocabulary.symbols import Vocabulary
+from service.regex import regex
 from service.translations import say
 
 _STYLE: Final = r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)\s*"
 _LETTERS: Final = rf"(?:\\?[A-Za-z]{{1,12}}[0-9]{{0,3}}|[{greek.CLASS}][0-9]{{0,3}})"
 _SCRIPT: Final = r"[_^]\s*(?:\{[^{}=]{0,24}\}|\\?[A-Za-z0-9*]{1,12})"
-_LEFT: Final = re.compile(
+_LEFT: Final = regex(
     rf"""
     (?: \$ | \s | \\[(\[,;:!] | \\q?quad(?![A-Za-z]) | \\begin\{{[a-z]+\*?\}} ){{0,8}}
     (?P<side>
@@ -33,10 +34,10 @@ _LEFT: Final = re.compile(
     """,
     re.VERBOSE,
 )
-_EQUALS: Final = re.compile(r"=|≔|\\coloneqq(?![A-Za-z])|≈|≡|\\(?:approx|equiv)(?![A-Za-z])|[<>≤≥]")
-_WORD: Final = re.compile(r"[A-Za-z]+[0-9]*")
+_EQUALS: Final = regex(r"=|≔|\\coloneqq(?![A-Za-z])|≈|≡|\\(?:approx|equiv)(?![A-Za-z])|[<>≤≥]")
+_WORD: Final = regex(r"[A-Za-z]+[0-9]*")
 # A name in brackets, which may be a factor of a product. The time, as in q1(t), is not a factor.
-_OF_NAMES: Final = re.compile(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
+_OF_NAMES: Final = regex(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
 
 
 class LeftSide(NamedTuple):

@@ -1,6 +1,5 @@
 """Print a tree as presentation MathML, without rearranging the formula."""
 
-import re
 from html import escape  # that of xml.sax would load an HTTP client
 from typing import Final
 
@@ -15,14 +14,15 @@ from service.expressions.printing.brackets import (
 from service.expressions.printing.symbol_names import stem_and_index
 from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 from service.expressions.vocabulary.symbols import Symbol
+from service.regex import regex
 
 _NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _OPERATORS: Final = {"+": "<mo>+</mo>", "-": "<mo>−</mo>"}
 # The LaTeX that a symbol may declare: a letter or a word, an index, and a superscript.
 _WORD: Final = r"\\(?:mathrm|text|mathit|operatorname)\{([^{}]*)\}"
-_IN_COMMAND: Final = re.compile(_WORD)
+_IN_COMMAND: Final = regex(_WORD)
 _PART: Final = rf"(?:\\[A-Za-z]+|\{{(?:[^{{}}]|{_WORD})*\}}|[A-Za-z0-9*'])"
-_LATEX: Final = re.compile(
+_LATEX: Final = regex(
     rf"(?P<base>{_WORD}|\\?[A-Za-z]+)(?:_(?P<below>{_PART}))?"
     rf"(?:\^(?P<above>{_PART}))?(?:_(?P<below2>{_PART}))?"
 )

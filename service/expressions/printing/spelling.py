@@ -4,7 +4,6 @@ Reports print formulas in the student's spelling: a student who writes ``q1 - 90
 ``theta1 - pi/2``.
 """
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -22,16 +21,17 @@ from service.expressions.tree import (
     children,
 )
 from service.expressions.vocabulary.symbols import Symbol, Vocabulary, normal_form
+from service.regex import regex
 
 _LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 # A word followed by an index: θ_1, th1, q₁; not LaTeX and not q[0].
-_INDEXED: Final = re.compile(rf"([A-Za-z{greek.CLASS}]+_?)([0-9]+|[₀-₉]+)")
-_NAME: Final = re.compile(rf"[A-Za-z{greek.CLASS}][A-Za-z0-9_₀-₉{greek.CLASS}]*")
-_SHORT: Final = re.compile(r"[cs](?:_?[0-9]+|_\{[0-9]+\}|[₀-₉]+)")
-_SHORT_NAME: Final = re.compile(r"[cs][0-9]+")
-_DEGREE_SIGN: Final = re.compile(r"[°º˚∘]|\\circ|\\degree")
-_DEGREE_WORD: Final = re.compile(r"(?<![A-Za-z])deg")
-_PI: Final = re.compile(r"π|(?<![A-Za-z])[Pp]i(?![A-Za-z])")
+_INDEXED: Final = regex(rf"([A-Za-z{greek.CLASS}]+_?)([0-9]+|[₀-₉]+)")
+_NAME: Final = regex(rf"[A-Za-z{greek.CLASS}][A-Za-z0-9_₀-₉{greek.CLASS}]*")
+_SHORT: Final = regex(r"[cs](?:_?[0-9]+|_\{[0-9]+\}|[₀-₉]+)")
+_SHORT_NAME: Final = regex(r"[cs][0-9]+")
+_DEGREE_SIGN: Final = regex(r"[°º˚∘]|\\circ|\\degree")
+_DEGREE_WORD: Final = regex(r"(?<![A-Za-z])deg")
+_PI: Final = regex(r"π|(?<![A-Za-z])[Pp]i(?![A-Za-z])")
 # A constant angle of more than a whole turn in radians is meant in degrees.
 _WHOLE_TURN: Final = 6.2832
 _BARE: Final = ""

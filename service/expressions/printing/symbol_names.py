@@ -1,13 +1,13 @@
 """Split a symbol's name into stem and index: theta1 is θ with index 1."""
 
-import re
 from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.vocabulary.symbols import Symbol
+from service.regex import regex
 
-_INDEXED: Final = re.compile(r"([A-Za-z]+?)_?([0-9]+)")
-_UNDERSCORED: Final = re.compile(r"([A-Za-z0-9]+)_([A-Za-z0-9_]+)")
+_INDEXED: Final = regex(r"([A-Za-z]+?)_?([0-9]+)")
+_UNDERSCORED: Final = regex(r"([A-Za-z0-9]+)_([A-Za-z0-9_]+)")
 
 
 def stem_and_index(name: str) -> tuple[str, str]:

@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("ambiguous_number")
-def repair(failure: Failure) -> Repair:
+def repair_ambiguous_number(failure: Failure) -> Repair:
     """Explain that 2e1 is ambiguous, and suggest the product."""
     product = failure.details["product"]
     message = say(

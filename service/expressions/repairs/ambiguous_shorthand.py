@@ -1,15 +1,14 @@
 """The text sin45, which may be the sine of 45 or of the sum of the joint angles 4 and 5."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
-_GOES_ON = re.compile(r"\.?\w+")
+_GOES_ON = regex(r"\.?\w+")
 
 
 @for_causes("ambiguous_shorthand")
-def repair(failure: Failure) -> Repair:
+def repair_ambiguous_shorthand(failure: Failure) -> Repair:
     """Suggest brackets for sin2q1; explain that sin45 is ambiguous."""
     function, names = failure.details["function"], failure.details["names"]
     digits = "".join(letter for letter in failure.written if letter.isdigit())

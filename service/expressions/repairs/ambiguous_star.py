@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("ambiguous_star")
-def repair(failure: Failure) -> Repair:
+def repair_ambiguous_star(failure: Failure) -> Repair:
     """Explain that the star is ambiguous, and suggest the text without the star."""
     (start, end) = failure.details["star"]
     variable = failure.source[failure.span[0] : start].strip()

@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("ambiguous_unit")
-def repair(failure: Failure) -> Repair:
+def repair_ambiguous_unit(failure: Failure) -> Repair:
     """Ask the student to write the unit after a number."""
     if "inside" in failure.details:
         return _inside(failure)

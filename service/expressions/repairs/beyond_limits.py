@@ -6,7 +6,7 @@ from service.translations import say
 
 
 @for_causes("beyond")
-def repair(failure: Failure) -> Repair:
+def repair_beyond_limits(failure: Failure) -> Repair:
     """Name the limit that is exceeded."""
     limit = failure.details["limit"]
     if limit == "characters":

@@ -5,19 +5,20 @@ import re
 from service.expressions.characters import greek, latex_commands
 from service.expressions.characters.unicode import SUBSCRIPTS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
 _LETTER = rf"\\?[A-Za-z]+|[{greek.CLASS}{''.join(greek.VARIANTS)}]"
 _STEM = rf"{_LETTER}|\\(?:{'|'.join(sorted(latex_commands.STYLES))})\s*\{{\s*(?:{_LETTER})\s*\}}"
 _INDEX = rf"(?:_(?:\{{[^{{}}]*\}}|[A-Za-z0-9]+)|[{''.join(SUBSCRIPTS)}]+|[0-9]+)"
-_BRACED = re.compile(rf"\{{\s*({_STEM})\s*\}}(\s*{_INDEX})")
+_BRACED = regex(rf"\{{\s*({_STEM})\s*\}}(\s*{_INDEX})")
 _WITHOUT_ARGUMENT = {*latex_commands.FUNCTIONS, *latex_commands.PLAIN, *latex_commands.SPACES}
 # After these, a brace encloses an index, a power or the argument of a command.
-_TAKEN = re.compile(r"(?:[_^]|\\([A-Za-z]+))\s*$")
+_TAKEN = regex(r"(?:[_^]|\\([A-Za-z]+))\s*$")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_braced_stem(failure: Failure) -> Repair:
     """Suggest the name without braces, if this is readable."""
     source, (start, end) = failure.source, failure.span
     for match in _BRACED.finditer(source):

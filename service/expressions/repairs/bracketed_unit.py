@@ -1,15 +1,14 @@
 """A unit of angles in brackets, as in headers: 90 [deg], 1.57 (rad)."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_BRACKETED = re.compile(r"(?<=[\w.)}])\s{0,4}([(\[])\s{0,4}(°|deg|rad)\s{0,4}[)\]]")
+_BRACKETED = regex(r"(?<=[\w.)}])\s{0,4}([(\[])\s{0,4}(°|deg|rad)\s{0,4}[)\]]")
 
 
 @for_causes("grammar", "ambiguous_unit")
-def repair(failure: Failure) -> Repair:
+def repair_bracketed_unit(failure: Failure) -> Repair:
     """Suggest the unit without brackets."""
     found = _BRACKETED.search(failure.source)
     if found is None:

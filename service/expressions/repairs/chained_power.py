@@ -6,7 +6,7 @@ from service.translations import say
 
 
 @for_causes("grammar")
-def repair(failure: Failure) -> Repair:
+def repair_chained_power(failure: Failure) -> Repair:
     """Ask the student to add brackets."""
     if failure.terminal() != "POWER" or failure.terminal(1) not in OPERAND_ENDS:
         return None

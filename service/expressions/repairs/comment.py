@@ -1,17 +1,16 @@
 """A comment after the expression: % in MATLAB and LaTeX, # in Python, // and /* in C."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.regex import regex
 from service.translations import say
 
-_COMMENT = re.compile(r"(?<!\\)%|#|//|/\*|\(\*")
+_COMMENT = regex(r"(?<!\\)%|#|//|/\*|\(\*")
 # A word of prose.
-_WORD = re.compile(r"(?!(?:deg|rad|sin|cos|tan)\b)[^\W\d_]{3,}")
-_OPERATOR = re.compile(r"[-+*/^=(,]")
+_WORD = regex(r"(?!(?:deg|rad|sin|cos|tan)\b)[^\W\d_]{3,}")
+_OPERATOR = regex(r"[-+*/^=(,]")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_comment(failure: Failure) -> Repair:
     """Suggest the text without the comment, or one slash instead of two."""
     match = _COMMENT.search(failure.source)
     if match is None:

@@ -1,14 +1,13 @@
 """A dash alone, which tables print for an empty cell or for zero."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.regex import regex
 from service.translations import say
 
-_DASH = re.compile(r"[-–—−‐‑‒―]+")
+_DASH = regex(r"[-–—−‐‑‒―]+")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_dash(failure: Failure) -> Repair:
     """Suggest 0, and say that a dash may mean zero or nothing."""
     if _DASH.fullmatch(failure.source.strip()) is None:
         return None

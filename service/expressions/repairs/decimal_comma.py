@@ -3,14 +3,15 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_THOUSANDS = re.compile(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
+_THOUSANDS = regex(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
 # A number with an apostrophe as decimal mark, and one in which it may separate thousands.
-_APOSTROPHE = re.compile(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
-_IN_THOUSANDS = re.compile(r"[1-9][0-9]{0,2}\W[0-9]{3}")
+_APOSTROPHE = regex(r"(?<![\w.,'’‘´`′°])[0-9]+(['’‘´`′])[0-9]+(?![0-9.,'’‘´`′])")
+_IN_THOUSANDS = regex(r"[1-9][0-9]{0,2}\W[0-9]{3}")
 # A number with a thousands separator, and perhaps another sign as decimal point.
-_GROUPED = re.compile(
+_GROUPED = regex(
     r"(?<![\w.,'’])[1-9][0-9]{0,2}(?P<mark>[.,'’ \u00a0\u202f])[0-9]{3}"
     r"(?P<more>(?:(?P=mark)[0-9]{3})*)(?:(?!(?P=mark))[.,](?P<rest>[0-9]+))?"
     r"(?![0-9]|[.,'’][0-9])"
@@ -18,7 +19,7 @@ _GROUPED = re.compile(
 
 
 @for_causes("grammar", "transpose", "values")
-def repair(failure: Failure) -> Repair:
+def repair_decimal_comma(failure: Failure) -> Repair:
     """Suggest a decimal point, or explain that 1,000 is ambiguous."""
     if grouped := _grouped(failure):
         return grouped

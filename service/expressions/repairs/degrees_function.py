@@ -1,16 +1,15 @@
 """Functions such as acosd and rad2deg, which return degrees, in a text with radians."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.vocabulary.functions import IN_DEGREES
+from service.regex import regex
 from service.translations import say
 
-_MODULE = re.compile(r"[A-Za-z]+\.$")
+_MODULE = regex(r"[A-Za-z]+\.$")
 
 
 @for_causes("degrees")
-def repair(failure: Failure) -> Repair:
+def repair_degrees_function(failure: Failure) -> Repair:
     """Suggest the function that returns the angle in radians: acos for acosd."""
     plain = IN_DEGREES.get(failure.details["name"], "")
     start, end = failure.span

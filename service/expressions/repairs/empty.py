@@ -3,4 +3,6 @@
 from service.expressions.repairs.failure import refusal
 from service.translations import say
 
-repair = refusal("empty", "empty", say("Nothing is written here. If the value is zero, write 0."))
+repair_empty = refusal(
+    "empty", "empty", say("Nothing is written here. If the value is zero, write 0.")
+)

@@ -1,16 +1,15 @@
 """An equation in place of a value: sin(q1) = 0.5, a = b = c."""
 
-import re
-
 from service.expressions.parsing.equation import right_side
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.regex import regex
 from service.translations import say
 
-_EQUALS = re.compile(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
-_NAME = re.compile(r"\s*\\?[^\W\d]\w{0,20}\s*")
+_EQUALS = regex(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
+_NAME = regex(r"\s*\\?[^\W\d]\w{0,20}\s*")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_equation(failure: Failure) -> Repair:
     """Suggest the right side of the equation if each left side is a name."""
     signs = list(_EQUALS.finditer(failure.source))
     if not signs or right_side(failure.source, failure.vocabulary)[1] is not None:

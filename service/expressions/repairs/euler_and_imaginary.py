@@ -1,8 +1,7 @@
 """The letters e, i and j, which are not constants in a formula."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
+from service.regex import regex
 from service.translations import paragraph, say
 
 _REASONS = {
@@ -10,11 +9,11 @@ _REASONS = {
     "i": say("There are no complex numbers here."),
     "j": say("There are no complex numbers here."),
 }
-_POWER = re.compile(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]+))")
+_POWER = regex(r"\s?(?:\^|\*\*)\s?(?:\(([^()]*)\)|\{([^{}]*)\}|([A-Za-z0-9]+))")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_euler_and_imaginary(failure: Failure) -> Repair:
     """Suggest exp(x) for a power of e; for i and j, say that there are no complex numbers."""
     reason = _REASONS.get(failure.details["run"])
     if reason is None:

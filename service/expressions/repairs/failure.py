@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from functools import wraps
-from typing import Final, Protocol
+from typing import Final
 
 from service.expressions.errors import Cause, ExpressionError, Span, UnreadableError, quoted
 from service.expressions.vocabulary.symbols import Vocabulary
@@ -56,21 +56,16 @@ class Failure:
         return token[2], token[3]
 
 
-class RepairRule(Protocol):
-    """A module with the repair rule for one kind of typing mistake."""
-
-    __name__: str
-
-    def repair(self, failure: Failure, /) -> Repair:
-        """Return the error for ``failure``, or None if the rule does not apply."""
+# Returns the error for a failure, or None if the rule does not apply.
+RepairRule = Callable[[Failure], Repair]
 
 
 def for_causes(
     *causes: Cause,
-) -> Callable[[Callable[[Failure], Repair]], Callable[[Failure], Repair]]:
+) -> Callable[[RepairRule], RepairRule]:
     """Return a decorator that limits a rule to these causes."""
 
-    def decorate(rule: Callable[[Failure], Repair]) -> Callable[[Failure], Repair]:
+    def decorate(rule: RepairRule) -> RepairRule:
         @wraps(rule)
         def repair(failure: Failure) -> Repair:
             return rule(failure) if failure.cause in causes else None

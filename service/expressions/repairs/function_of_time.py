@@ -1,15 +1,14 @@
 """q1(t): a joint variable as a function of time."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_OF_TIME = re.compile(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
+_OF_TIME = regex(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_function_of_time(failure: Failure) -> Repair:
     """Suggest the text without (t)."""
     without_time, count = _OF_TIME.subn("", failure.source)
     if failure.details["run"] != "t" or not count:

@@ -1,17 +1,16 @@
 """Powers of functions: sin^-1(x), which may mean asin(x) or 1/sin(x), and sin^k(x)."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_INVERSE = re.compile(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
+_INVERSE = regex(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
 # An exponent -1 in the source text, in any notation.
-_END = re.compile(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)")
+_END = regex(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)")
 
 
 @for_causes("function_power")
-def repair(failure: Failure) -> Repair:
+def repair_function_power(failure: Failure) -> Repair:
     """Suggest the inverse function for ^-1. Show how to write other powers: (sin(x))^p."""
     name, exponent = failure.details["name"], failure.details["exponent"]
     place = failure.details["function"]

@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("grammar")
-def repair(failure: Failure) -> Repair:
+def repair_function_without_argument(failure: Failure) -> Repair:
     """Ask for the argument; suggest sin(-q1) for sin -q1."""
     if failure.terminal(1) == "FUNCTION":
         span = failure.place(1)

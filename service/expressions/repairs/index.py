@@ -1,16 +1,15 @@
 """Indices in brackets that name no symbol (q[6] with six joints) or have mixed styles."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
 # A whole number in brackets; then the name before it is unknown, not the index.
-_NUMBERED = re.compile(r"\[\s{0,8}\d+\s{0,8}\]")
+_NUMBERED = regex(r"\[\s{0,8}\d+\s{0,8}\]")
 
 
 @for_causes("index", "name")
-def repair(failure: Failure) -> Repair:
+def repair_index(failure: Failure) -> Repair:
     """Say how the index is counted, and suggest the name without brackets."""
     if failure.cause == "name":
         return _no_number(failure)

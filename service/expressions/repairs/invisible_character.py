@@ -8,7 +8,7 @@ from service.translations import say
 
 
 @for_causes("invisible")
-def repair(failure: Failure) -> Repair:
+def repair_invisible_character(failure: Failure) -> Repair:
     """Name the character, and suggest the text without invisible characters."""
     letter = failure.written
     name = unicodedata.name(letter, f"U+{ord(letter):04X}").lower()

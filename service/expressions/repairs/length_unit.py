@@ -1,28 +1,28 @@
 r"""Units after a length: 0.5 m, 30cm, \SI{0.5}{\metre}."""
 
-import re
 import unicodedata
 
 from service.expressions.errors import Span
 from service.expressions.parsing.lexing.tokens import OPERAND_ENDS
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_UNIT = re.compile(
+_UNIT = regex(
     r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
 )
 _METRES = frozenset({"m", "meter", "meters", "metre", "metres"})
-_QUANTITY = re.compile(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([^{}]*?)\s{0,4}\}")
+_QUANTITY = regex(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([^{}]*?)\s{0,4}\}")
 # In l2 s(q1), s is the sine and not the second.
 _FUNCTIONS = frozenset({"s", "C"})
 _OPERANDS = OPERAND_ENDS - {"UNIT"}
-_OPENING = re.compile(r"(?<=[\w.)}])\s{0,4}[(\[]\s{0,4}\Z")
-_CLOSING = re.compile(r"\s{0,4}[)\]]")
+_OPENING = regex(r"(?<=[\w.)}])\s{0,4}[(\[]\s{0,4}\Z")
+_CLOSING = regex(r"\s{0,4}[)\]]")
 _WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise.")
 
 
 @for_causes("name", "quantity")
-def repair(failure: Failure) -> Repair:
+def repair_length_unit(failure: Failure) -> Repair:
     """Ask for a number without a unit; suggest this number if the unit is metres."""
     if failure.cause == "quantity":
         return _quantity(failure)

@@ -6,7 +6,7 @@ from service.translations import say
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_letter_x(failure: Failure) -> Repair:
     """Suggest * for an x between two values."""
     run, (start, end) = failure.details["run"], failure.span
     after = failure.source[end - len(run) + 1 :].strip()

@@ -8,7 +8,7 @@ from service.translations import say
 
 
 @for_causes("look_alike")
-def repair(failure: Failure) -> Repair:
+def repair_look_alike_character(failure: Failure) -> Repair:
     """Name the letter, and suggest the text with all look-alike letters replaced."""
     letter = failure.written
     plain = LOOK_ALIKES[letter]

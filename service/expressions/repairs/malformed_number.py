@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("values")
-def repair(failure: Failure) -> Repair:
+def repair_malformed_number(failure: Failure) -> Repair:
     """Say that the number has more than one point."""
     if not failure.details["number"] or "." not in failure.written:
         return None

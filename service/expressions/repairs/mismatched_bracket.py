@@ -1,16 +1,15 @@
 """A bracket that is closed by a bracket of another kind: (q1 + q2]."""
 
-import re
-
 from service.expressions.characters.unicode import CLOSE
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
-_COMMAND = re.compile(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
+_COMMAND = regex(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
 
 
 @for_causes("mismatch")
-def repair(failure: Failure) -> Repair:
+def repair_mismatched_bracket(failure: Failure) -> Repair:
     """Name both brackets and say where they are. Suggest the closing bracket that fits."""
     opener, wanted = failure.details["opener"], failure.details["wanted"]
     first = quoted(failure.source[slice(*opener)])

@@ -8,7 +8,7 @@ _BEFORE_VALUE = OPERATORS | {"LEFT", "OPEN", "COMMA", "TIGHT", "JOIN"}
 
 
 @for_causes("grammar", "ambiguous_unit")
-def repair(failure: Failure) -> Repair:
+def repair_missing_operand(failure: Failure) -> Repair:
     """Say where a value is missing. Suggest pi for PI()."""
     before, terminal = failure.terminal(1), failure.terminal()
     if before and before not in _BEFORE_VALUE:

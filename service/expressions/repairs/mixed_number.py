@@ -1,15 +1,14 @@
 r"""A number before a fraction, which may be a sum or a product: 2½, 2\frac{1}{2}."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
-_NUMBER = re.compile(r"([0-9.]+)\s*$")
+_NUMBER = regex(r"([0-9.]+)\s*$")
 
 
 @for_causes("mixed_number")
-def repair(failure: Failure) -> Repair:
+def repair_mixed_number(failure: Failure) -> Repair:
     """Explain that 2½ may be a sum or a product, and suggest the sum."""
     fraction = failure.details["fraction"]
     start, end = failure.span

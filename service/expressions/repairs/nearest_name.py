@@ -1,11 +1,11 @@
 """Find the known name that is most similar to an unknown name."""
 
 import difflib
-import re
 
 from service.expressions.parsing.lexing.words import split
 from service.expressions.vocabulary.functions import IN_DEGREES, OF_DEGREES, PI, SPELLINGS
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
+from service.regex import regex
 
 # A longer run is not one misspelt name, and comparing it would be slow.
 _LONGEST_SLIP = 24
@@ -14,7 +14,7 @@ _FEWEST_LETTERS = 3
 # one with an added letter (coss).
 _LEAST = 0.75
 _LEAST_OF_EXCHANGED = 0.6
-_DIGITS = re.compile(r"[0-9]+")
+_DIGITS = regex(r"[0-9]+")
 # Rare names, which are never suggested.
 _OF_DEGREES = frozenset({*OF_DEGREES, *IN_DEGREES, "deg2rad", "rad2deg"})
 

@@ -3,7 +3,7 @@
 from service.expressions.repairs.failure import refusal
 from service.translations import say
 
-repair = refusal(
+repair_not_finite = refusal(
     "not_finite",
     "not_finite",
     say("This number is infinite, undefined or too large. Write a finite number."),

@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("invalid_shorthand")
-def repair(failure: Failure) -> Repair:
+def repair_not_revolute(failure: Failure) -> Repair:
     """Say why the joint has no angle."""
     # There is no suggestion: the exercise may test whether students leave out the joint.
     joint = failure.details["joint"]

@@ -1,15 +1,14 @@
 """±, +/- and +-, which mean two values."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_TYPED = re.compile(r"\+\s*/\s*-")
+_TYPED = regex(r"\+\s*/\s*-")
 
 
 @for_causes("plus_minus", "grammar")
-def repair(failure: Failure) -> Repair:
+def repair_plus_minus(failure: Failure) -> Repair:
     """Ask the student for one of the two values."""
     typed = _TYPED.search(failure.source) if failure.cause == "grammar" else None
     if failure.cause == "grammar" and typed is None:

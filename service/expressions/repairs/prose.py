@@ -1,13 +1,12 @@
 """Words instead of a value: variable, depends on theta, n/a."""
 
-import re
-
 from service.expressions.parsing.lexing.words import split
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.regex import regex
 from service.translations import say
 
-_WORD = re.compile(r"[A-Za-zÀ-ÿ]+")
-_FORMULA = re.compile(r"[-+*/^=(){}\[\]_0-9\\]")
+_WORD = regex(r"[A-Za-zÀ-ÿ]+")
+_FORMULA = regex(r"[-+*/^=(){}\[\]_0-9\\]")
 _PHRASES = {
     *("n/a", "n.a.", "na", "none", "null", "nil", "variable", "var", "unknown", "tbd", "idk"),
     *("any", "free", "same", "constant", "const", "undefined", "joint variable", "varies"),
@@ -17,7 +16,7 @@ _PHRASES = {
 _NUMBERS = {"zero": "0", "one": "1", "two": "2", "ninety": "90", "half": "1/2", "nil": "0"}
 
 
-def repair(failure: Failure) -> Repair:
+def repair_prose(failure: Failure) -> Repair:
     """Ask the student for a number or a formula."""
     text = failure.source.strip().lower()
     number = _NUMBERS.get(text)

@@ -3,16 +3,17 @@
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error
+from service.regex import regex
 from service.translations import say
 
-_QUOTED = re.compile(
+_QUOTED = regex(
     r"(?:\b(?:\w+\.)?(?:Symbol|symbols|sym|var|syms)\(\s*)?([\"'“”‘’])([^\"'“”‘’]*)[\"'“”‘’](\s*\))?"
 )
 # A mark between digits, as in 1’5, does not quote a name.
-_BETWEEN_DIGITS = re.compile(r"[0-9][\"'“”‘’]+[0-9]")
+_BETWEEN_DIGITS = regex(r"[0-9][\"'“”‘’]+[0-9]")
 
 
-def repair(failure: Failure) -> Repair:
+def repair_quotes(failure: Failure) -> Repair:
     """Suggest the text without quotation marks."""
     match = _QUOTED.search(failure.source)
     if match is None or _BETWEEN_DIGITS.search(failure.source):

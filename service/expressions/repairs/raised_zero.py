@@ -1,19 +1,18 @@
 """A raised 0 or o as degree sign: 90⁰, 90^0, 90^o."""
 
-import re
-
 from service.expressions.errors import Span
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
 _LETTER = "[oO]"
 _STYLED = rf"(?:\\[a-z]+\s*\{{\s*{_LETTER}\s*\}}|{_LETTER})"
 # The second form, 90o, comes from copying a raised sign as plain text.
-_RAISED = re.compile(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o")
+_RAISED = regex(rf"\^\s*(?:\{{\s*{_STYLED}\s*\}}|{_STYLED})|(?<=[0-9])\s*o")
 
 
 @for_causes("raised_zero", "name")
-def repair(failure: Failure) -> Repair:
+def repair_raised_zero(failure: Failure) -> Repair:
     """Suggest the degree sign, or explain that 90^0 may also be a power."""
     span = _raised_letter(failure) if failure.cause == "name" else failure.span
     if span is None:

@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("invalid_shorthand")
-def repair(failure: Failure) -> Repair:
+def repair_repeated_joint(failure: Failure) -> Repair:
     """Ask the student to write out the sum."""
     if failure.details["joint"] not in failure.vocabulary.turning:
         return None

@@ -3,18 +3,19 @@ r"""A subscript that is a formula: c_{\theta_1+\theta_2}, c_{12-4}, θ₁₊₂.
 import re
 
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
 _FUNCTIONS = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
 # Numbers in a subscript. In s_{1+2} they are joints; in a sum of angles they would be numbers.
-_BARE = re.compile(r"(?:^|[^A-Za-z0-9_{])\s*[0-9]")
+_BARE = regex(r"(?:^|[^A-Za-z0-9_{])\s*[0-9]")
 # Books write c_{12-4} for cos(θ1 + θ2 - θ4). In c_{1-23}, the minus may apply to 2 or to 23.
 _MINUS = str.maketrans("−–", "--")
-_JOINTS = re.compile(r"[1-9]{1,9}(?:\+[1-9]{1,9}|-[1-9](?![1-9])){1,9}")
+_JOINTS = regex(r"[1-9]{1,9}(?:\+[1-9]{1,9}|-[1-9](?![1-9])){1,9}")
 
 
 @for_causes("subscript")
-def repair(failure: Failure) -> Repair:
+def repair_subscript(failure: Failure) -> Repair:
     r"""Ask for a plain index, and suggest a cosine such as cos(θ1+θ2) for c_{\theta_1+\theta_2}."""
     start, end = failure.span
     inside = failure.details["index"]

@@ -1,19 +1,16 @@
 """tan2(y, x) instead of atan2(y, x)."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes
+from service.regex import regex
 from service.translations import say
 
-_TAN2 = re.compile(
-    r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()"
-)
+_TAN2 = regex(r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()")
 
 _KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
 
 
 @for_causes("name", "grammar")
-def repair(failure: Failure) -> Repair:
+def repair_tan_of_two(failure: Failure) -> Repair:
     """Suggest atan2."""
     match = _TAN2.search(failure.source)
     if match is None or match.end() > failure.span[1] or match.group() in _KNOWN:

@@ -8,7 +8,7 @@ OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})
 
 
 @for_causes("grammar")
-def repair(failure: Failure) -> Repair:
+def repair_trailing_operator(failure: Failure) -> Repair:
     """Suggest the text without the operator."""
     if failure.terminal() != END or failure.terminal(1) not in OPERATORS:
         return None

@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("grammar", "character")
-def repair(failure: Failure) -> Repair:
+def repair_trailing_punctuation(failure: Failure) -> Repair:
     """Suggest the text without the final punctuation."""
     text = failure.source.rstrip().rstrip("$").rstrip()
     kept = text.rstrip(".,: ")

@@ -1,17 +1,16 @@
 """A prime or an apostrophe: a transpose in MATLAB, a derivative or another symbol on paper."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
 # A mark after a number may be its unit, such as minutes of an angle, so it must not be removed.
-_NUMBER = re.compile(r"(?<![\w.])[0-9.]+\s*$")
-_RAISED_T = re.compile(r"\^\s*\{?\s*(?:\\top|T)\s*\}?|\.'")
+_NUMBER = regex(r"(?<![\w.])[0-9.]+\s*$")
+_RAISED_T = regex(r"\^\s*\{?\s*(?:\\top|T)\s*\}?|\.'")
 
 
 @for_causes("transpose", "name", "command", "character")
-def repair(failure: Failure) -> Repair:
+def repair_transpose(failure: Failure) -> Repair:
     """Suggest the text without the prime."""
     # There is no suggestion if this would join digits.
     span = failure.span

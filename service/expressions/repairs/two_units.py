@@ -3,4 +3,4 @@
 from service.expressions.repairs.failure import refusal
 from service.translations import say
 
-repair = refusal("two_units", "two_units", say("This has two units. Write one."))
+repair_two_units = refusal("two_units", "two_units", say("This has two units. Write one."))

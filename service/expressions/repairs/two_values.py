@@ -5,7 +5,7 @@ from service.translations import say
 
 
 @for_causes("values", "grammar")
-def repair(failure: Failure) -> Repair:
+def repair_two_values(failure: Failure) -> Repair:
     """Ask the student for one value, or for an operator between the two values."""
     start, end = failure.span
     if failure.terminal(1) and failure.terminal() != "COMMA":

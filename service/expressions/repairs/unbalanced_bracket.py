@@ -10,7 +10,7 @@ _BEFORE_BRACKET = OPERAND_ENDS | {"LEFT"}
 
 
 @for_causes("unclosed", "grammar")
-def repair(failure: Failure) -> Repair:
+def repair_unbalanced_bracket(failure: Failure) -> Repair:
     """Suggest closing all brackets at the end of the text, or removing a superfluous one."""
     if failure.cause == "unclosed":
         return _error(failure, failure.span, f"{failure.source}}}")

@@ -1,22 +1,21 @@
 """A unit after a variable: (q1 + 90)deg. Only numbers have units."""
 
-import re
-
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
+from service.regex import regex
 from service.translations import say
 
 _UNITS = {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}
 _IN_DEGREES = {"°", "deg", "degree", "degrees"}
 # A number without a unit that is a term by itself.
-_TERM = re.compile(
+_TERM = regex(
     r"(?<![\w.^*/°])(?:(?<=^)|(?<=[-+(\[{,;=\s]))((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?![\w.^]))"
     r"(?=\s*(?:[-+)\]},;]|$))"
 )
-_BRACKETS = re.compile(r"[(\[{|\\]")
+_BRACKETS = regex(r"[(\[{|\\]")
 
 
 @for_causes("unit_on_variable")
-def repair(failure: Failure) -> Repair:
+def repair_unit_on_variable(failure: Failure) -> Repair:
     """Ask the student to write the unit after a number."""
     name = quoted(failure.source[slice(*failure.details["variable"])])
     message = say("A unit belongs after a number. Write it there, and not after {name}.", name=name)

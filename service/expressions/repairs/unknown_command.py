@@ -6,7 +6,7 @@ from service.translations import say
 
 
 @for_causes("command", "argument")
-def repair(failure: Failure) -> Repair:
+def repair_unknown_command(failure: Failure) -> Repair:
     r"""Name the command; suggest \cos q for \cosq."""
     name = failure.details["name"]
     if failure.cause == "argument":

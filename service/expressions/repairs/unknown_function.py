@@ -1,7 +1,5 @@
 """Functions that no answer needs (log, sinh, max), and other names of known functions (cosine)."""
 
-import re
-
 from service.expressions.parsing.lexing.words import split
 from service.expressions.repairs.failure import (
     Failure,
@@ -12,6 +10,7 @@ from service.expressions.repairs.failure import (
     undeclared,
 )
 from service.expressions.vocabulary.functions import ARITY, REFUSED
+from service.regex import regex
 from service.translations import listed, paragraph, say
 
 _RENAMED = {
@@ -24,7 +23,7 @@ _RENAMED = {
 }  # fmt: skip
 _SHORT = frozenset("csCS")
 # Numbers in brackets: MATLAB's c(1, 2) is an element of an array, and SymPy's S(1) is a number.
-_OF_NUMBERS = re.compile(r"\(\s*[0-9]+(?:\s*[,;]\s*[0-9]+)*\s*\)")
+_OF_NUMBERS = regex(r"\(\s*[0-9]+(?:\s*[,;]\s*[0-9]+)*\s*\)")
 
 
 def _after_factor(failure: Failure) -> str | None:
@@ -35,7 +34,7 @@ def _after_factor(failure: Failure) -> str | None:
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_unknown_function(failure: Failure) -> Repair:
     """List the functions that can be used; for cosine, suggest the known name cos."""
     name = failure.details["run"].replace("_", "")
     if name in REFUSED:

@@ -1,22 +1,21 @@
 """A variable that no joint has: q7 with six joints, theta12, theta3 if joint 3 slides."""
 
-import re
-
 from service.expressions.characters import greek
 from service.expressions.errors import Span
 from service.expressions.parsing.lexing.words import split
 from service.expressions.printing.symbol_names import symbol_latex
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, quoted
 from service.expressions.vocabulary.symbols import Vocabulary, normal_form
+from service.regex import regex
 from service.translations import paragraph, say
 
-_JOINT = re.compile(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
+_JOINT = regex(rf"(?P<stem>[A-Za-z{greek.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
 _STEMS = frozenset({"q", "theta", "θ", "th"})
-_AS_TYPED = re.compile(r"[^0-9₀-₉]*(?:[0-9]+|[₀-₉]+)(?:\s*\})?")
+_AS_TYPED = regex(r"[^0-9₀-₉]*(?:[0-9]+|[₀-₉]+)(?:\s*\})?")
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_unknown_joint(failure: Failure) -> Repair:
     """List the robot's joints; suggest the sum of angles for theta12."""
     vocabulary = failure.vocabulary
     match = _JOINT.fullmatch(normal_form(failure.details["run"]))

@@ -8,20 +8,21 @@ from service.expressions.parsing.lexing.words import Piece, split
 from service.expressions.repairs.failure import Failure, Repair, error, for_causes, undeclared
 from service.expressions.repairs.nearest_name import nearest
 from service.expressions.vocabulary.symbols import Kind, Symbol, Vocabulary, normal_form
+from service.regex import regex
 from service.translations import paragraph, say
 
-_INDEXED = re.compile(r"([^0-9]+)[0-9]+")
-_STEM = re.compile(r"[^0-9_]+")
+_INDEXED = regex(r"([^0-9]+)[0-9]+")
+_STEM = regex(r"[^0-9_]+")
 # The letters that textbooks use for lengths.
 _OF_LENGTHS: Final = frozenset("abdhlrLADHR")
 # A short name of a joint angle. It is not read as one: t may also be a time or a translation.
-_SHORT_ANGLE: Final = re.compile(r"t([0-9]{1,2})")
+_SHORT_ANGLE: Final = regex(r"t([0-9]{1,2})")
 _OF_JOINTS: Final = frozenset({"q", "theta", "θ"})
 _LISTED: Final = 8
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_unknown_symbol(failure: Failure) -> Repair:
     """Suggest the most similar declared name, or list the names that may be meant."""
     run, vocabulary = failure.details["run"], failure.vocabulary
     message = undeclared(failure)

@@ -6,7 +6,7 @@ from service.translations import say
 
 
 @for_causes("name")
-def repair(failure: Failure) -> Repair:
+def repair_wrong_case(failure: Failure) -> Repair:
     """Suggest the name as it is declared."""
     known = other_case(failure.details["run"], failure.vocabulary, failure.details["called"])
     if known is None:

@@ -5,7 +5,7 @@ from service.translations import paragraph, say
 
 
 @for_causes("arguments")
-def repair(failure: Failure) -> Repair:
+def repair_wrong_number_of_arguments(failure: Failure) -> Repair:
     """Say how many arguments the function takes, and suggest atan2 for atan(y, x)."""
     name, wanted = failure.details["name"], failure.details["wanted"]
     places = failure.details["places"]

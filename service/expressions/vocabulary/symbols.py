@@ -1,6 +1,5 @@
 """The names that an expression may use."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -8,13 +7,14 @@ from typing import Final, Literal
 
 from service.expressions.characters import greek
 from service.expressions.vocabulary.functions import RESERVED
+from service.regex import regex
 from service.translations import say
 
 Kind = Literal["angle", "length", "number"]
 
-_CANONICAL: Final = re.compile(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
-_NORMAL: Final = re.compile(rf"[A-Za-z{greek.CLASS}][A-Za-z0-9{greek.CLASS}]*")
-_SUBSCRIPT: Final = re.compile(r"_\{\s*([^{}]*?)\s*\}")
+_CANONICAL: Final = regex(r"[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*")
+_NORMAL: Final = regex(rf"[A-Za-z{greek.CLASS}][A-Za-z0-9{greek.CLASS}]*")
+_SUBSCRIPT: Final = regex(r"_\{\s*([^{}]*?)\s*\}")
 _SUBSCRIPT_DIGITS: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 
 

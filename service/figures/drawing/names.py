@@ -1,6 +1,5 @@
 """Labels for names of symbols: θ with index 1 for theta1, and the room that a label needs."""
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -8,6 +7,7 @@ from xml.sax.saxutils import escape
 
 from service.expressions.characters.greek import LETTERS
 from service.expressions.printing.symbol_names import stem_and_index
+from service.regex import regex
 
 # The font size in pixels; the size of an index as a share of it, and how much it is lowered.
 SIZE: Final = 17.0
@@ -23,7 +23,7 @@ _WIDTHS: Final = {
 }
 _WIDEST: Final = 0.86
 # Signs, numbers and names of frames are upright.
-_UPRIGHT: Final = re.compile(r"[ +,]*|[0-9.]+|\{.*")
+_UPRIGHT: Final = regex(r"[ +,]*|[0-9.]+|\{.*")
 
 
 @dataclass(frozen=True, slots=True)

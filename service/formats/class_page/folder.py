@@ -1,7 +1,6 @@
 """The folder of a class: a page for each submission, then the index."""
 
 import io
-import re
 import zipfile
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import PurePath
@@ -12,6 +11,7 @@ from service.formats.class_page.index import INDEX, index
 from service.formats.class_page.overview import Overview
 from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.report_format import Document, Setting
+from service.regex import regex
 
 # The subfolder of the pages.
 PAGES: Final = "reports"
@@ -19,7 +19,7 @@ PAGES: Final = "reports"
 FEEDBACK: Final = "feedback.html"
 
 # The student and the number in the names that Moodle gives.
-_MOODLE: Final = re.compile(r"(?P<name>.+?)_(?P<number>\d+)(?:_assignsubmission_.*)?")
+_MOODLE: Final = regex(r"(?P<name>.+?)_(?P<number>\d+)(?:_assignsubmission_.*)?")
 
 Pages = Callable[[Iterable[GradedSubmission], Setting], Iterator[bytes]]
 Folder = Callable[[Iterable[GradedSubmission], Setting], Iterator[Document]]

@@ -10,6 +10,7 @@ from service.formats.shared.part_results import part_results
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import PartReport, Severity
 from service.grading.report import messages_of
+from service.regex import regex
 
 _HEAD: Final = ("submission", "points", "max_points", "score", "passed", "problem", "messages")
 # Messages that cost points or may name a slip. Notes and hints are not listed.
@@ -49,4 +50,4 @@ def _codes(part: PartReport) -> list[str]:
     return [f"{part.part}.{code}" for code in dict.fromkeys(found)]
 
 
-FORMAT: Final = ReportFormat(_pieces, re.compile(re.escape(",".join(_HEAD)).encode()))
+CSV: Final = ReportFormat(_pieces, regex(re.escape(",".join(_HEAD)).encode()))

@@ -9,6 +9,7 @@ from service.formats.shared.graded import GradedSubmission
 from service.formats.shared.part_results import PartResult, part_results
 from service.formats.shared.plain_text import points
 from service.formats.shared.report_format import ReportFormat, Setting
+from service.regex import regex
 from service.translations import Language, say, told
 
 
@@ -42,6 +43,6 @@ def _earned(result: PartResult, language: Language) -> str:
     return points(result.points, result.max_points)
 
 
-_MARK: Final = re.compile(re.escape(",".join(spreadsheet.GRADEBOOK_HEAD)).encode() + b"\r?\n")
+_MARK: Final = regex(re.escape(",".join(spreadsheet.GRADEBOOK_HEAD)).encode() + b"\r?\n")
 
-FORMAT: Final = ReportFormat(_pieces, _MARK)
+GRADEBOOK: Final = ReportFormat(_pieces, _MARK)

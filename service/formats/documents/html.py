@@ -15,6 +15,7 @@ from service.formats.shared.part_results import part_results
 from service.formats.shared.plain_text import points, points_in_words
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import RowReport
+from service.regex import regex
 from service.translations import Language
 
 STYLE: Final = style_sheet(Path(__file__).with_suffix(".css"))
@@ -56,10 +57,10 @@ def _columns_of(rows: Sequence[RowReport]) -> list[str]:
     return [cell.label for cell in max((row.cells for row in rows), key=len)]
 
 
-_MARK: Final = re.compile(
+_MARK: Final = regex(
     rb'<!doctype html>.{0,500}?<meta name="generator" content="DH Grader', re.DOTALL
 )
 
-FORMAT: Final = ReportFormat(
+HTML: Final = ReportFormat(
     _pieces, _MARK, for_students=True, shows_entries=True, folder=class_folder(_pieces)
 )

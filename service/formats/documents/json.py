@@ -1,7 +1,6 @@
 """Reports as a JSON list with one entry for each file."""
 
 import json
-import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -11,6 +10,7 @@ from service.formats.shared.graded import GradedFile, GradedSubmission
 from service.formats.shared.json_document import printable
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import Report
+from service.regex import regex
 
 _REPORT: Final = TypeAdapter(Report)
 
@@ -59,4 +59,4 @@ def _pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[byt
     yield b"[]\n" if opening == b"[\n" else b"\n]\n"
 
 
-FORMAT: Final = ReportFormat(_pieces, re.compile(rb'\[\n\{"submission": "'))
+JSON: Final = ReportFormat(_pieces, regex(rb'\[\n\{"submission": "'))

@@ -12,6 +12,7 @@ from service.formats.shared.markdown_text import escaped, part_details
 from service.formats.shared.part_results import part_results
 from service.formats.shared.plain_text import percent, points
 from service.formats.shared.report_format import ReportFormat, Setting
+from service.regex import regex
 from service.translations import Language, say, told
 from service.translations.sentence import Translation
 
@@ -48,6 +49,6 @@ def _details(submission: GradedSubmission, language: Language) -> str:
     return "".join(sections)
 
 
-_MARK: Final = re.compile(rb"(?:\| [^|\n]{1,40} ){4}\|\n" + re.escape(_ALIGNED).encode())
+_MARK: Final = regex(rb"(?:\| [^|\n]{1,40} ){4}\|\n" + re.escape(_ALIGNED).encode())
 
-FORMAT: Final = ReportFormat(_pieces, _MARK, for_students=True)
+MARKDOWN: Final = ReportFormat(_pieces, _MARK, for_students=True)

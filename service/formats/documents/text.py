@@ -3,7 +3,6 @@
 Signs carry the meaning, so the report can also be read without colours.
 """
 
-import re
 from collections.abc import Iterable, Iterator, Mapping
 from itertools import chain, islice
 from typing import Final
@@ -27,6 +26,7 @@ from service.formats.shared.messages import (
 from service.formats.shared.plain_text import percent, points, points_in_words, visible
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import PartReport, Report, Severity, Verdict
+from service.regex import regex
 from service.translations import say, told
 from service.translations.sentence import Translation
 
@@ -255,9 +255,9 @@ def _can_write(text: str, encoding: str) -> bool:
 
 
 # The first line of a report on a part, or a line of a class: ``passed   8 / 8   100 %   anna``.
-_MARK: Final = re.compile(
+_MARK: Final = regex(
     rb"(?:== [^\n]*\n)?[^\s()]{1,60} \([a-z_]{1,40}\): \S"
     rb"|(?:[^\n]*\n){0,200}?[^\n]{1,60} [\d.]+ / [\d.]+ +[\d.]+ %   \S"
 )
 
-FORMAT: Final = ReportFormat(_pieces, _MARK, is_stream=True)
+TEXT: Final = ReportFormat(_pieces, _MARK, is_stream=True)

@@ -5,7 +5,6 @@ wiki, "Advanced Autograding". In Classroom 50, a score is a whole number, so the
 count hundredths of a point.
 """
 
-import re
 from collections.abc import Mapping
 from typing import Any, Final
 
@@ -18,6 +17,7 @@ from service.formats.shared.report_format import (
     UnusableSettingError,
     single,
 )
+from service.regex import regex
 
 # Each field with the environment variables of the runner; the first that is set counts.
 _FIELDS: Final[Mapping[str, tuple[str, ...]]] = {
@@ -75,6 +75,6 @@ def _test(result: PartResult) -> dict[str, Any]:
     }
 
 
-_MARK: Final = re.compile(rb'\{\s*"schema": "classroom50/result/v1",')
+_MARK: Final = regex(rb'\{\s*"schema": "classroom50/result/v1",')
 
-FORMAT: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)
+CLASSROOM50: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)

@@ -6,7 +6,6 @@ https://github.com/actions/runner. The runner shows only ten errors of a step, s
 part share one annotation.
 """
 
-import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
@@ -15,6 +14,7 @@ from service.formats.shared.messages import NOT_GRADED, NOT_PASSED, PASSED, tota
 from service.formats.shared.part_results import PartResult, part_results
 from service.formats.shared.plain_text import percent, visible
 from service.formats.shared.report_format import ReportFormat, Setting
+from service.regex import regex
 from service.translations import paragraph, say, told
 from service.translations.sentence import Translation
 
@@ -62,6 +62,6 @@ def _escaped(text: str, replacements: tuple[tuple[str, str], ...]) -> str:
     return text
 
 
-_MARK: Final = re.compile(rb"::(?:notice|warning|error) (?:file|title)=")
+_MARK: Final = regex(rb"::(?:notice|warning|error) (?:file|title)=")
 
-FORMAT: Final = ReportFormat(_pieces, _MARK, is_stream=True, for_students=True)
+GITHUB: Final = ReportFormat(_pieces, _MARK, is_stream=True, for_students=True)

@@ -3,7 +3,6 @@
 Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "Output format".
 """
 
-import re
 from collections.abc import Iterator
 from typing import Any, Final
 
@@ -14,6 +13,7 @@ from service.formats.shared.messages import total_points
 from service.formats.shared.part_results import PartResult, part_results
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import ReportFormat, Setting, single
+from service.regex import regex
 from service.translations import paragraph, say, told
 from service.translations.sentence import Translation
 
@@ -65,9 +65,9 @@ def _test(result: PartResult) -> dict[str, Any]:
     }
 
 
-_MARK: Final = re.compile(
+_MARK: Final = regex(
     rb'\{\s*"score": [\d.]+,\s*"output": ".{0,60000}",'
     rb'\s*"output_format": "text",\s*"test_name_format": "text",'
 )
 
-FORMAT: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)
+GRADESCOPE: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)

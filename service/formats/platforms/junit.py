@@ -5,7 +5,6 @@ Jenkins (https://github.com/jenkinsci/xunit-plugin). GitLab shows the name of th
 suite, and drops the second of two tests that share class and name.
 """
 
-import re
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from typing import Final
@@ -16,6 +15,7 @@ from service.formats.shared.part_results import PartResult, distinct_names, part
 from service.formats.shared.plain_text import visible
 from service.formats.shared.report_format import ReportFormat, Setting
 from service.grading import Verdict
+from service.regex import regex
 from service.translations import Language
 
 
@@ -69,6 +69,6 @@ def _element(tag: str, *children: Element, **attributes: str) -> Element:
     return made
 
 
-_MARK: Final = re.compile(rb'<\?xml [^>]*>\s*<testsuites name="dh-grader">')
+_MARK: Final = regex(rb'<\?xml [^>]*>\s*<testsuites name="dh-grader">')
 
-FORMAT: Final = ReportFormat(_pieces, _MARK, for_students=True)
+JUNIT: Final = ReportFormat(_pieces, _MARK, for_students=True)

@@ -4,7 +4,6 @@ Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading
 unreadable submission is reported as not gradable, so it costs no attempt.
 """
 
-import re
 from typing import Any, Final
 
 from service.formats.shared.graded import GradedSubmission
@@ -12,6 +11,7 @@ from service.formats.shared.json_document import json_document
 from service.formats.shared.part_results import PartResult, part_results
 from service.formats.shared.plain_text import percent, points_in_words
 from service.formats.shared.report_format import ReportFormat, Setting, single
+from service.regex import regex
 from service.translations.sentence import Translation
 
 
@@ -55,8 +55,8 @@ def _not_gradable(results: list[PartResult]) -> dict[str, Any]:
     return {"gradable": False, "score": 0.0, "format_errors": list(dict.fromkeys(lines))}
 
 
-_MARK: Final = re.compile(
+_MARK: Final = regex(
     rb'\{\s*"gradable": (?:true|false),\s*"score": [\d.]+,\s*"(?:message|format_errors|tests)": '
 )
 
-FORMAT: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)
+PRAIRIELEARN: Final = ReportFormat(single(_document), _MARK, is_single=True, for_students=True)

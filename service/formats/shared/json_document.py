@@ -1,12 +1,13 @@
 """JSON that is safe to print to a terminal or the log of a build."""
 
 import json
-import re
 from collections.abc import Mapping
 from typing import Final
 
+from service.regex import regex
+
 # In UTF-8: the start of a build's command (`##[…]`), and control characters that JSON allows.
-_UNPRINTABLE: Final = re.compile(rb"#(?=#)|\x7f|\xc2[\x80-\x9f]")
+_UNPRINTABLE: Final = regex(rb"#(?=#)|\x7f|\xc2[\x80-\x9f]")
 
 
 def json_document(content: Mapping[str, object]) -> bytes:

@@ -8,15 +8,16 @@ from service.formats.shared.messages import POINTS, ROW, SIGNS, Message
 from service.formats.shared.part_results import LONGEST, MESSAGES_TOLD, PartResult
 from service.formats.shared.plain_text import code_pieces, first_lines, shortened, visible
 from service.grading import RowReport
+from service.regex import regex
 from service.translations import told
 
 # A character reference is plain text in every dialect; backslashes escape different characters in
 # different dialects. The point of `www.` and the colon of `://` would start a link.
-_MARKUP: Final = re.compile(
+_MARKUP: Final = regex(
     r"[\\`*\[\]<>|~$&]|(?<!\w)_|_(?!\w)|#(?=\w)|(?<=www)\.|:(?=/)", re.IGNORECASE
 )
 # GitHub looks for mentions and issues in the rendered text. An invisible character hides them.
-_MENTION: Final = re.compile(r"@(?=\w)|&#35;(?=\d)")
+_MENTION: Final = regex(r"@(?=\w)|&#35;(?=\d)")
 _ROWS: Final = 40
 
 

@@ -1,15 +1,15 @@
 """Untrusted texts, and numbers, as short text that is safe to print."""
 
-import re
 from collections.abc import Iterable, Iterator
 from typing import Final
 
+from service.regex import regex
 from service.translations import say, told
 from service.translations.sentence import Translation
 
 # Builds read commands in the output of programs: GitHub `::` at the start of a line and `##[`
 # anywhere, Azure `##vso[`, TeamCity `##teamcity[`. No formula has these signs twice in a row.
-_COMMAND: Final = re.compile(r"(?<=([:#]))(?=\1)")
+_COMMAND: Final = regex(r"(?<=([:#]))(?=\1)")
 # Spaces at which no line breaks, as French has them before a colon. Python calls them unprintable.
 _UNBROKEN: Final = "\u00a0\u202f"
 

@@ -2,15 +2,15 @@
 
 import csv
 import io
-import re
 from collections.abc import Iterable
 from typing import Final
 
 from service.formats.shared.plain_text import number, visible
+from service.regex import regex
 
 # Some spreadsheets run a cell with such a beginning as a formula (OWASP, "CSV Injection"). Where a
 # comma is the decimal sign, they also end a cell at a semicolon, whatever quotes are around it.
-_FORMULA: Final = re.compile(r"""(?:^|(?<=;))(?=[\s"]*[=+\-@＝＋－＠])""")
+_FORMULA: Final = regex(r"""(?:^|(?<=;))(?=[\s"]*[=+\-@＝＋－＠])""")
 
 # The headings of a list of grades, as Moodle names them.
 GRADEBOOK_HEAD: Final = ("Identifier", "Grade", "Maximum Grade", "Feedback comments")

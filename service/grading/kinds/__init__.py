@@ -1,22 +1,36 @@
-"""The answer kinds.
-
-Each kind has a module with its name, which reads and judges its answers.
-"""
-
-# The functions ``read`` and ``judge`` in each file have the interface ``AnswerKind``.
+"""The answer kinds: the functions that read and judge the answers to a part, by its kind."""
 
 from collections.abc import Mapping
-from importlib import import_module
-from pkgutil import iter_modules
+from typing import Final
 
+from service.grading.kinds.dh_row import judge_dh_row_answer, read_dh_row_answer
+from service.grading.kinds.dh_table import judge_dh_table_answer, read_dh_table_answer
+from service.grading.kinds.euler_angles import judge_euler_angles_answer, read_euler_angles_answer
+from service.grading.kinds.find_slip import judge_find_slip_answer, read_find_slip_answer
+from service.grading.kinds.frames import judge_frames_answer, read_frames_answer
+from service.grading.kinds.link_transforms import (
+    judge_link_transforms_answer,
+    read_link_transforms_answer,
+)
+from service.grading.kinds.matrix import judge_matrix_answer, read_matrix_answer
+from service.grading.kinds.position import judge_position_answer, read_position_answer
+from service.grading.kinds.rotation import judge_rotation_answer, read_rotation_answer
+from service.grading.kinds.screw_axes import judge_screw_axes_answer, read_screw_axes_answer
+from service.grading.kinds.transform import judge_transform_answer, read_transform_answer
+from service.grading.kinds.vector import judge_vector_answer, read_vector_answer
 from service.grading.part import AnswerKind
 
-
-def _found() -> dict[str, AnswerKind]:
-    modules = {
-        found.name: import_module(f"{__name__}.{found.name}") for found in iter_modules(__path__)
-    }
-    return {name: module for name, module in modules.items() if hasattr(module, "judge")}
-
-
-KINDS: Mapping[str, AnswerKind] = _found()
+KINDS: Final[Mapping[str, AnswerKind]] = {
+    "dh_row": AnswerKind(read_dh_row_answer, judge_dh_row_answer),
+    "dh_table": AnswerKind(read_dh_table_answer, judge_dh_table_answer),
+    "euler_angles": AnswerKind(read_euler_angles_answer, judge_euler_angles_answer),
+    "find_slip": AnswerKind(read_find_slip_answer, judge_find_slip_answer),
+    "frames": AnswerKind(read_frames_answer, judge_frames_answer),
+    "link_transforms": AnswerKind(read_link_transforms_answer, judge_link_transforms_answer),
+    "matrix": AnswerKind(read_matrix_answer, judge_matrix_answer),
+    "position": AnswerKind(read_position_answer, judge_position_answer),
+    "rotation": AnswerKind(read_rotation_answer, judge_rotation_answer),
+    "screw_axes": AnswerKind(read_screw_axes_answer, judge_screw_axes_answer),
+    "transform": AnswerKind(read_transform_answer, judge_transform_answer),
+    "vector": AnswerKind(read_vector_answer, judge_vector_answer),
+}

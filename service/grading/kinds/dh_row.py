@@ -44,12 +44,12 @@ NONE = "none"
 RowOrNone = StudentRow | Literal["none"]
 
 
-def read(part: DhRowSpec, answer: object, grading: Grading) -> RowOrNone:
+def read_dh_row_answer(part: DhRowSpec, answer: object, grading: Grading) -> RowOrNone:
     """Read a row, or "none"."""
     return "none" if _says_none(answer) else _read_row(answer, grading)
 
 
-def judge(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
+def judge_dh_row_answer(part: DhRowSpec, answer: RowOrNone, grading: Grading) -> Judged:
     """Judge a row. The report has four cells; for the answer "none", it has a single cell."""
     transform = np.moveaxis(given_values(part, grading), -1, 0)
     broken = violated(transform, part.convention, grading.exercise.length_scale)

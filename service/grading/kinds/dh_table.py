@@ -53,7 +53,9 @@ FREEDOM_WORK = 8.0
 WRONG_THROUGHOUT = 3
 
 
-def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | None:
+def read_dh_table_answer(
+    part: DhTableSpec, answer: object, grading: Grading
+) -> StudentTable | None:
     """Read the rows of a table; return None if there are none."""
     empty_is_zero = part.empty_cells == "zero"
     table = read_table(answer, grading.reader, empty_is_zero=empty_is_zero)
@@ -67,7 +69,7 @@ def read(part: DhTableSpec, answer: object, grading: Grading) -> StudentTable | 
     return with_given_rows(part, table, grading) if part.given else table
 
 
-def judge(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
+def judge_dh_table_answer(part: DhTableSpec, answer: StudentTable, grading: Grading) -> Judged:
     """Judge the table row by row and cell by cell.
 
     A wrong table is also judged under alternative assumptions, for example that its columns are in

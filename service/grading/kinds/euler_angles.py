@@ -55,13 +55,17 @@ SINGULAR = Finding(
 )
 
 
-def read(part: EulerAnglesSpec, answer: object, grading: Grading) -> StudentValues:
+def read_euler_angles_answer(
+    part: EulerAnglesSpec, answer: object, grading: Grading
+) -> StudentValues:
     """Read the angles in a list or a pasted text."""
     names = names_of_angles(part.turns, fixed=part.axes == "fixed")
     return read_list(answer, names, grading.reader)
 
 
-def judge(part: EulerAnglesSpec, answer: StudentValues, grading: Grading) -> Judged:
+def judge_euler_angles_answer(
+    part: EulerAnglesSpec, answer: StudentValues, grading: Grading
+) -> Judged:
     """Judge the angles; the report has one row for each angle."""
     turns, fixed = part.turns, part.axes == "fixed"
     angles, rotation = answer.values, _expected_rotation(part, grading)

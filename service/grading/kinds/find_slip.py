@@ -16,7 +16,7 @@ from service.grading.feedback import Finding, UnreadableAnswerError, reading_err
 from service.grading.judging.own_frames.best_roles import roles_in
 from service.grading.judging.own_frames.nearest.few_cells import single_repairs
 from service.grading.judging.own_frames.written_table import Rereadable
-from service.grading.kinds import dh_table
+from service.grading.kinds.dh_table import judge_dh_table_answer, read_dh_table_answer
 from service.grading.misconception import all_records
 from service.grading.numerics.samples import draw
 from service.grading.part import Content, Grading, Judged
@@ -36,6 +36,7 @@ from service.kinematics.chain import COLUMNS
 from service.kinematics.factors import CellIndex
 from service.learning.find_slip import DrawnSlip, NoSlipError, TableBlame, drawn_slip
 from service.learning.table_texts import TableTexts, as_rows
+from service.regex import regex
 from service.translations import say
 
 MARKED: Final = "marked"
@@ -43,7 +44,7 @@ TABLE: Final = "table"
 # The classes of wrong cells and tables, whose records are about tables.
 _OF_TABLES: Final = (WrongCell, Rereadable, StudentTable)
 # The line before a pasted table that marks the slip, also in LaTeX.
-_MARK_LINE: Final = re.compile(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.IGNORECASE)
+_MARK_LINE: Final = regex(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.IGNORECASE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,7 +60,7 @@ class FoundSlip:
     unread: Finding | None = None
 
 
-def read(part: FindSlipSpec, answer: object, grading: Grading) -> FoundSlip | None:
+def read_find_slip_answer(part: FindSlipSpec, answer: object, grading: Grading) -> FoundSlip | None:
     """Read the marked cells and the table; return None if both are empty."""
     marks, table = _split(answer)
     marked = read_marks(marks, grading.exercise.robot.tables[part.convention].labels)
@@ -92,7 +93,7 @@ def _split(answer: object) -> tuple[object, object]:
     raise UnreadableAnswerError(_WRONG_SHAPE)
 
 
-def judge(part: FindSlipSpec, answer: FoundSlip, grading: Grading) -> Judged:
+def judge_find_slip_answer(part: FindSlipSpec, answer: FoundSlip, grading: Grading) -> Judged:
     """Judge the marked cells and the corrected table.
 
     If the marked cells are wrong, the report does not show which cells of the table are wrong.
@@ -100,7 +101,9 @@ def judge(part: FindSlipSpec, answer: FoundSlip, grading: Grading) -> Judged:
     # Otherwise a student could find the slip by submitting the given table.
     drawn = slip_of(part, grading.exercise)
     is_found = _is_found(answer.marked.cells, drawn)
-    table = None if answer.table is None else dh_table.judge(part.table, answer.table, grading)
+    table = (
+        None if answer.table is None else judge_dh_table_answer(part.table, answer.table, grading)
+    )
     is_mended = table is not None and table.is_right
     row = _marked_row(answer.marked, is_found=is_found, is_mended=is_mended, drawn=drawn)
     marked = row_report(MARKED, (CellReport(MARKED, row.verdict, grading.messages(row.findings)),))
@@ -241,10 +244,10 @@ def blame(
     answer = {"rows": as_rows(texts)}
     samples = draw(exercise, [answer, turn] if turn else answer)
     grading = Grading(exercise, samples, Reader.of(exercise, samples, "radians"))
-    table = dh_table.read(part.table, answer, grading)
+    table = read_dh_table_answer(part.table, answer, grading)
     if table is None or not all(entry.readable for row in table.rows for entry in row.entries):
         return None
-    judged = dh_table.judge(part.table, table, grading)
+    judged = judge_dh_table_answer(part.table, table, grading)
     labels = exercise.robot.tables[part.convention].labels
     if judged.is_right or judged.slips or [row.label for row in judged.rows] != list(labels):
         return None

@@ -57,7 +57,9 @@ from service.translations import say
 COST: Final = 0.5
 
 
-def read(part: FramesSpec, answer: object, grading: Grading) -> tuple[StudentFrame, ...] | None:
+def read_frames_answer(
+    part: FramesSpec, answer: object, grading: Grading
+) -> tuple[StudentFrame, ...] | None:
     """Read the frames in JSON rows or a pasted table; return None if there are none."""
     if answer in ([], ""):
         return None
@@ -66,7 +68,9 @@ def read(part: FramesSpec, answer: object, grading: Grading) -> tuple[StudentFra
     )
 
 
-def judge(part: FramesSpec, answer: tuple[StudentFrame, ...], grading: Grading) -> Judged:
+def judge_frames_answer(
+    part: FramesSpec, answer: tuple[StudentFrame, ...], grading: Grading
+) -> Judged:
     """Judge the frames by the rules of the convention; the report has one row for each frame."""
     exercise, samples = grading.exercise, grading.samples
     home = home_samples(exercise, samples)

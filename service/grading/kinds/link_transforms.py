@@ -50,7 +50,9 @@ class StudentLinks:
         return products(_links_of([matrix.values_at(samples) for matrix in self.matrices]))
 
 
-def read(part: LinkTransformsSpec, answer: object, grading: Grading) -> StudentLinks:
+def read_link_transforms_answer(
+    part: LinkTransformsSpec, answer: object, grading: Grading
+) -> StudentLinks:
     """Read the matrices of a list or of one pasted text, one for each row of the table."""
     # The entries of an omitted matrix at the end are missing.
     labels = grading.exercise.robot.tables[part.convention].labels
@@ -81,7 +83,9 @@ def _listed(answer: object, labels: tuple[str, ...], grading: Grading) -> tuple[
     return (with_notes(matrices[0], notes), *matrices[1:])
 
 
-def judge(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Judged:
+def judge_link_transforms_answer(
+    part: LinkTransformsSpec, answer: StudentLinks, grading: Grading
+) -> Judged:
     """Judge the matrices; the report has the rows "A1.1" to "An.4"."""
     labels = grading.exercise.robot.tables[part.convention].labels
     right = _expected(part, answer, grading)

@@ -9,12 +9,12 @@ from service.grading.part import Grading, Judged
 from service.grading.reading.matrices.matrix import StudentMatrix, read_matrix
 
 
-def read(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:
+def read_matrix_answer(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:
     """Read the entries of a nested list or a pasted text."""
     return read_matrix(answer, part.quantities, grading.reader)
 
 
-def judge(part: MatrixSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+def judge_matrix_answer(part: MatrixSpec, answer: StudentMatrix, grading: Grading) -> Judged:
     """Judge the matrix entry by entry."""
     expected = ExpectedMatrix(given_values(part, grading), part.quantities)
     judged = matrix_rows(answer, expected, grading)

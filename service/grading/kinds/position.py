@@ -30,7 +30,7 @@ from service.grading.report import Place
 from service.kinematics.transforms import Numbers
 
 
-def read(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
+def read_position_answer(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
     """Read the coordinates in a list or a pasted text."""
     names = names_of_coordinates(part.coordinates)
     return read_list(answer, names, grading.reader, _tails(part.coordinates))
@@ -44,7 +44,7 @@ def _tails(coordinates: str) -> tuple[Tail, ...]:
     return (HOMOGENEOUS,) if len(coordinates) == len("xyz") else ()
 
 
-def judge(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:
+def judge_position_answer(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:
     """Judge the coordinates; the report has one row for each coordinate."""
     expected = _expected(part, grading)
     compared = ComparedValues(answer, expected, number_corrections(expected, grading))

@@ -25,12 +25,12 @@ from service.kinematics.rotations import about, composed
 from service.kinematics.transforms import Numbers
 
 
-def read(part: RotationSpec, answer: object, grading: Grading) -> StudentMatrix:
+def read_rotation_answer(part: RotationSpec, answer: object, grading: Grading) -> StudentMatrix:
     """Read the entries of a nested list or a pasted text."""
     return read_matrix(answer, ROTATION, grading.reader)
 
 
-def judge(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+def judge_rotation_answer(part: RotationSpec, answer: StudentMatrix, grading: Grading) -> Judged:
     """Judge the matrix entry by entry."""
     exercise = grading.exercise
     steps = _steps(part, grading)

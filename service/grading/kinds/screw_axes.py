@@ -58,7 +58,7 @@ class ExpectedScrews:
     labels: tuple[str, ...]
 
 
-def read(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix:
+def read_screw_axes_answer(part: ScrewAxesSpec, answer: object, grading: Grading) -> StudentMatrix:
     """Read a six-vector for each joint, in a list or a pasted text."""
     numbers = part.numbers(grading.exercise.joints)
     quantities = (SCREW,) * len(numbers)
@@ -97,7 +97,7 @@ def _by_columns(rows: StudentMatrix, note: Note, grading: Grading) -> StudentMat
     return replace(columns, findings=(*rows.findings, from_note(note)))
 
 
-def judge(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+def judge_screw_axes_answer(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:
     """Judge the axes; the report has one row for each joint."""
     expected = _expected(part, grading)
     axes = expected.axes

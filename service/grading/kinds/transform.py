@@ -23,12 +23,12 @@ from service.kinematics.chain import products
 from service.kinematics.transforms import Matrices
 
 
-def read(part: TransformSpec, answer: object, grading: Grading) -> StudentMatrix:
+def read_transform_answer(part: TransformSpec, answer: object, grading: Grading) -> StudentMatrix:
     """Read the entries of a nested list or a pasted text."""
     return read_matrix(answer, HOMOGENEOUS, grading.reader)
 
 
-def judge(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judged:
+def judge_transform_answer(part: TransformSpec, answer: StudentMatrix, grading: Grading) -> Judged:
     """Judge the matrix entry by entry."""
     exercise = grading.exercise
     given = formula_values(part, grading)

@@ -19,7 +19,7 @@ from service.grading.reading.lists.value_list import PLANAR, StudentValues, read
 from service.grading.report import Correction
 
 
-def read(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
+def read_vector_answer(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
     """Read the values in a list or a pasted text."""
     names = names_of_components(
         tuple((each.name, each.quantity) for each in part.components), grading.reader.vocabulary
@@ -28,7 +28,7 @@ def read(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
     return read_list(answer, names, grading.reader, tails)
 
 
-def judge(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
+def judge_vector_answer(part: VectorSpec, answer: StudentValues, grading: Grading) -> Judged:
     """Judge the values; the report has one row for each component."""
     [expected] = given_values(part, grading)
     [formulas] = grading.exercise.formulas[part.id]

@@ -1,19 +1,19 @@
 """Convert a length with a unit to a number: 135 mm is 0.135 in metres."""
 
-import re
 import unicodedata
 from decimal import Decimal
 from typing import Final
 
 from service.grading.reading.tables.words import METRES
+from service.regex import regex
 
-_LENGTH: Final = re.compile(
+_LENGTH: Final = regex(
     r"(?P<sign>[-−–]?)\s{0,4}(?P<number>\d{1,12}(?:[.,]\d{1,12})?)\s{0,4}[(\[]?(?P<unit>[a-z]{1,12})"
     r"[)\]]?"
 )
-_SIUNITX: Final = re.compile(r"\\(?:SI|qty)\s{0,4}\{([^{}]{1,30})\}\s{0,4}\{([^{}]{1,30})\}")
+_SIUNITX: Final = regex(r"\\(?:SI|qty)\s{0,4}\{([^{}]{1,30})\}\s{0,4}\{([^{}]{1,30})\}")
 # 1,350 mm is a metre and more, or a millimetre and more.
-_THOUSANDS: Final = re.compile(r"[1-9]\d{0,2},\d{3}")
+_THOUSANDS: Final = regex(r"[1-9]\d{0,2},\d{3}")
 
 
 def converted(text: str, unit: str) -> str | None:

@@ -1,6 +1,5 @@
 """Read a submitted cell as an entry, and evaluate entries at the samples."""
 
-import re
 from collections.abc import Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
@@ -29,6 +28,7 @@ from service.grading.reading.tables.words import METRES
 from service.grading.report import Verdict
 from service.grading.work_budget import WorkBudget
 from service.kinematics.transforms import Numbers
+from service.regex import regex
 from service.translations import say
 
 # Notes that a table does not show: textbooks mark every joint variable with a star, and six notes
@@ -39,7 +39,7 @@ EXPECTED_IN_TABLES = frozenset({"joint_marker"})
 _UNKNOWN_NAMES = frozenset({"unknown_joint", "unknown_symbol"})
 
 # The unit in "all lengths are in metres".
-_STATED = re.compile(r"(?<!\w)(?:in|en)\s(\w{4,12})(?!\w)")
+_STATED = regex(r"(?<!\w)(?:in|en)\s(\w{4,12})(?!\w)")
 
 # The largest absolute values. No robot is larger, and a larger angle has no precise digits left
 # after whole turns are removed.

@@ -3,7 +3,6 @@
 # The numbers count only if the exercise has no lengths as letters; otherwise letters are its
 # symbols.
 
-import re
 from dataclasses import replace
 from itertools import islice
 from typing import Final
@@ -13,19 +12,18 @@ from service.grading.reading.entry import Reader
 from service.grading.reading.tables.column_headers import read_header
 from service.grids import Grid, GridCell, without_tuples
 from service.grids.cutting.source_text import joined
+from service.regex import regex
 from service.translations import say
 
-_NUMBER: Final = re.compile(
+_NUMBER: Final = regex(
     r"(?:^|[;,\n])[ \t]*([A-Za-z]\w{0,20})[ \t]*=[ \t]*([-+]?(?:\d{1,9}\.?\d{0,12}|\.\d{1,12}))"
     r"[ \t\r]*(?=[;,\n%#]|\Z)"
 )
-_ASSIGNED: Final = re.compile(r"(?<![\w.])(\w{1,21})[ \t]{0,40}[-+*/]?=(?!=)")
+_ASSIGNED: Final = regex(r"(?<![\w.])(\w{1,21})[ \t]{0,40}[-+*/]?=(?!=)")
 # The last letter of an assignment to several letters, whose value may be another number.
-_LAST: Final = re.compile(
-    r"(?<![\w.])[A-Za-z]\w{0,20}\s{0,9},\s{0,9}([A-Za-z]\w{0,20})\s{0,9}=(?!=)"
-)
+_LAST: Final = regex(r"(?<![\w.])[A-Za-z]\w{0,20}\s{0,9},\s{0,9}([A-Za-z]\w{0,20})\s{0,9}=(?!=)")
 # A letter in a value. The z of the cell ``z = 0`` is the name of a value in a list.
-_NAME: Final = re.compile(r"(?<![\w.\\])[A-Za-z]\w*(?![\w(\[]|[ \t]*=(?!=))")
+_NAME: Final = regex(r"(?<![\w.\\])[A-Za-z]\w*(?![\w(\[]|[ \t]*=(?!=))")
 _MOST: Final = 40
 
 

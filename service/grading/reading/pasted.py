@@ -26,18 +26,19 @@ from service.grids import (
 )
 from service.grids.cutting.once import remembering
 from service.grids.cutting.source_text import line_number
+from service.regex import regex
 from service.time_slices import checkpoint
 from service.translations import say
 
 R = TypeVar("R")
 
 # An index in square brackets: theta[1], l[2].
-_INDEX: Final = re.compile(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]")
-_IN_UNIT: Final = re.compile(
+_INDEX: Final = regex(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]")
+_IN_UNIT: Final = regex(
     r"(?<![^\W\d_])(?:in|en|and|und|y|et) ([^\W\d_]{1,12})(?![^\W\d_])", re.IGNORECASE
 )
 # A unit in a header: a [mm], alpha (deg).
-_HEADED_UNIT: Final = re.compile(r"[\[(]\s?([^\W\d_]{1,12}|°)\s?[\])]")
+_HEADED_UNIT: Final = regex(r"[\[(]\s?([^\W\d_]{1,12}|°)\s?[\])]")
 _MOST_UNITS: Final = 40
 # The codes of errors whose messages say "this bracket" or "this row".
 _AT_A_PLACE: Final = frozenset(

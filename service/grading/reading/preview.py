@@ -1,6 +1,5 @@
 """Preview a pasted table or matrix: how each cell is read, without grading it."""
 
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
@@ -24,6 +23,7 @@ from service.grading.reading.tables.words import METRES
 from service.grading.work_budget import WorkBudget
 from service.grids import Grid, GridCell, GridError
 from service.kinematics.chain import COLUMNS
+from service.regex import regex
 from service.translations import say
 
 
@@ -272,8 +272,8 @@ def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
 
 
 # A number, other than 0, that is a whole term of a sum.
-_DECIMAL_COMMA: Final = re.compile(r"[-+−–]?\s{0,4}\d{1,12},\d{1,12}")
-_TERM: Final = re.compile(
+_DECIMAL_COMMA: Final = regex(r"[-+−–]?\s{0,4}\d{1,12},\d{1,12}")
+_TERM: Final = regex(
     r"((?:^|(?<=[-+]\s)|(?<=^-))(?=[\d.]*[1-9])\d{1,20}(?:\.\d{1,20})?)(?=$|\s[-+]\s)"
 )
 _WORK_LIMIT: Final = say("The formulas are too long together: some are shown as text only.")

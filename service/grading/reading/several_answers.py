@@ -4,7 +4,6 @@ No program knows which of them counts. If they differ, the text is refused, and 
 the lines of each. If all are equal, the first is read.
 """
 
-import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -24,6 +23,7 @@ from service.grading.work_budget import (
 from service.grids import GRID_LIMITS, GridError, SourceText
 from service.grids.scripts.titles import is_sentence
 from service.kinematics.transforms import Numbers
+from service.regex import regex
 from service.translations import listed, say
 
 R = TypeVar("R")
@@ -34,15 +34,15 @@ _MOST_LINES: Final = 200
 # Programs print numbers with as few as five digits.
 _ROUNDED: Final = 1e-4
 # The beginning of an answer that has a name or a command: DH = [, T = Matrix(, \begin{tabular}.
-_BEGINS: Final = re.compile(
+_BEGINS: Final = regex(
     r"\s*[A-Za-z]\w{0,40}\s{0,4}:?=\s{0,4}(?:[\w.]{1,40}\(\s{0,4})?[\[{(]"
     r"|.{0,80}\\begin\{(?:tabular[x*]?|longtable|array|tblr|NiceTabular|[pbBvV]?matrix)\}"
 )
-_ENDS: Final = re.compile(r".{0,200}\\end\{")
+_ENDS: Final = regex(r".{0,200}\\end\{")
 # The first row of a table whose rows have numbers.
-_FIRST_ROW: Final = re.compile(r"[\s|│]*(?:[^\W\d_]{1,12}[ _.]?)?1(?![\w.(*/^+])")
+_FIRST_ROW: Final = regex(r"[\s|│]*(?:[^\W\d_]{1,12}[ _.]?)?1(?![\w.(*/^+])")
 # A line that is no cell: a comment, a rule, a fence, or the title of another try.
-_NO_ROW: Final = re.compile(r"\s*(?:[%#`~].*|[-=_|:+*\s]*|[^\W\d_]{2,20}[\w ]{0,40}[.:]\s*)")
+_NO_ROW: Final = regex(r"\s*(?:[%#`~].*|[-=_|:+*\s]*|[^\W\d_]{2,20}[\w ]{0,40}[.:]\s*)")
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,18 +11,19 @@ from service.grading.reading.pasted import once
 from service.grading.reading.tables.words import ANGLE_UNITS, METRES, in_plain_words
 from service.grids import GridError
 from service.grids.cutting.source_text import line_number
+from service.regex import regex
 from service.translations import say
 
-_COMMENT: Final = re.compile(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,80})")
-_CAPTION: Final = re.compile(
+_COMMENT: Final = regex(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,80})")
+_CAPTION: Final = regex(
     r"\\caption\s{0,4}\{([^{}]{2,200})\}|<caption[^<>]{0,80}>([^<>]{2,200})</caption>",
     re.IGNORECASE,
 )
 _MOST_COMMENTS: Final = 40
-_WORD: Final = re.compile(r"[^\W\d_]+|°")
-_DIGIT: Final = re.compile(r"\d")
+_WORD: Final = regex(r"[^\W\d_]+|°")
+_DIGIT: Final = regex(r"\d")
 # A script that converts numbers leaves none in millimetres.
-CONVERTS_LENGTHS: Final = re.compile(r"/\s?1000?(?!\d)|\de-[23]")
+CONVERTS_LENGTHS: Final = regex(r"/\s?1000?(?!\d)|\de-[23]")
 # In a sentence, these are also other words.
 _NO_UNITS: Final = frozenset({"m", "in", "foot"})
 

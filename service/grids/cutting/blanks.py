@@ -14,12 +14,13 @@ from service.expressions.vocabulary.functions import SPELLINGS
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import outside
 from service.grids.cutting.source_text import SourceText
+from service.regex import regex
 
 _SIGNS: Final = "+-−–"
 _BINARY: Final = "*/^×·⋅∙∗•÷="
-_UNIT: Final = re.compile(r"(?:deg|degrees?|rad|radians?)(?![A-Za-z0-9])|[°º˚]", re.IGNORECASE)
+_UNIT: Final = regex(r"(?:deg|degrees?|rad|radians?)(?![A-Za-z0-9])|[°º˚]", re.IGNORECASE)
 # A function's name alone is not an element, so the blank after it separates nothing.
-_FUNCTION: Final = re.compile(rf"(?<![A-Za-z])(?:{'|'.join(SPELLINGS)})(?:(?:\^|\*\*)\d+)?$")
+_FUNCTION: Final = regex(rf"(?<![A-Za-z])(?:{'|'.join(SPELLINGS)})(?:(?:\^|\*\*)\d+)?$")
 # The number of characters at the end of an element that decide whether it continues.
 _END: Final = 16
 # The rest of a longer row stays in one piece.

@@ -8,14 +8,15 @@ from typing import Final
 from service.expressions.errors import Note, Span, TextError
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.source_text import SourceText
+from service.regex import regex
 from service.translations import say
 
 GridCell = SourceText
 # Quotation marks of word processors around a whole cell.
-_QUOTED: Final = re.compile(r"„[^„“”]+[“”]|“[^“”]+”|«[^«»]+»|»[^«»]+«")
+_QUOTED: Final = regex(r"„[^„“”]+[“”]|“[^“”]+”|«[^«»]+»|»[^«»]+«")
 # The remark that a value is the variable of its joint.
-_VARIABLE: Final = re.compile(r"\s*[(\[](?:joint )?(?:variable|var\.?)[)\]]$", re.IGNORECASE)
-_NUMBER: Final = re.compile(r"\d{1,2}\Z")
+_VARIABLE: Final = regex(r"\s*[(\[](?:joint )?(?:variable|var\.?)[)\]]$", re.IGNORECASE)
+_NUMBER: Final = regex(r"\d{1,2}\Z")
 Rows = Sequence[Sequence[GridCell]]
 
 

@@ -6,10 +6,11 @@ from typing import Final
 
 from service.grids.cutting.blanks import split_blanks
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 
 _SIGNS: Final = "\t;,"
 _BARS: Final = "|│┃║"
-_END: Final = re.compile(r"[\t;,](?=[ \t]*(?:[\r\n\x85\u2028\u2029]|\Z))")
+_END: Final = regex(r"[\t;,](?=[ \t]*(?:[\r\n\x85\u2028\u2029]|\Z))")
 # A list of values in lines has fewer values in a line than the smallest matrix.
 _FEWEST_CELLS: Final = 3
 

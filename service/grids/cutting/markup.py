@@ -5,8 +5,9 @@ from html import unescape
 from typing import Final
 
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 
-_MARKUP: Final = re.compile(
+_MARKUP: Final = regex(
     r"<(?P<tag>su[bp])>(?P<inner>[^<>|]{1,20})</(?P=tag)>"
     r"|&(?:#\d{1,6}|#x[0-9a-f]{1,5}|[a-z]{1,12});",
     re.IGNORECASE,

@@ -11,18 +11,17 @@ from service.grids.cutting.grid import GridError, too_many_cells
 from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.once import once
 from service.grids.cutting.source_text import SourceText
+from service.regex import regex
 from service.translations import say
 
 Ends = Mapping[int, int]
 
 CLOSES: Final = {"[": "]", "(": ")", "{": "}"}
 _OPENS: Final = {closer: opener for opener, closer in CLOSES.items()}
-_STRINGS: Final = {
-    quote: re.compile(rf"{quote}(?:[^\\{quote}\n]|\\.)*{quote}") for quote in ("'", '"')
-}
-BRACKET: Final = re.compile(r"[][(){}]")
-_BRACKET_OR_LINE_END: Final = re.compile(r"[][(){}\n]")
-_BRACKET_OR_QUOTE: Final = re.compile(r"""[][(){}'"]""")
+_STRINGS: Final = {quote: regex(rf"{quote}(?:[^\\{quote}\n]|\\.)*{quote}") for quote in ("'", '"')}
+BRACKET: Final = regex(r"[][(){}]")
+_BRACKET_OR_LINE_END: Final = regex(r"[][(){}\n]")
+_BRACKET_OR_QUOTE: Final = regex(r"""[][(){}'"]""")
 
 
 @dataclass(frozen=True, slots=True)

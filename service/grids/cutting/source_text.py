@@ -7,8 +7,9 @@ from itertools import chain
 from typing import Final
 
 from service.expressions.errors import Span
+from service.regex import regex
 
-_LINE_END: Final = re.compile("\r\n|[\r\n\x85\u2028\u2029]")
+_LINE_END: Final = regex("\r\n|[\r\n\x85\u2028\u2029]")
 
 
 @dataclass(frozen=True, slots=True)

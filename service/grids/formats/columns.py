@@ -9,10 +9,11 @@ from service.grids.cutting.blanks import continues, split_blanks
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.formats.data_frame import with_row_numbers
+from service.regex import regex
 from service.translations import say
 
-_GAP: Final = re.compile(r"[^\S\r\n]{2,}")
-_UNIT: Final = re.compile(
+_GAP: Final = regex(r"[^\S\r\n]{2,}")
+_UNIT: Final = regex(
     r"[(\[](?:deg|rad|grad|grados|degrés|°|[mc]?m|度|弧度|米|毫米)[)\]]", re.IGNORECASE
 )
 _DASHES: Final = frozenset("-=_─━═")

@@ -1,15 +1,15 @@
 """Cells separated by commas. A comma in brackets, as in atan2(y, x), is part of its cell."""
 
-import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.pairs import outside
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.delimited import split_cells
+from service.regex import regex
 
 # The label of a row with a colon or bracket after it: "1: l1, 0", "Row 1: l1, 0", "a: l1, l2".
-_LABEL: Final = re.compile(
+_LABEL: Final = regex(
     r"(?:[ij]\s?=\s?)?((?:[^\W\d_]{3,20}[ .]?|[JjLl])?\d{1,2}|(?:alpha|theta|[adαθ])(?=\s?:))"
     r"\s?[:)]\s{0,9}(?=\S)"
 )

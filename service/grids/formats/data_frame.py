@@ -5,29 +5,30 @@ from dataclasses import replace
 from typing import Final
 
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 
 # The first line: "# A tibble: 3 × 4", "3×4 DataFrame", "3×4 table", "ans = 3×4", "shape: (3, 4)".
-_SIZE: Final = re.compile(
+_SIZE: Final = regex(
     r"^[ \t]*(?:# A tibble: \d{1,3} [×x] \d{1,3}|\d{1,3} ?[×x] ?\d{1,3} (?:DataFrame|table"
     r"|Matrix\{\w{1,20}\}:)|\w{1,20} = \d{1,3} ?[×x] ?\d{1,3}|shape: \(\d{1,3}, \d{1,3}\))"
     r"[ \t]*\r?$",
     re.MULTILINE,
 )
 # The line of types: <dbl> <chr>, or │ String Float64.
-_TYPES: Final = re.compile(
+_TYPES: Final = regex(
     r"[ \t]*(?:<\w{1,9}>[ \t]*)+"
     r"|[ \t]*│[ \t]*(?:(?:str|f64|f32|i64|i32|String|Float64|Int64|Any|Sym|Num)\d{0,2}\??"
     r"[ \t…┆│]*)+"
 )
-_LINES: Final = re.compile(r"[\s┌┬┐├┼┤└┴┘╞╪╡│┆─═-]*")
-_QUOTES: Final = re.compile(r"[\"│┆{}]")
+_LINES: Final = regex(r"[\s┌┬┐├┼┤└┴┘╞╪╡│┆─═-]*")
+_QUOTES: Final = regex(r"[\"│┆{}]")
 # R numbers the columns and rows of a matrix: [,1] [,2], and [1,] before each row.
-_COLUMNS_OF_R: Final = re.compile(r"\s*(?:\[,\d{1,2}\]\s*)+")
+_COLUMNS_OF_R: Final = regex(r"\s*(?:\[,\d{1,2}\]\s*)+")
 # The number of a row, alone or after a word: 1, Link 1, joint_1, J1; but not theta1.
 _WORD: Final = r"(?!theta|alpha)(?:[^\W\d_]{3,20}|[Jj]|[\u4e00-\u9fff]{2})"
-_INDEX: Final = re.compile(rf"(?P<name>(?:{_WORD}[ _.]?)?)(?P<number>\d{{1,2}})", re.IGNORECASE)
-_LABEL: Final = re.compile(rf"(?P<word>{_WORD}) (?P<number>\d{{1,2}})", re.IGNORECASE)
-_ROW_OF_R: Final = re.compile(r"[ \t]*\[\d{1,2},\]")
+_INDEX: Final = regex(rf"(?P<name>(?:{_WORD}[ _.]?)?)(?P<number>\d{{1,2}})", re.IGNORECASE)
+_LABEL: Final = regex(rf"(?P<word>{_WORD}) (?P<number>\d{{1,2}})", re.IGNORECASE)
+_ROW_OF_R: Final = regex(r"[ \t]*\[\d{1,2},\]")
 
 
 def without_frame(source: SourceText) -> SourceText:

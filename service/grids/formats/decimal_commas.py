@@ -13,16 +13,17 @@ from typing import Final
 from service.expressions.errors import Note
 from service.grids.cutting.grid import Grid, GridCell, GridError
 from service.grids.cutting.pairs import outside
+from service.regex import regex
 from service.translations import say
 
-_NUMBER: Final = re.compile(r"(?<![\w.,])\d{1,15},\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII)
+_NUMBER: Final = regex(r"(?<![\w.,])\d{1,15},\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII)
 # A number whose comma may stand between thousands: 1,000 or 12,500.
-_THOUSANDS: Final = re.compile(r"[1-9]\d{0,2},\d{3}", re.ASCII)
+_THOUSANDS: Final = regex(r"[1-9]\d{0,2},\d{3}", re.ASCII)
 # A point that may stand between thousands in the same language: 1.000 or 12.500,5.
-_POINT: Final = re.compile(r"(?<![\d.])[1-9]\d{0,2}\.\d{3}(?!\d)", re.ASCII)
+_POINT: Final = regex(r"(?<![\d.])[1-9]\d{0,2}\.\d{3}(?!\d)", re.ASCII)
 # A number with a sign between thousands and a decimal comma: 1.000,5. The reader of its cell names
 # the sign.
-_GROUPED: Final = re.compile(
+_GROUPED: Final = regex(
     r"(?<![\w.,])[1-9]\d{0,2}(?:[.'’ \u00a0\u202f]\d{3})+,\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII
 )
 # One line between semicolons may be several rows of a matrix.

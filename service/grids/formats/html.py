@@ -10,12 +10,13 @@ from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 from service.translations import say
 
-_START: Final = re.compile(r"<(?:table|tbody|thead|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
-_NAME: Final = re.compile(r"</?([A-Za-z][A-Za-z0-9-]{0,30})")
-_ENTITY: Final = re.compile(r"&(?:#[0-9]{1,7}|#[xX][0-9A-Fa-f]{1,6}|[A-Za-z][A-Za-z0-9]{1,31});")
-_SPAN: Final = re.compile(r"(?:col|row)span\s{0,4}=\s{0,4}[\"']?\s{0,4}([0-9]{1,4})", re.IGNORECASE)
+_START: Final = regex(r"<(?:table|tbody|thead|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
+_NAME: Final = regex(r"</?([A-Za-z][A-Za-z0-9-]{0,30})")
+_ENTITY: Final = regex(r"&(?:#[0-9]{1,7}|#[xX][0-9A-Fa-f]{1,6}|[A-Za-z][A-Za-z0-9]{1,31});")
+_SPAN: Final = regex(r"(?:col|row)span\s{0,4}=\s{0,4}[\"']?\s{0,4}([0-9]{1,4})", re.IGNORECASE)
 _STYLING: Final = frozenset({
     "a", "abbr", "b", "bdi", "big", "code", "em", "font", "i", "kbd", "mark", "nobr", "p", "small",
     "span", "strong", "tt", "u", "var", "div", "wbr",
@@ -25,7 +26,7 @@ _LAYOUT: Final = frozenset({
     "th",
 })  # fmt: skip
 _SKIPPED: Final = frozenset({"style", "script", "caption"})
-_MARK: Final = re.compile("<(?=[/!A-Za-z])|&")
+_MARK: Final = regex("<(?=[/!A-Za-z])|&")
 _DEGREE_SIGNS: Final = frozenset({"o", "O", "0", "°", "º", "∘", "˚"})
 
 

@@ -7,6 +7,7 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import text_around
 from service.grids.scripts.titles import UNIT
+from service.regex import regex
 from service.translations import say
 
 # The number of arguments in braces after \begin{…}.
@@ -19,9 +20,9 @@ ARGUMENTS: Final = {
     "NiceMatrix": 0, "bNiceMatrix": 0, "pNiceMatrix": 0,
 }  # fmt: skip
 # Plain TeX, as Maxima prints it: \pmatrix{a & b \cr c & d \cr}.
-PLAIN: Final = re.compile(r"\\[pbB]?matrix\s{0,4}(?=\{)")
-BEGIN: Final = re.compile(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
-_TOKEN: Final = re.compile(r"\\(?:[A-Za-z]+|.)|[{}&]", re.DOTALL)
+PLAIN: Final = regex(r"\\[pbB]?matrix\s{0,4}(?=\{)")
+BEGIN: Final = regex(r"\\(begin|end)[ \t]*\{([A-Za-z]{1,20}\*?)\}")
+_TOKEN: Final = regex(r"\\(?:[A-Za-z]+|.)|[{}&]", re.DOTALL)
 _ROW_ENDS: Final = frozenset({"\\\\", "\\tabularnewline", "\\cr"})
 # Brackets are an option only if they cannot begin a cell, as in [q_1] + l_1.
 _LENGTH: Final = (
@@ -32,7 +33,7 @@ _DASHES: Final = r"(?:\s{0,8}\[[0-9.]{1,8}[a-z]{2}/[0-9.]{1,8}[a-z]{2}\])?"
 _TRIM: Final = r"(?:\s{0,8}\([a-z]{0,4}\))?"
 _COLOURS: Final = r"(?:\s{0,8}\[[a-zA-Z]{1,10}\])?"
 _BRACED: Final = r"(?:\s{0,8}\{[^{}]{0,40}\})"
-_GAP: Final = re.compile(rf"\*?{_LENGTH}")
+_GAP: Final = regex(rf"\*?{_LENGTH}")
 # Commands that are no part of a cell, and the options that may follow each.
 _OPTIONS: Final = {
     "hline|endhead|endfirsthead|endfoot|endlastfoot|displaystyle": "",
@@ -43,12 +44,12 @@ _OPTIONS: Final = {
     "specialrule": f"{_BRACED}{{0,3}}",
     "rowcolor": f"{_COLOURS}{_BRACED}?",
 }
-_RULES: Final = re.compile(
+_RULES: Final = regex(
     rf"\\(?:{'|'.join(f'(?:{name})(?![A-Za-z]){options}' for name, options in _OPTIONS.items())})"
 )
 _WORD: Final = r"(?!(?:pi|theta|alpha)\W)[^\W\d_]{2,20}"
 # A row that is one cell over several columns, with words only: the title of the table or a note.
-_TITLE: Final = re.compile(
+_TITLE: Final = regex(
     r"(?:\A|(?<=\\\\)|(?<=\\hline)|(?<=rule))\s*\\multicolumn\s?\{\d{1,2}\}\s?\{[^{}]{0,40}\}"
     r"\s?\{(?:\\(?:text[bi][ft]\{|(?:footnote|script)size|small|tiny|itshape)\s?)?"
     r"(?:\$?\^?\{?(?:\*|\\ast|\\dagger)\}?\$?[ :=]{0,4})?"
@@ -56,36 +57,36 @@ _TITLE: Final = re.compile(
     r"\.?\}{1,2}\s*(?:\\\\|\Z)"
 )
 # A cell over one column or one row, as generators of tables write each header.
-_ONE_COLUMN: Final = re.compile(
+_ONE_COLUMN: Final = regex(
     r"\\multi(?:column|row)\s?(?:\[\w\]\s?)?\{1\}\s?\{[^{}]{0,40}\}\s?(?=\{)"
 )
 # An escaped % does not begin a comment.
-_COMMENT: Final = re.compile(r"\\.|%[^\n]*", re.DOTALL)
-_POSITION: Final = re.compile(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
+_COMMENT: Final = regex(r"\\.|%[^\n]*", re.DOTALL)
+_POSITION: Final = regex(r"(?:\s{0,40}\[\s*[lcrtbhpsm!]{0,4}\s*\])?\s{0,40}")
 # The outer options of tabularray: [t], [caption={…}].
-_OUTER: Final = re.compile(r"(?:\s{0,40}\[[^\[\]]{0,400}\])?\s{0,40}")
+_OUTER: Final = regex(r"(?:\s{0,40}\[[^\[\]]{0,400}\])?\s{0,40}")
 # Options of nicematrix: [hvlines].
-_NICE: Final = re.compile(
+_NICE: Final = regex(
     r"\s{0,40}\[\s*(?:hv?lines|vlines|margin|small|rules|corners|nullify|columns-|rows-|first-|last-"
     r"|cell-|code-)[^\[\]&\\]{0,200}\]"
 )
 # Commands for bracket sizes mean nothing; they are half of the LaTeX that SymPy prints.
-_SIZES: Final = re.compile(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
+_SIZES: Final = regex(r"\\(?:left|right|[bB]igg?[lr]?)\s{0,4}(?=[()\[\]])")
 _SPANNING: Final = frozenset({"\\multicolumn", "\\multirow", "\\SetCell"})
 _WRAPPERS: Final = (
-    re.compile(r"\s|[$,.;]|&|\\[\\\[\](),;:!> ]|\\q?quad(?![A-Za-z])"),
-    re.compile(
+    regex(r"\s|[$,.;]|&|\\[\\\[\](),;:!> ]|\\q?quad(?![A-Za-z])"),
+    regex(
         r"\\(?:begin|end)\s?\{(?:equation|displaymath|math|align|aligned|gather|gathered|table|center"
         r"|figure|document|split|multline|eqnarray|flalign|cases|itemize|enumerate)\*?\}"
         r"(?:\[[a-zA-Z!]{0,6}\])?|\\begin\{array\}\{[clr|]{0,12}\}|\\end\{array\}"
     ),
-    re.compile(r"\\(?:left|right|[bB]igg?[lr]?)?\s?\\?[\[\](){}.]|[\[\](){}]"),
-    re.compile(
+    regex(r"\\(?:left|right|[bB]igg?[lr]?)?\s?\\?[\[\](){}.]|[\[\](){}]"),
+    regex(
         r"\\(?:centering|displaystyle|small|footnotesize|scriptsize|normalsize|large|noindent"
         r"|boxed|nonumber|notag|item)(?![A-Za-z])"
     ),
-    re.compile(r"\\(?:documentclass|usepackage)\s?(?:\[[^\[\]]{0,200}\])?\{[^{}]{0,200}\}"),
-    re.compile(
+    regex(r"\\(?:documentclass|usepackage)\s?(?:\[[^\[\]]{0,200}\])?\{[^{}]{0,200}\}"),
+    regex(
         r"\\(?:caption|label|tag|vspace|hspace|setlength|l?eqno|text|mbox)\*?"
         r"(?:\{(?:[^{}=]|\{[^{}]{0,80}\}){0,200}\}){1,2}"
     ),

@@ -1,6 +1,5 @@
 """Cells between vertical bars: tables in Markdown and MediaWiki, and drawn tables."""
 
-import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
@@ -9,21 +8,22 @@ from service.grids.cutting.source_text import SourceText, joined
 from service.grids.formats.html import refuse_span
 from service.grids.scripts.program_text import text_around
 from service.grids.scripts.titles import check_units
+from service.regex import regex
 from service.translations import say
 
 _BARS: Final = "|│┃║"
-_BAR: Final = re.compile(rf"[{_BARS}]")
-_SEPARATOR: Final = re.compile(rf"(?<!\\)[{_BARS}]")
-_DOUBLE: Final = re.compile(r"\|\|")
-_RULE: Final = re.compile(r"[\s|:+\-=_│┃║─━═┼╪╬┬┴├┤┌┐└┘╭╮╰╯┏┓┗┛┣┫┳┻╋╔╗╚╝╠╣╦╩╒╕╘╛╞╡╤╧╟╢┠┨┯┷]+")
+_BAR: Final = regex(rf"[{_BARS}]")
+_SEPARATOR: Final = regex(rf"(?<!\\)[{_BARS}]")
+_DOUBLE: Final = regex(r"\|\|")
+_RULE: Final = regex(r"[\s|:+\-=_│┃║─━═┼╪╬┬┴├┤┌┐└┘╭╮╰╯┏┓┗┛┣┫┳┻╋╔╗╚╝╠╣╦╩╒╕╘╛╞╡╤╧╟╢┠┨┯┷]+")
 
 
 # MediaWiki: separators of cells, attributes of a cell, and marks of style.
-_WIKI_CELL: Final = re.compile(r"\|\||!!")
-_WIKI_ATTRIBUTES: Final = re.compile(
+_WIKI_CELL: Final = regex(r"\|\||!!")
+_WIKI_ATTRIBUTES: Final = regex(
     r"(?:\s{0,4}[a-z]{2,12}\s?=\s?(?:\"[^\"|]{0,80}\"|\w{1,20})){1,6}\s{0,4}\|"
 )
-_WIKI_STYLE: Final = re.compile(r"'{2,3}|</?(?:math|nowiki)>")
+_WIKI_STYLE: Final = regex(r"'{2,3}|</?(?:math|nowiki)>")
 
 
 def _matches(text: str) -> bool:

@@ -15,46 +15,47 @@ from service.grids.cutting.pairs import outside, pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.titles import UNIT
+from service.regex import regex
 
 _COLUMNS: Final = ("a", "alpha", "d", "theta")
 _LETTERS: Final = {"α": "alpha", "alfa": "alpha", "θ": "theta", "ϑ": "theta", "th": "theta"}
-_NAME: Final = re.compile(
+_NAME: Final = regex(
     # What the name begins with comes first, because most characters of a text begin none.
     r"(?=['\"\\vaαtθϑd])(?<![\w\\^\"'.])(?<![\w^]\{)(?P<quote>['\"]?)\\?(?:var)?(?P<name>alpha|alfa|α|theta|th|θ|ϑ|a|d)"
     r"_?\{?(?P<number>[\d₀-₉]{0,2}|[ijᵢ])\}?(?P=quote)[ \t]{0,20}(?P<sign>[=:,])(?!=)"
 )
 # Marks that only style a text.
-_STYLE: Final = re.compile(r"\\[()]|\*\*|[`$]")
+_STYLE: Final = regex(r"\\[()]|\*\*|[`$]")
 # Signs of a list, of another name, or of an unclosed string.
-_NOT_ONE: Final = re.compile(r"[=:'\"]|\A[\[{]|\A\Z")
+_NOT_ONE: Final = regex(r"[=:'\"]|\A[\[{]|\A\Z")
 # A word within a row that may be a value.
-_LETTER: Final = re.compile(r"(?<!\w)\w{1,2}(?!\w)")
+_LETTER: Final = regex(r"(?<!\w)\w{1,2}(?!\w)")
 _STOP: Final = frozenset(",;\n\r|)]}")
-_PADDING: Final = re.compile(r"[\s,;.:=→|()\[\]{}<>#*•·–—_-]+")
+_PADDING: Final = regex(r"[\s,;.:=→|()\[\]{}<>#*•·–—_-]+")
 # Words before a name, or the label of a row: "Link 1", "2. Joint 2 (revolute)", "T1 = DH(".
-_LABEL: Final = re.compile(
+_LABEL: Final = regex(
     r"(?:\d{1,2} (?=\D*\d))?(?:[^\W\d_]{1,20} ){0,3}(?:[^\W\d_]{0,20}(?P<number>\d{1,2}) )?"
     r"(?:[^\W\d_]{1,20} ){0,3}"
 )
 # A word between two values, and words before the next name: "0 and angle theta = q1".
-_AND: Final = re.compile(
+_AND: Final = regex(
     r"(?:\A|\s)(?:and|und|y|et|with|mit|con|avec)(?:\s[^\W\d_]{3,20}){0,2}\s*\Z", re.IGNORECASE
 )
 # Words that change the parameter after them: "minus theta = q1".
-_CHANGED: Final = re.compile(
+_CHANGED: Final = regex(
     r"(?<!\w)(?:minus|plus|negative|half|twice|double|not|cos|sin|tan|menos|moins|nicht|halb|doppelt)"
     r"\s*\Z",
     re.IGNORECASE,
 )
 # Names before their values: (a, α, d, θ) = (l1, 0, 0, θ1).
 _ONE: Final = r"\s{0,4}\\?(?:alpha|alfa|α|theta|th|θ|ϑ|a|d)_?\{?(?:[\d₀-₉]{0,2}|[ijᵢ])\}?\s{0,4}"
-_GROUP: Final = re.compile(
+_GROUP: Final = regex(
     rf"[(\[](?P<names>{_ONE}(?:,{_ONE}){{3}})[)\]]\s{{0,4}}[=:]\s{{0,4}}(?=[(\[])"
 )
-_AFTER: Final = re.compile(r"[ \t]*(?:[,;.\r\n]|\Z)")
-_COMMA: Final = re.compile(",")
+_AFTER: Final = regex(r"[ \t]*(?:[,;.\r\n]|\Z)")
+_COMMA: Final = regex(",")
 _ORDINALS: Final = tuple(
-    re.compile(rf"(?<!\w)(?:{words})\w{{0,4}}", re.IGNORECASE)
+    regex(rf"(?<!\w)(?:{words})\w{{0,4}}", re.IGNORECASE)
     for words in (
         "first|erst|primer|premi", "second|zweit|segund|deuxi", "third|dritt|tercer|troisi",
         "fourth|viert|cuart|quatri", "fifth|fünft|quint|cinqui", "sixth|sechst|sext|sixi",

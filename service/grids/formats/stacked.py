@@ -5,13 +5,14 @@ from typing import Final
 
 from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.source_text import SourceText
+from service.regex import regex
 
-_HEADER: Final = re.compile(
+_HEADER: Final = regex(
     r"\$?\\?(?:(?P<a>a)|(?P<alpha>alpha|α)|(?P<d>d)|(?P<theta>theta|θ|ϑ))_?\{?[ijᵢ]?\}?\$?",
     re.IGNORECASE,
 )
 _COUNT: Final = 4
-_ROW: Final = re.compile(r"(?:[^\W\d_]{1,20} ?)?\d{1,2}")
+_ROW: Final = regex(r"(?:[^\W\d_]{1,20} ?)?\d{1,2}")
 
 
 def _rows(source: SourceText) -> list[list[SourceText]]:

@@ -1,14 +1,14 @@
 """Cells separated by tabs, the clipboard format of spreadsheets and web pages."""
 
-import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.source_text import SourceText
 from service.grids.formats.delimited import split_cells
+from service.regex import regex
 
 # A tab after a comma, or at the beginning of each line, is only layout.
-_TAB: Final = re.compile(r"[^\s,;][^\S\n\t]*\t")
+_TAB: Final = regex(r"[^\s,;][^\S\n\t]*\t")
 
 
 def _matches(text: str) -> bool:

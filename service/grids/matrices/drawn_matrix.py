@@ -12,15 +12,16 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.pairs import outside
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import TAIL, after_names
+from service.regex import regex
 from service.translations import say
 
 _PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
 _LEFT: Final = "⎡⎢⎣⎛⎜⎝[/|\\"
 _RIGHT: Final = "⎤⎥⎦⎞⎟⎠]\\|/"
 # An empty line of the drawing: [    ].
-_SPACER: Final = re.compile(r"^[ \t]*\[[ \t]+\][ \t]*\r?$", re.MULTILINE)
-_SLASHES: Final = re.compile(r"^[ \t]*/[^\n]*\\[ \t]*\r?\n[ \t]*\|", re.MULTILINE)
-_GAP: Final = re.compile(r"[ \t]{2,}")
+_SPACER: Final = regex(r"^[ \t]*\[[ \t]+\][ \t]*\r?$", re.MULTILINE)
+_SLASHES: Final = regex(r"^[ \t]*/[^\n]*\\[ \t]*\r?\n[ \t]*\|", re.MULTILINE)
+_GAP: Final = regex(r"[ \t]{2,}")
 
 
 def _matches(text: str) -> bool:

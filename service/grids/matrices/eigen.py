@@ -7,9 +7,10 @@ from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.matrices import lists
 from service.grids.scripts.program_text import WrittenMatrix, text_around
+from service.regex import regex
 
-_COMMENT: Final = re.compile(r"//[^\n]*")
-_MATRIX: Final = re.compile(
+_COMMENT: Final = regex(r"//[^\n]*")
+_MATRIX: Final = regex(
     r"(?:\s*(?:#include|using)\b[^\n]{0,80}\n)*"
     r"(?:\s*(?:Eigen::)?Matrix(?:(?P<size>[2-6])[df]|X[df]|"
     r"<\w{1,12}, ?(?P<rows>\d), ?(?P<columns>\d)>)"

@@ -1,18 +1,18 @@
 """The identity matrix by its name: ``eye(4)``, ``np.identity(3)``, ``I_4``, or only ``I``."""
 
-import re
 from typing import Final
 
 from service.grids.cutting.grid import Grid
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import without_harmless_lines, without_remarks
+from service.regex import regex
 
 # The format of a matrix whose text does not say its size. It has the most rows that are asked for.
 ANY_SIZE: Final = "identity-of-any-size"
 _LARGEST: Final = 4
 # Characters of a program that makes nothing but the matrix.
 _LONGEST: Final = 400
-_MAY_BE: Final = re.compile(r"eye|ident|I")
+_MAY_BE: Final = regex(r"eye|ident|I")
 _NAME: Final = r"(?:[A-Za-z][\w^{}]{0,20}(?:\([\w, ]{0,20}\))?[ \t]{0,4}:?=[ \t]{0,4}){0,2}"
 _CALL: Final = (
     r"(?:[A-Za-z]{1,8}\.)?(?:eye|identity|ident|IdentityMatrix)[ \t]?"
@@ -22,7 +22,7 @@ _LETTER: Final = (
     r"(?:\\(?:mathbf|mathrm|boldsymbol|bm)\{I\}|I)"
     r"(?:_?\{?(?P<size>[2-4])(?:\s?(?:[x×]|\\times)\s?(?P=size))?\}?)?"
 )
-_IDENTITY: Final = re.compile(rf"\$*{_NAME}(?:{_CALL}|{_LETTER})\$*;?")
+_IDENTITY: Final = regex(rf"\$*{_NAME}(?:{_CALL}|{_LETTER})\$*;?")
 
 
 def identity(source: SourceText) -> Grid | None:

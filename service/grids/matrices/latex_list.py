@@ -20,22 +20,23 @@ from service.grids.formats.latex import (
     without_comments,
 )
 from service.grids.scripts.program_text import text_around
+from service.regex import regex
 
-_CLOSERS: Final = re.compile(r"(?:[ \t]|\\(?:right|[bB]igg?r?)\s?\\?[\])}.]|[\])}])*")
+_CLOSERS: Final = regex(r"(?:[ \t]|\\(?:right|[bB]igg?r?)\s?\\?[\])}.]|[\])}])*")
 # Operators after a matrix that change it. After a line end, ^0 may begin the next name.
-_CHANGES: Final = re.compile(
+_CHANGES: Final = regex(
     r"[\^_'*/+\d-]|\\(?:cdot|times|circ|ast|div)(?![A-Za-z])|\s+(?:[_'*/+-]|\^\{?\\?[^\d{\\])"
 )
-_STATEMENTS: Final = re.compile(
+_STATEMENTS: Final = regex(
     r"\\\\|\$\$?|\\[\[(]|\n[ \t]*\n|\\(?:begin|end)\{[a-z]{4,10}\*?\}(?:\{[^{}]{0,20}\})?"
     r"|\\item(?![A-Za-z])|\\q?quad(?![A-Za-z])|;"
 )
-_HEADING: Final = re.compile(
+_HEADING: Final = regex(
     r"(?:[A-Za-z]{1,14}\s{1,3}){0,3}(?:[A-Za-z_^]{0,4}[\d_^{} ]{1,12}|[A-Z]_?\{?[en]\}?)"
     r"\)?[:.]?(?=[\s$\\]|\Z)"
 )
 # A product after the last matrix, ``T = A_1 A_2``, which is ignored.
-_PRODUCTS: Final = re.compile(r"[\s$,.;&\\(){}\[\]A-Za-z0-9_^]*=[\s$,.;&\\(){}\[\]A-Za-z0-9_^=]*")
+_PRODUCTS: Final = regex(r"[\s$,.;&\\(){}\[\]A-Za-z0-9_^]*=[\s$,.;&\\(){}\[\]A-Za-z0-9_^=]*")
 _BLANKS: Final = " \t\r\n&,.:"
 
 

@@ -1,6 +1,5 @@
 """Lists of lists from Python, NumPy (also printed arrays), SymPy's Matrix([[…]]), and JSON."""
 
-import re
 from typing import Final
 
 from service.grids.cutting.blanks import split_blanks
@@ -9,11 +8,12 @@ from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import WrittenMatrix
+from service.regex import regex
 from service.translations import say
 
 _BETWEEN: Final = " \t\r\n,;"
 # A character in UTF-16, of one or two units, or an escaped punctuation mark.
-_ESCAPE: Final = re.compile(
+_ESCAPE: Final = regex(
     r"\\(?:(u[dD][89abAB][0-9A-Fa-f]{2}\\u[dD][c-fC-F][0-9A-Fa-f]{2}|u[0-9A-Fa-f]{4})|([\\\"'/]))"
 )
 _COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMatrix"})

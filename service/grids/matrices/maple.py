@@ -8,12 +8,13 @@ from service.grids.cutting.grid import Grid, GridFormat, grid
 from service.grids.cutting.pairs import split
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import TAIL, after_names
+from service.regex import regex
 
-_MATRIX: Final = re.compile(
+_MATRIX: Final = regex(
     r"<\s*<[^<>,;]{1,800}>(?:\s*[,;]\s*<[^<>,;]{1,800}>){1,12}\s*>"
     r"|(?P<columns><\s*<[^<>|]{1,800}>(?:\s*\|\s*<[^<>|]{1,800}>){1,12}\s*>)"
 )
-_LINE: Final = re.compile(r"<([^<>]+)>")
+_LINE: Final = regex(r"<([^<>]+)>")
 
 
 def _found(text: str) -> re.Match[str] | None:

@@ -12,15 +12,16 @@ from service.grids.cutting.grid import Grid, GridError, GridFormat, grid
 from service.grids.cutting.pairs import CLOSES
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import TAIL, text_around
+from service.regex import regex
 from service.translations import say
 
 # ⓢ and ⒨ are matrices in [ ] and in ( ).
-_MATRIX: Final = re.compile(r"(?:■8?|[ⓢ⒨]|\\[bp]?matrix)[ \t]{0,4}\(")
+_MATRIX: Final = regex(r"(?:■8?|[ⓢ⒨]|\\[bp]?matrix)[ \t]{0,4}\(")
 # An equation array: a column, unless & marks where its lines are aligned.
-_COLUMN: Final = re.compile(r"█[ \t]{0,4}\(")
+_COLUMN: Final = regex(r"█[ \t]{0,4}\(")
 _OPENS: Final = {**CLOSES, "〖": "〗"}
-_SIGN: Final = re.compile(r"[][(){}〖〗&@]")
-_NUMBER_OF_EQUATION: Final = re.compile(r"#[ \t]?\(?\d{0,4}(?:\.\d{1,4})?\)?")
+_SIGN: Final = regex(r"[][(){}〖〗&@]")
+_NUMBER_OF_EQUATION: Final = regex(r"#[ \t]?\(?\d{0,4}(?:\.\d{1,4})?\)?")
 
 
 def _matches(text: str) -> bool:

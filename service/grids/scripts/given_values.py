@@ -14,24 +14,25 @@ from service.expressions.errors import Note
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import begins_as_matrix, text_around, without_remarks
+from service.regex import regex
 from service.translations import say
 
 # The value may be a calculation or a call of a function, but not a matrix or a list.
-ASSIGNMENT: Final = re.compile(
+ASSIGNMENT: Final = regex(
     r"[ \t\r]*(?P<line>(?P<name>[A-Za-z]\w{0,60})[ \t]*=(?!=)[ \t]*"
     r"(?P<value>(?=[^\s])(?:[^;,\n\[\](){}=]|\((?:[^()\n\[]|\[(?!\s?\[)){0,40}\)){1,80}))(?:[;,\n]|\Z)"
 )
 # An assignment to several letters: d1, d4 = 0.1625, 0.1333.
 _LETTER: Final = r"[A-Za-z]\w{0,20}"
 _VALUE: Final = r"(?:[^,;=\n()\[\]{}#%]|\([^,;=\n()\[\]{}#%]{0,40}\)){1,40}"
-_TUPLE: Final = re.compile(
+_TUPLE: Final = regex(
     rf"[ \t\r]*(?P<line>\(?(?P<names>{_LETTER}(?:[ \t]*,[ \t]*{_LETTER}){{1,11}})\)?[ \t]*=(?!=)"
     rf"[ \t]*\(?(?P<values>(?! ){_VALUE}(?:,{_VALUE}){{1,11}})\)?)[ \t\r]*"
     r"(?:[#%][^\n]*)?(?:[;\n]|\Z)"
 )
-_TUPLES: Final = re.compile(rf"(?:(?<=[;\n])|\A){_TUPLE.pattern}")
-_NUMBER: Final = re.compile(r"[-+]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+]?\d{1,3})?")
-_HARMLESS: Final = re.compile(
+_TUPLES: Final = regex(rf"(?:(?<=[;\n])|\A){_TUPLE.pattern}")
+_NUMBER: Final = regex(r"[-+]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+]?\d{1,3})?")
+_HARMLESS: Final = regex(
     r"[ \t\r]*(?:(?:syms|clc|clear|close|format|pkg|load|import|from)\b[^;\n]*)?(?:[;,\n]|\Z)"
 )
 # A name that is not the left side of an assignment.
@@ -40,15 +41,15 @@ _DEFINITION: Final = (
     r"(?:[^\W\d_]{1,5}_?\d{1,2}|[^\W\d_]_\{\d\}|[^\W\d_][₀-₉])\s{0,4}[=:]\s{0,4}"
     r"[-+−]?(?:\d{1,9}(?:[.,]\d{1,9})?)(?:\s{0,4}(?:°|[^\W\d_]{1,8}))?"
 )
-_DEFINITIONS: Final = re.compile(
+_DEFINITIONS: Final = regex(
     r"\s{0,9}(?:(?:where|with|wobei|mit|donde|con|où|avec|其中)\s{0,4}:?\s{0,4})?"
     rf"{_DEFINITION}(?:\s{{0,4}}(?:[,;、]|and|und|y|et|和)\s{{0,4}}{_DEFINITION}){{0,20}}[\s.,;]{{0,9}}",
     re.IGNORECASE,
 )
-_DEFINED: Final = re.compile(r"[^\W\d]\w*(?=\s{0,4}[=:])")
-_READ: Final = re.compile(r"(?<!\w)[^\WA-Za-z]*([A-Za-z]\w*)(?!\w|[ \t]*=(?!=))")
+_DEFINED: Final = regex(r"[^\W\d]\w*(?=\s{0,4}[=:])")
+_READ: Final = regex(r"(?<!\w)[^\WA-Za-z]*([A-Za-z]\w*)(?!\w|[ \t]*=(?!=))")
 # A last statement that shows a matrix or counts its rows: disp(T), print(T), T, n = size(T, 1).
-_SHOWS: Final = re.compile(
+_SHOWS: Final = regex(
     r"(?:[;,\n][ \t]*(?:(?:\w{1,12}\.)?(?:disp|display|pretty|print|pprint)"
     r"\((?:latex\(|simplify\()?[ \t]*\w{1,60}[ \t]*\){1,2}"
     r"|\w{1,60}[ \t]*=[ \t]*(?:size|length|len|height|rows)\([\w, \t]{1,60}\)"
@@ -58,16 +59,16 @@ _SHOWS: Final = re.compile(
 _MOST_SHOWN: Final = 4
 # The shorthand of a cosine or sine: c12 = cos(q1 + q2), s_1 = \\sin\\theta_1, c_i = cos θ_i.
 _ANGLE: Final = r"\\?(?:theta|th|θ|q|t)_?\{?([\d₀-₉ijk])\}?"
-_SHORTHAND: Final = re.compile(
+_SHORTHAND: Final = regex(
     r"\$?([cs])_?\{?(\d{1,6}|[ijk]{1,3})\}?\s{0,4}=\s{0,4}\\?(?:\w{1,6}\.)?(cos|sin)\s{0,2}"
     rf"(?:\(\s?({_ANGLE}(?:\s?\+\s?{_ANGLE}){{0,5}})\s?\)|({_ANGLE})(?!\s?[\w+*/-]))\$?"
 )
-_AROUND_SHORTHANDS: Final = re.compile(
+_AROUND_SHORTHANDS: Final = regex(
     r"[\s,;:.]*(?:(?:where|with|using|wobei|mit|donde|con|où|avec|其中|and|und|y|et|etc)[\s,;:.]*){0,9}"
 )
 _TAIL: Final = " \t\r\n;,"
 # The beginning of a matrix on a later line of a script.
-_MATRIX: Final = re.compile(r"\n[ \t]*[A-Za-z]\w{0,40}[ \t]{0,4}=[ \t]{0,4}(?:[\w.]{1,40}\()?[\[]")
+_MATRIX: Final = regex(r"\n[ \t]*[A-Za-z]\w{0,40}[ \t]{0,4}=[ \t]{0,4}(?:[\w.]{1,40}\()?[\[]")
 _MOST_NAMES: Final = 8
 
 

@@ -13,24 +13,23 @@ from typing import Final
 from service.grids.cutting.pairs import BRACKET, split, strict_pairs
 from service.grids.cutting.source_text import SourceText
 from service.grids.scripts.program_text import without_remarks
+from service.regex import regex
 
 # Signs of another unit or of another order.
-_TELLS: Final = re.compile(
+_TELLS: Final = regex(
     r"deg|rad|180|1000|57\.|1e-?3|\.001|(?<!\w)(?:a?(?:sin|cos|tan)d|[mc]m)(?!\w)"
     r"|flip|swap|rot90|shift|transpos|permut|sort|revers|shuffle|order|convert|scal|unit"
     r"|eval|exec|assignin",
     re.IGNORECASE,
 )
 # Toolboxes, whose matrices have another order.
-_TOOLBOX: Final = re.compile(
-    r"link[(.]|revolute|prismatic|dhrobot|rigidbody|setfixed", re.IGNORECASE
-)
-_PARAMETER: Final = re.compile(
+_TOOLBOX: Final = regex(r"link[(.]|revolute|prismatic|dhrobot|rigidbody|setfixed", re.IGNORECASE)
+_PARAMETER: Final = regex(
     r"(?<![^\W\d_])(?:a|d|r|(?i:al|alpha|alfa|th|theta|twist|offset|angle)|[αθ])_?[ijn]?(?![^\W_])"
 )
 _GAP: Final = r"['\"]?\s{0,4},\s{0,4}['\"]?"
 # The parameters, or the elements of a row, in the order a, α, d, θ.
-_IN_ORDER: Final = re.compile(
+_IN_ORDER: Final = regex(
     rf"(?<![\w.])a(?:_?i)?{_GAP}(?:alpha|al|α)(?:_?i)?{_GAP}d(?:_?i)?{_GAP}(?:theta|th|θ)(?:_?i)?"
     r"(?!\w)|"
     + "|".join(
@@ -48,48 +47,48 @@ _COUNTED: Final = (
     r"(?<![\w.])(?:len|length|size|numel|nrows|height)\({table}(?:,\s?[01])?\)"
     r"|(?<![\w.]){table}\.(?:shape\[0\]|rows(?!\w))"
 )
-_STRING: Final = re.compile(r"(?<=[(,=\[{ ])(['\"])[^'\"\n]{0,200}\1")
+_STRING: Final = regex(r"(?<=[(,=\[{ ])(['\"])[^'\"\n]{0,200}\1")
 # The table and its name: DH = [, dh = np.array([.
-_TABLE: Final = re.compile(
+_TABLE: Final = regex(
     r"(?:^|(?<=;))[ \t]*([A-Za-z]\w{0,40})[ \t]*=[ \t]*(?:[\w.]{1,40}\(\s{0,40})?[\[{]",
     re.MULTILINE,
 )
 _NAMES: Final = r"[A-Za-z]\w{0,40}"
-_LOOP: Final = re.compile(
+_LOOP: Final = regex(
     rf"(?:par)?for\s{{1,4}}\(?(?P<names>{_NAMES}(?:,\s?\(?{_NAMES})?)\)?\s?(?:=|in\s|∈)\s?"
     r"(?P<over>[^,;=]{1,60}?(?:\([^()]{0,20}\))?)\)?(?:[,:](?=\s|\Z)|\Z)\s?(?P<body>.*)",
     re.DOTALL,
 )
-_LISTED: Final = re.compile(
+_LISTED: Final = regex(
     rf"\[(?P<value>[^\[\]]*(?:\[[^\[\]]*\][^\[\]]*)*)\sfor\s(?P<names>{_NAMES})\sin\s(?P<over>[^\[\]]*)\]"
 )
-_ASSIGNED: Final = re.compile(
+_ASSIGNED: Final = regex(
     rf"(?P<left>\[?{_NAMES}(?:\{{[\w+ -]{{1,20}}\}}|\([\w:,+ -]{{1,20}}\))?"
     rf"(?:\s?,\s?{_NAMES}){{0,5}}\]?)\s?=(?!=)\s?(?P<right>.+)",
     re.DOTALL,
 )
-_SHOWN: Final = re.compile(
+_SHOWN: Final = regex(
     r"(?:\w{1,12}\.)?(?:disp|display|print|println|pprint|pretty|fprintf|printf)\(.*\)"
     rf"|{_NAMES}(?:\{{\d{{1,2}}\}})?(?:\s?[*@]\s?{_NAMES}(?:\{{\d{{1,2}}\}})?){{0,12}}"
     r"|(?:import|from|syms|clc|format|end\w{0,6})(?!\w)[^=]*|if __name__ == '':",
     re.DOTALL,
 )
 # A matrix or a list, but not an empty list or a list of strings.
-_LITERAL: Final = re.compile(r"(?<![\w)\]}])[\[{](?!\s{0,4}(?:[\]}]|''))")
-_IS_TABLE: Final = re.compile(r"dh|tab|param", re.IGNORECASE)
+_LITERAL: Final = regex(r"(?<![\w)\]}])[\[{](?!\s{0,4}(?:[\]}]|''))")
+_IS_TABLE: Final = regex(r"dh|tab|param", re.IGNORECASE)
 # The first line of an output, such as "3×4 Matrix{Num}:" or "DH =".
-_ECHO: Final = re.compile(
+_ECHO: Final = regex(
     r";?[ \t]*\n\s{0,40}(?:\d{1,2}[×x]\d{1,2} [\w{}, ]{1,40}:|(?P<name>[A-Za-z]\w{0,40}) ?=)\s*?\n"
 )
-_TOKEN: Final = re.compile(r"[^\s,;\[\]]+")
-_NUMBER: Final = re.compile(r"-?\d{1,12}(?:\.\d{0,12})?")
+_TOKEN: Final = regex(r"[^\s,;\[\]]+")
+_NUMBER: Final = regex(r"-?\d{1,12}(?:\.\d{0,12})?")
 # A line that prints a table: print(tabulate(dh, headers=[…])), print(df.to_string()).
-_PRINTED: Final = re.compile(
+_PRINTED: Final = regex(
     r"\s{0,40}(?:(?:import|from)\s[^\n]{0,80}\n){0,4}(?:\w{1,12}\.)?(?:print|disp|display)\("
     r"(?:[\w.]{1,20}\()?\w{1,40}(?:=\w{1,12}|\.to_\w{1,12}\()?(?:,[^()\n]{0,200})?\){1,2}[ \t;]*\n"
 )
-_SET: Final = re.compile(r"(?<!\w)\d*([^\W\d]\w*)\s?=(?!=)")
-_WORD: Final = re.compile(r"[^\W\d]\w*")
+_SET: Final = regex(r"(?<!\w)\d*([^\W\d]\w*)\s?=(?!=)")
+_WORD: Final = regex(r"[^\W\d]\w*")
 
 
 def without_uses(source: SourceText) -> SourceText:

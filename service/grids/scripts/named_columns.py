@@ -29,35 +29,36 @@ from service.grids.scripts.script import (
     unread_script,
 )
 from service.grids.scripts.titles import UNIT
+from service.regex import regex
 from service.translations import say, say_count
 
-_DICTIONARY: Final = re.compile(
+_DICTIONARY: Final = regex(
     r"\{\s{0,40}(?:'[^'\n]{1,40}'|\"[^\"\n]{1,40}\"|[A-Za-z]\w{0,20})\s?:"
     r"|(?<!\w)dict\(\s{0,40}\w{1,20}\s?="
 )
-_NAME: Final = re.compile(r"[A-Za-z]\w{0,60}[ \t]*=(?!=)[ \t]*")
-_KEY: Final = re.compile(r"(alpha|al|a|d|theta|th|q|α|θ)_?(\d{1,2})")
+_NAME: Final = regex(r"[A-Za-z]\w{0,60}[ \t]*=(?!=)[ \t]*")
+_KEY: Final = regex(r"(alpha|al|a|d|theta|th|q|α|θ)_?(\d{1,2})")
 _COLUMNS: Final = {
     "alpha": "alpha", "al": "alpha", "α": "alpha", "a": "a", "d": "d", "theta": "theta",
     "th": "theta", "θ": "theta", "q": "theta",
 }  # fmt: skip
 _PARAMETERS: Final = frozenset(_COLUMNS.values())
 # The beginning of a list with the name of a column, in a statement of its own.
-_LIST: Final = re.compile(
+_LIST: Final = regex(
     r"(?:^|(?<=;))[ \t]{0,8}(?:[A-Za-z]\w{0,20}\.)?(alpha|al|a|d|theta|th|q|α|θ)[ \t]{0,8}="
     r"[ \t]{0,8}(?=(?:(?:np\.|sp\.|numpy\.)?\w{1,12}\()?[\[(])",
     re.MULTILINE,
 )
-_HARMLESS: Final = re.compile(
+_HARMLESS: Final = regex(
     r"(?:syms|import|from|clc|clear|close|format|pkg|class|def)\b"
     r"|\w+\s*=\s*(?:table|length|len|numel|size)\([\w, ]+\)\Z"
 )
 _FRAME: Final = "DataFrame"
-_UNIT: Final = re.compile(rf"{UNIT.pattern}|(?<!\w)m(?!\w)", re.IGNORECASE)
+_UNIT: Final = regex(rf"{UNIT.pattern}|(?<!\w)m(?!\w)", re.IGNORECASE)
 _KEYWORDS: Final = frozenset({"data", "columns", "index", "dtype"})
 _TITLES: Final = frozenset({"robot", "name", "title", "model"})
-_DASH: Final = re.compile(r"-[ \t]{1,8}(?=\{)")
-_OPENS_ITEMS: Final = re.compile(r"\{|dict\(")
+_DASH: Final = regex(r"-[ \t]{1,8}(?=\{)")
+_OPENS_ITEMS: Final = regex(r"\{|dict\(")
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,6 +10,7 @@ from service.grids.cutting.limits import GRID_LIMITS
 from service.grids.cutting.once import once
 from service.grids.cutting.pairs import BRACKET, CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 from service.translations import say
 
 # Functions that make a matrix of their argument without changing its values.
@@ -26,70 +27,68 @@ _STATEMENT: Final = (
     r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:(?:dynamic)?symbols|Symbol|var|sym)"
     r"\([^()\[\]{}]{0,200}\)[ \t;]*)"
 )
-_HARMLESS: Final = re.compile(rf"(?:{_STATEMENT}|[ \t]*)(?:\n|\Z)")
-_HARMLESS_LINE: Final = re.compile(rf"^{_STATEMENT}$", re.MULTILINE)
+_HARMLESS: Final = regex(rf"(?:{_STATEMENT}|[ \t]*)(?:\n|\Z)")
+_HARMLESS_LINE: Final = regex(rf"^{_STATEMENT}$", re.MULTILINE)
 # The left sides of an equation or assignment: T = A1*A2 = …, A1(q1) := …, A1 : …
-_NAMES: Final = re.compile(
+_NAMES: Final = regex(
     r"\s*(?:return\s|(?:const )?std::vector<[\w:<>, ]{1,60}>\s)?"
     r"(?:(?!\d+[.*\s])[\w\\](?:[\w.{}^\\'*@→ \t]|\([\w,:→ ]{0,40}\)|\[\d{1,2}\]){0,80}"
     r"(?::=?|=)(?!=)\s*){0,4}"
     r"(?:\(sym \d+ ?[x×] ?\d+ matrix\)\s*)?"
 )
 # A function of MATLAB, Octave or Julia: function R = rotx(phi) … end.
-_FUNCTION: Final = re.compile(
+_FUNCTION: Final = regex(
     r"\s*function\s+(?:\[?(?P<output>\w{1,40})\]?\s*=\s*)?\w{1,40}\s*"
     r"(?:\([\w, ~]{0,100}\))?[ \t]*[\n;,](?P<body>(?s:.)*?)(?:(?<=[\s;])end(?:function)?[\s;]*)?"
 )
 # A function of Python: its first line, its last line, and lines below it that only call it.
-_DEF: Final = re.compile(r"def \w{1,40}\([^()\n]{0,200}\)[^()\n]{0,60}:[ \t]*(?:#.*)?\r?$")
-_RETURN: Final = re.compile(r"[ \t]+return[ \t]+\(?([A-Za-z]\w{0,40})\)?[ \t;]*(?:#.*)?\r?")
-_CALLS: Final = re.compile(
+_DEF: Final = regex(r"def \w{1,40}\([^()\n]{0,200}\)[^()\n]{0,60}:[ \t]*(?:#.*)?\r?$")
+_RETURN: Final = regex(r"[ \t]+return[ \t]+\(?([A-Za-z]\w{0,40})\)?[ \t;]*(?:#.*)?\r?")
+_CALLS: Final = regex(
     r"[ \t]*(?:#.*|(?:[A-Za-z]\w{0,40}[ \t]*=[ \t]*)?(?:\w{1,20}\.)?\w{1,40}\([^@*/+\n]*\)"
     r"|if __name__ ?== ?['\"]__main__['\"]:.*)?\s*"
 )
-_ASSIGNED: Final = re.compile(r"[ \t]*([A-Za-z]\w{0,40})[ \t]*=(?!=)")
-_UNPACKED: Final = re.compile(
+_ASSIGNED: Final = regex(r"[ \t]*([A-Za-z]\w{0,40})[ \t]*=(?!=)")
+_UNPACKED: Final = regex(
     r"[ \t]*[(\[]?(?P<names>[A-Za-z]\w{0,20}(?:[ \t]{0,4},[ \t]{0,4}[A-Za-z]\w{0,20}){1,11})[)\]]?"
     r"[ \t]*=[ \t]*\w{1,20}[ \t;]*(?:#.*)?\r?"
 )
-_LAST_NUMBER: Final = re.compile(r"(\d{1,2})\Z")
-_RETURNS: Final = re.compile(r"[ \t]+return(?!\w)")
+_LAST_NUMBER: Final = regex(r"(\d{1,2})\Z")
+_RETURNS: Final = regex(r"[ \t]+return(?!\w)")
 # A name on a line of its own above its value: MATLAB's ``ans =``.
-_TITLE: Final = re.compile(
+_TITLE: Final = regex(
     r"\s*(?:[^\W\d][\w{}^]{0,20}(?:\([\w,: ]{0,40}\))?[ \t]*:?=[ \t]*\r?\n\s*){1,3}"
 )
-_CALL: Final = re.compile(
-    r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()"
-)
+_CALL: Final = regex(r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()")
 # Classes of the Robotics Toolboxes for MATLAB and for Python.
 _ROBOT_CLASSES: Final = frozenset(
     {"Link", "Revolute", "Prismatic", "RevoluteDH", "PrismaticDH", "RevoluteMDH", "PrismaticMDH"}
     | {"SerialLink", "DHRobot"}
 )
 _MOST_FORMS: Final = 3
-_NESTED: Final = re.compile(r"[({]\s*[\[({]|\[|\{\s*['\"]")
-_KEYWORD: Final = re.compile(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
+_NESTED: Final = regex(r"[({]\s*[\[({]|\[|\{\s*['\"]")
+_KEYWORD: Final = regex(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
 # A comment after % or #. In Maxima, % begins the name of a constant.
-_REMARK: Final = re.compile(
+_REMARK: Final = regex(
     r"\.\.\.[^\n]*(?:\n|$)|//[^\n]*|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
 )
 _COMMENTS: Final = {"(*": "*)", "/*": "*/"}
 _REMARK_SIGNS: Final = ("...", "%", "#", "//", *_COMMENTS)
 # What begins a remark or a string. In Scilab, // begins a comment after a statement or on a line of
 # its own; elsewhere it is a division.
-_SIGN: Final = re.compile(
+_SIGN: Final = regex(
     r"""(?:['"%#]|\.\.\.|(?:\A[ \t]{0,40}|(?<=[;\n])[ \t]{0,39})(?P<slashes>//)|[(/]\*)"""
 )
 # A string, which ends with its line if its quotation mark is missing.
 _STRINGS: Final = {
-    quote: re.compile(rf"{quote}(?:[^\\{quote}\n]|\\.)*(?:{quote}|\n|\\?\Z)", re.DOTALL)
+    quote: regex(rf"{quote}(?:[^\\{quote}\n]|\\.)*(?:{quote}|\n|\\?\Z)", re.DOTALL)
     for quote in ("'", '"')
 }
 # Mathematica's functions that leave a matrix equal, written before it or after it.
-_FORM: Final = re.compile(
+_FORM: Final = regex(
     r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
 )
-_FORM_AFTER: Final = re.compile(
+_FORM_AFTER: Final = regex(
     r"//\s{0,3}(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\Z"
 )
 TAIL: Final = " \t\r\n;,.$"

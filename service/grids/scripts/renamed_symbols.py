@@ -10,10 +10,11 @@ from typing import Final
 
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 from service.translations import say
 
 _NAME: Final = r"[A-Za-z_θα]\w{0,30}"
-_DECLARES: Final = re.compile(
+_DECLARES: Final = regex(
     rf"(?:^|(?<=;))[ \t]{{0,40}}(?:>>>?[ \t]?|In ?\[\d{{1,4}}\]: ?)?"
     rf"(?P<statement>\(?(?P<names>{_NAME}(?:[ \t]{{0,4}},[ \t]{{0,4}}{_NAME}){{0,23}})"
     r"[ \t]{0,4},?\)?[ \t]{0,8}=[ \t]{0,8}"
@@ -26,14 +27,14 @@ _DECLARES: Final = re.compile(
 _FUNCTIONS: Final = ("ym", "var")
 # A name in a formula, perhaps with an index. Names of arguments, and names in strings and comments,
 # are no symbols.
-_USE: Final = re.compile(
+_USE: Final = regex(
     r"(?<![\w)\]}'])'[^'\n]*'|\"[^\"\n]*\"|[#%][^\n]*"
     rf"|(?<![\w.\\])(?P<name>{_NAME})(?!\w)(?!\s{{0,4}}=(?!=))(?P<index>\[\s?\d{{1,2}}\s?\])?"
 )
 # A numbered list of symbols in SymPy: q1:4 is q1, q2, q3, and q:3 is q0, q1, q2.
-_RANGE: Final = re.compile(r"(?P<stem>[^\W\d]\w*?)(?P<first>\d{0,2}):(?P<end>\d{1,2})")
-_SYMBOL: Final = re.compile(r"\\{0,2}[^\W\d]\w{0,30}(?:\{\w{1,6}\})?")
-_SIZE: Final = re.compile(r"\s*,\s*[\[\d]")
+_RANGE: Final = regex(r"(?P<stem>[^\W\d]\w*?)(?P<first>\d{0,2}):(?P<end>\d{1,2})")
+_SYMBOL: Final = regex(r"\\{0,2}[^\W\d]\w{0,30}(?:\{\w{1,6}\})?")
+_SIZE: Final = regex(r"\s*,\s*[\[\d]")
 _MOST: Final = 60
 
 

@@ -5,7 +5,6 @@ The links are ``Link``, ``Revolute`` and ``Prismatic`` (Robotics Toolbox for MAT
 toolboxes).
 """
 
-import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from enum import StrEnum
@@ -15,6 +14,7 @@ from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText
 from service.grids.matrices.lists import unquoted
 from service.grids.scripts.script import arguments, excerpt, split_call, unread_script
+from service.regex import regex
 from service.translations import say, say_count
 
 PARAMETERS: Final = ("a", "alpha", "d", "theta")
@@ -68,20 +68,20 @@ _KNOWN: Final = frozenset({*PARAMETERS, "offset", "sigma", "mdh", "flip"})
 _IGNORED: Final = frozenset(
     {"qlim", "I", "r", "m", "G", "B", "Jm", "Tc", "name", "mesh", "symbolic", "parent"}
 )
-_KEYWORD: Final = re.compile(r"([A-Za-z_]\w{0,20})\s*=(?!=)\s*")
-_ZERO: Final = re.compile(r"[-+]?0{1,20}(?:\.0{0,20})?")
+_KEYWORD: Final = regex(r"([A-Za-z_]\w{0,20})\s*=(?!=)\s*")
+_ZERO: Final = regex(r"[-+]?0{1,20}(?:\.0{0,20})?")
 _TRUE: Final = frozenset({"1", "True", "true"})
 _FALSE: Final = frozenset({"0", "False", "false"})
 # A name. The names of constants and of functions of numbers are not joint variables.
-_NAME: Final = re.compile(r"[^\W\d]\w*")
+_NAME: Final = regex(r"[^\W\d]\w*")
 _CONSTANTS: Final = frozenset(
     {"pi", "Pi", "PI", "np", "numpy", "math", "sp", "sympy", "deg", "rad", "deg2rad", "radians"}
     | {"sym", "Rational", "sqrt", "S", "e", "E", "π"}
 )
 # In d, only a name such as q1 is a joint variable.
-_JOINT_LENGTH: Final = re.compile(r"(?<!\w)q_?\d")
+_JOINT_LENGTH: Final = regex(r"(?<!\w)q_?\d")
 _SHOWN: Final = {"d": "d", "theta": "θ"}
-_ALONE: Final = re.compile(r"[^\W\d][\w.]*(?:[({\[]\d{1,2}[)}\]])?")
+_ALONE: Final = regex(r"[^\W\d][\w.]*(?:[({\[]\d{1,2}[)}\]])?")
 
 # Returns the values of a row in brackets or of a named row; None for any other text.
 Vector = Callable[[SourceText], Sequence[SourceText] | None]

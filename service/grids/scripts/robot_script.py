@@ -40,6 +40,7 @@ from service.grids.scripts.script_names import (
     in_order,
     too_many_robots,
 )
+from service.regex import regex
 from service.translations import say, say_count
 
 _ROBOTS: Final = frozenset({"SerialLink", "DHRobot"})
@@ -47,39 +48,39 @@ _TRANSFORM: Final = "setFixedTransform"
 _JOINT: Final = "rigidBodyJoint"
 _CALLS: Final = "|".join(sorted({*LINK_CLASSES, *_ROBOTS, _TRANSFORM}, key=len, reverse=True))
 # Calls that occur only in a script for a robot. ``Link (i)`` may be the header of a table.
-_SCRIPT: Final = re.compile(
+_SCRIPT: Final = regex(
     r"(?<!\w)(?:(?:DHLink|(?:Revolute|Prismatic)M?DH|SerialLink|DHRobot|setFixedTransform)\("
     r"|(?:Link|Revolute|Prismatic)\s?\((?=[\['\")]|\w{1,20}\s?=|\w{1,20}\(|\w{1,20}\s?,\s?['\"]))"
 )
-_WORD: Final = re.compile(rf"(?<!\w)(?:{_CALLS})\s?\(")
+_WORD: Final = regex(rf"(?<!\w)(?:{_CALLS})\s?\(")
 _SIGNS_OF_A_SCRIPT: Final = ("Link", "Revolute", "Prismatic", "DHRobot", _TRANSFORM)
 
-_CONTROL: Final = re.compile(
+_CONTROL: Final = regex(
     r"(?:for|parfor|while|if|elif|elseif|else|switch|case|function|def|class|try|with)(?!\w)"
 )
-_ASSIGNMENT: Final = re.compile(
+_ASSIGNMENT: Final = regex(
     r"(?P<name>[A-Za-z_]\w{0,60})(?:\s?(?P<bracket>[({\[])\s?(?P<index>\d{1,2}|end\s?\+\s?1)\s?[)}\]])?"
     r"(?:\.(?P<property>\w{1,30}))?\s*=(?!=)\s*"
 )
-_APPENDED: Final = re.compile(r"(?P<name>[A-Za-z_]\w{0,60})\.append\s?\(")
+_APPENDED: Final = regex(r"(?P<name>[A-Za-z_]\w{0,60})\.append\s?\(")
 # Statements that change a list of links, or multiply a parameter and so on.
-_ALTERED: Final = re.compile(
+_ALTERED: Final = regex(
     r"(?:del\s{1,9}(?P<deleted>[A-Za-z_]\w{0,60})|(?P<name>[A-Za-z_]\w{0,60})"
     r"(?:\.(?:reverse|pop|insert|remove|clear|sort|extend)\s?\(|[^=]{0,40}?[-+*/]=(?!=)))"
 )
-_LINKS: Final = re.compile(r"links\s?=(?!=)\s*")
+_LINKS: Final = regex(r"links\s?=(?!=)\s*")
 _SHOWS: Final = frozenset({"print", "disp", "display"})
-_DECLARES: Final = re.compile(r"(?:\w{1,20}\.)?(?:symbols|Symbol|sym|syms|var)\s?\(")
-_NAME: Final = re.compile(r"[A-Za-z]\w*")
+_DECLARES: Final = regex(r"(?:\w{1,20}\.)?(?:symbols|Symbol|sym|syms|var)\s?\(")
+_NAME: Final = regex(r"[A-Za-z]\w*")
 # Properties that change a link or the robot; the others are limits, masses, plots.
 _CELLS: Final = frozenset({"a", "alpha", "d", "theta", "offset"})
 _FRAMES: Final = frozenset({"base", "tool"})
-_CHANGE: Final = re.compile(
+_CHANGE: Final = regex(
     r"[^=]{0,80}\.\s?(?:a|alpha|d|theta|offset|base|tool|sigma|mdh|flip|jointtype|JointAxis|links)"
     r"\s?(?:[(\[{][^=]{0,20})?=(?!=)"
 )
 # A link as MATLAB shows it, once it is made.
-_PRINTED: Final = re.compile(r"(?:Revolute|Prismatic)\((?:std|mod)\)")
+_PRINTED: Final = regex(r"(?:Revolute|Prismatic)\((?:std|mod)\)")
 _MOST_NAMES: Final = 12
 
 

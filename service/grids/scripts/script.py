@@ -1,6 +1,5 @@
 """Split a script in MATLAB or Python into statements and calls."""
 
-import re
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
@@ -11,15 +10,16 @@ from service.grids.cutting.pairs import CLOSES, split, strict_pairs
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.program_text import without_remarks
 from service.grids.scripts.session import without_prompts
+from service.regex import regex
 from service.translations import say
 
 _ENDS: Final = ";,\n\r\x85\u2028\u2029"
 # Lines that begin or end a block comment: %{ and %} in MATLAB, triple quotes in Python.
-_BLOCK: Final = re.compile(r"[ \t]*(%\{|%\}|\"\"\"|''')?")
-_CALL: Final = re.compile(r"(?:[A-Za-z_]\w{0,60}\.){0,4}([A-Za-z_]\w{0,60})[ \t]*\(")
+_BLOCK: Final = regex(r"[ \t]*(%\{|%\}|\"\"\"|''')?")
+_CALL: Final = regex(r"(?:[A-Za-z_]\w{0,60}\.){0,4}([A-Za-z_]\w{0,60})[ \t]*\(")
 _SHOWN: Final = 40
 # Blanks other than those of ASCII and the ends of lines: web pages have them in programs.
-_BLANK: Final = re.compile(r"[^\S\x00-\x20\x85\u2028\u2029]")
+_BLANK: Final = regex(r"[^\S\x00-\x20\x85\u2028\u2029]")
 
 
 @dataclass(frozen=True, slots=True)

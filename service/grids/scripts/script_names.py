@@ -1,6 +1,5 @@
 """The values of names in a script for a robot: links, matrices and numbers."""
 
-import re
 from collections.abc import Sized
 from dataclasses import dataclass, field
 from typing import Final
@@ -13,14 +12,15 @@ from service.grids.cutting.source_text import SourceText
 from service.grids.matrices import matlab
 from service.grids.scripts.robot_links import LINK_CLASSES, RobotLink, read_link, vector_link
 from service.grids.scripts.script import excerpt, split_call, unread_script
+from service.regex import regex
 from service.translations import say
 
 # A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
-NAMED: Final = re.compile(
+NAMED: Final = regex(
     r"(?P<name>[A-Za-z_]\w{0,60})(?:\s?(?P<bracket>[({\[])\s?(?P<index>:|\d{1,2})"
     r"\s?(?P<columns>,\s?:)?\s?[)}\]])?"
 )
-NUMBERED: Final = re.compile(r"(.*?)(\d{1,2})[)}\]]?")
+NUMBERED: Final = regex(r"(.*?)(\d{1,2})[)}\]]?")
 _MOST_ROWS: Final = GRID_LIMITS.rows - 1
 # The same link may have a name of its own and be in lists, too.
 _MOST_LINKS: Final = 4 * _MOST_ROWS

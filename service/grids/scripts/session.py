@@ -10,19 +10,20 @@ from typing import Final
 
 from service.grids.cutting.pairs import CLOSES
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 
-_MARK: Final = re.compile(
+_MARK: Final = regex(
     r"^[ \t]*(?:(?P<input>(?:Trial|EDU)?>>>?|In ?\[\d{0,5}\] ?:=?|\(?%i\d{1,5}\)?|octave:\d{1,5}>"
     r"|sage:|julia>)"
     r"|Out ?\[\d{0,5}\] ?(?://\w{1,20})?[=:]|\(?%o\d{1,5}\)?)[ \t]*",
     re.MULTILINE,
 )
 # Python's prompt before the second and later lines of an input.
-_CONTINUED: Final = re.compile(r"^[ \t]*\.\.\.(?:[ \t]|$)", re.MULTILINE)
+_CONTINUED: Final = regex(r"^[ \t]*\.\.\.(?:[ \t]|$)", re.MULTILINE)
 
 
 # An input that shows the value of a name: A1, print(A1), A1 // MatrixForm.
-_ASKED: Final = re.compile(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?![\w.*@+-])")
+_ASKED: Final = regex(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?![\w.*@+-])")
 
 
 def session_outputs(source: SourceText, *, named: bool = False) -> SourceText:

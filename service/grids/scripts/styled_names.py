@@ -4,23 +4,24 @@ import re
 from typing import Final
 
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 
 _NAME: Final = r"\\?[^\W\d]\w{0,11}(?:\{\w{1,6}\})?"
 # A bullet or bold type before a name and its sign; elsewhere "-" and "*" may belong to a value.
-_STYLED: Final = re.compile(
+_STYLED: Final = regex(
     rf"^[ \t]*(?:[-*•‣◦][ \t]{{1,4}})?(?P<bold>\*\*|__)?(?P<name>{_NAME})[ \t]{{0,4}}"
     r"(?P<closed>(?P=bold))?[ \t]{0,4}(?P<sign>[=:])(?!=)(?P<open>(?P=bold))?"
     r"(?P<value>[^\n]*)",
     re.MULTILINE,
 )
-_BEGINS_VALUE: Final = re.compile(r"[*_\s]{0,8}(?:[\[(\\$]|\w{1,8}\.\w{1,8}\(|\Z)")
-_BULLET: Final = re.compile(r"[ \t]*[-*•‣◦][ \t]")
-_BOXED: Final = re.compile(
+_BEGINS_VALUE: Final = regex(r"[*_\s]{0,8}(?:[\[(\\$]|\w{1,8}\.\w{1,8}\(|\Z)")
+_BULLET: Final = regex(r"[ \t]*[-*•‣◦][ \t]")
+_BOXED: Final = regex(
     r"^[ \t]*(?P<dollars>\${0,2})[ \t]*\\boxed[ \t]*\{(?P<inner>[^\n]*)\}[ \t]*(?P=dollars)[ \t]*$",
     re.MULTILINE,
 )
 # A matrix may begin on the line below its heading.
-_MATRIX: Final = re.compile(
+_MATRIX: Final = regex(
     r"^[ \t]*(?:(?:the|homogeneous|transformation|rotation)[ \t]){0,3}"
     r"(?:(?P<before>[A-Z]_?\w{0,5})[ \t]matrix|matrix[ \t](?P<after>[A-Z]_?\w{0,5}))"
     r"[ \t]*(?:\r?\n)?[ \t]*(?=\[|\\begin\{[bpv]?matrix\}|(?:\w{1,8}\.)?(?:array|[mM]atrix)\()",

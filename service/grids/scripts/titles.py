@@ -14,87 +14,84 @@ from service.expressions.errors import Note, Span
 from service.grids.cutting.blanks import split_blanks
 from service.grids.cutting.grid import GridError
 from service.grids.cutting.source_text import SourceText, joined
+from service.regex import regex
 from service.translations import say
 
-_QUOTED: Final = re.compile(r"^[ \t]{0,3}>(?!>)(?=[ \t|]) ?", re.MULTILINE)
-_FENCE: Final = re.compile(r"[ \t]*(?:```|~~~)[`~]{0,3}[ \t]*[\w+-]{0,20}[ \t]*")
+_QUOTED: Final = regex(r"^[ \t]{0,3}>(?!>)(?=[ \t|]) ?", re.MULTILINE)
+_FENCE: Final = regex(r"[ \t]*(?:```|~~~)[`~]{0,3}[ \t]*[\w+-]{0,20}[ \t]*")
 _BARS: Final = "|│┃║"
 # The separators of rows; the first that at least two lines have is the one of the table.
 _SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
 # A bracket that is not the unit in a header.
-_PROGRAM: Final = re.compile(
-    r"\[(?!(?:in )?(?:[cm]?m|deg|rad|°)\])|■|<<|(?<!\w)(?:dict|np|sp)(?!\w)"
-)
-_ENVIRONMENT: Final = re.compile(r"\\(?:begin|end) ?\{(?!document\})|\\[\[\]]|\$\$")
+_PROGRAM: Final = regex(r"\[(?!(?:in )?(?:[cm]?m|deg|rad|°)\])|■|<<|(?<!\w)(?:dict|np|sp)(?!\w)")
+_ENVIRONMENT: Final = regex(r"\\(?:begin|end) ?\{(?!document\})|\\[\[\]]|\$\$")
 _PADDING: Final = " \t;,"
 _EMPTY_CELLS: Final = frozenset({"\t\t", ";;", ",,"})
 # A line of one or two words, which may be short: "DH", "% DH", "End".
-_FEW_WORDS: Final = re.compile(
+_FEW_WORDS: Final = regex(
     r"[%#*\s]*(?:(?!pi\b)[^\W\d_]{2,}(?: [^\W\d_]+)?"
     r"|[A-Z]\w{0,3} (?:[Mm]atri[xz]|[Mm]atrice|[Tt]able|[Tt]ab(?:elle|la|leau)))\s?[.!:]?"
 )
 _MOST_WORDS: Final = 2
 _FEWEST_ROWS: Final = 2
 # A rule, a mail address or an address on the web.
-_ASIDE: Final = re.compile(r"[-=_*~#+\s]{2,200}|[\w.+-]{1,64}@[\w.-]{1,64}|https?://\S{1,200}")
-_DOCSTRING: Final = re.compile(r"^[ \t]*[rRuU]?(\"{3}|'{3})", re.MULTILINE)
+_ASIDE: Final = regex(r"[-=_*~#+\s]{2,200}|[\w.+-]{1,64}@[\w.-]{1,64}|https?://\S{1,200}")
+_DOCSTRING: Final = regex(r"^[ \t]*[rRuU]?(\"{3}|'{3})", re.MULTILINE)
 # A number that is no student's.
-_NUMBER: Final = re.compile(r"(?<![\w.])\d{1,4}(?:\.\d{1,12})?(?!\w)")
-_PLAIN_WORD: Final = re.compile(
-    r"[(\"„“]?(?:[^\W\d_]+(?:['’-][^\W\d_]+)*|\d{5,9})[).,:;!?\"“”]{0,3}"
-)
+_NUMBER: Final = regex(r"(?<![\w.])\d{1,4}(?:\.\d{1,12})?(?!\w)")
+_PLAIN_WORD: Final = regex(r"[(\"„“]?(?:[^\W\d_]+(?:['’-][^\W\d_]+)*|\d{5,9})[).,:;!?\"“”]{0,3}")
 # Signs of a sentence or of a student's name, which the words of headers do not have.
-_SENTENCE: Final = re.compile(
+_SENTENCE: Final = regex(
     r"[.,:;!?'’]|\d{5}|(?<!\w)(?:is|are|this|the|here|my|ist|sind|das|hier|meine?|und|viele"
     r"|est|voil[aà]|voici|mon|ma|es|est[ae]|mi|gracias|merci|danke|thanks)(?!\w)|我的|答案|谢谢",
     re.IGNORECASE,
 )
 # A function's call in a program.
-_CALL: Final = re.compile(r"\w\(")
+_CALL: Final = regex(r"\w\(")
 # Signs of a row with several values.
-_SEVERAL: Final = re.compile(r"[\s,;\[\]]")
+_SEVERAL: Final = regex(r"[\s,;\[\]]")
 # Signs of a formula, a row or a program.
-_SIGNS: Final = re.compile(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
+_SIGNS: Final = regex(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
 # A name in a sentence of Markdown or LaTeX, a reference, or an escaped star.
-_INLINE: Final = re.compile(
+_INLINE: Final = regex(
     r"\$[^$=\n]{1,60}\$|\\\([^=\n]{1,60}?\\\)|~?\\(?:(?:eq)?ref|label|cite)\{[^{}]{0,40}\}|\\(?=[*_#])"
     r"|\\(?:documentclass|usepackage)(?:\[[^][]{0,80}\])?\{[\w,]{1,80}\}|\\(?:begin|end)\{document\}"
 )
 # A command of LaTeX with words in it.
-_COMMAND: Final = re.compile(
+_COMMAND: Final = regex(
     r"\\(?:(?:sub){0,2}section|(?:sub)?paragraph|chapter|title|emph|text(?:bf|it))\*?\{([^{}]{0,200})\}"
 )
-_ONLY_COMMAND: Final = re.compile(r"\\[a-z][^$]*\Z")
+_ONLY_COMMAND: Final = regex(r"\\[a-z][^$]*\Z")
 # A legend of the stars that mark joint variables.
-_LEGEND: Final = re.compile(r"\*+\)?\s?[=:]")
-_WORD: Final = re.compile(
+_LEGEND: Final = regex(r"\*+\)?\s?[=:]")
+_WORD: Final = regex(
     r"(?<!\w)(?!(?:alpha|theta|sqrt|atan2?)(?!\w))[^\W\d_]{4,}(?!\w)|[\u4e00-\u9fff]{2}"
 )
-_PARAMETER: Final = re.compile(r"(?<!\w)(?:alpha|alfa|theta|th|[adrqθα])(?=_|[^\w']|\Z)")
-_CONTROL: Final = re.compile(r"[ \t]*(?:for|while|if|elif|else|def|class|try|with|lambda)(?!\w)")
-_TITLE: Final = re.compile(
+_PARAMETER: Final = regex(r"(?<!\w)(?:alpha|alfa|theta|th|[adrqθα])(?=_|[^\w']|\Z)")
+_CONTROL: Final = regex(r"[ \t]*(?:for|while|if|elif|else|def|class|try|with|lambda)(?!\w)")
+_TITLE: Final = regex(
     r"[ \t]*(?:#|\*\*|(?:table|tabelle|tab\.|tabla|tableau|tabella|表) ?\d)|.*[:：][ \t]*\Z"
     # A footnote, or a sentence.
     r"|[ \t]*(?:[*∗†‡]{1,2} ?[^\W\d_]{4}|(?:note|hinweis|nota|remarque)\b)|[^\d=\n]{20,200}\.\Z",
     re.IGNORECASE,
 )
-_FREEDOM: Final = re.compile(
+_FREEDOM: Final = regex(
     r"degrees? of freedom|freiheitsgrade?|grados de libertad|degrés? de liberté|自由度",
     re.IGNORECASE,
 )
-UNIT: Final = re.compile(
+UNIT: Final = regex(
     r"(?<![^\W\d_])(?:deg(?:rees?)?|degrés?|grad|grados?|gradi|rad(?:ian\w{0,4})?|bogenma(?:ß|ss)"
     r"|[cmd]m|(?:milli|centi|mili|zenti)?m(?:et(?:er|re|ro)s?|ètres?)|inch(?:es)?)(?![^\W\d_])"
     r"|°|弧度|度|毫米|厘米|米|(?<!\w)(?:in|en) m(?!\w)",
     re.IGNORECASE,
 )
 # Words of a sentence that corrects a table: columns or signs are exchanged …
-_EXCHANGES: Final = re.compile(
+_EXCHANGES: Final = regex(
     r"swapp|exchang|interchang|vertausch|échang|invers[ée]|intercambi|invertid|交换|互换|颠倒",
     re.IGNORECASE,
 )
 # … or, after the table, something should be different.
-_CORRECTS: Final = re.compile(
+_CORRECTS: Final = regex(
     r"correction|erratum|typo|mistake|wrong|(?:should|must)(?: \w+){0,3} be(?!\w)|instead"
     r"|rather than|(?<!\w)not (?:0|[+-]?\d|[a-zαθ]_?\w?(?!\w))"
     r"|korrektur|korrigier|berichtig|falsch|fehler|stattdessen|(?<!\w)statt(?!\w)|sollte|muss(?!\w)"
@@ -150,7 +147,7 @@ _PAGE: Final = (
     r"(?:[ \t]?(?:of|von|sur|de|di|/)[ \t]?\d{1,3})?|-[ \t]?\d{1,3}[ \t]?-"
     r"|第[ \t]?\d{1,3}[ \t]?页(?:.{0,3}共[ \t]?\d{1,3}[ \t]?页)?)[ \t]*"
 )
-_PICTURE: Final = re.compile(rf"^(?:{_IMAGE}|{_PRODUCT}|(?i:{_PAGE}))\r?$\n?", re.MULTILINE)
+_PICTURE: Final = regex(rf"^(?:{_IMAGE}|{_PRODUCT}|(?i:{_PAGE}))\r?$\n?", re.MULTILINE)
 
 
 def without_pictures(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:

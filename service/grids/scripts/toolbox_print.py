@@ -14,20 +14,21 @@ from service.grids.cutting.grid import grid
 from service.grids.cutting.source_text import SourceText, joined
 from service.grids.scripts.script import RobotTable, unread_script
 from service.grids.scripts.script_names import too_many_robots
+from service.regex import regex
 from service.translations import say
 
-_FIRST_LINE: Final = re.compile(
+_FIRST_LINE: Final = regex(
     r"(?:::[ \t]{0,4}|\()(?P<axes>\d{1,2}) axis, [RP]{1,12}, (?P<matlab>std|mod)DH"
     r"|(?P<joints>\d{1,2}) joints? \([RP]{1,12}\),[^\n]{0,80}?"
     r"(?P<python>standard|modified) DH parameters"
 )
 # The headers that the toolbox for MATLAB prints, if the first line is missing.
-_BOX: Final = re.compile(
+_BOX: Final = regex(
     r"^[ \t]*\|[ \t]*j[ \t]*\|[ \t]*theta[ \t]*\|[ \t]*d[ \t]*\|[ \t]*a[ \t]*\|[ \t]*alpha[ \t]*"
     r"\|[ \t]*offset[ \t]*\|",
     re.MULTILINE,
 )
-_BARS: Final = re.compile(r"[|│┃║]")
+_BARS: Final = regex(r"[|│┃║]")
 _HEADERS: Final[Mapping[str, str]] = {
     "theta": "theta", "θ": "theta", "d": "d", "a": "a", "alpha": "alpha", "⍺": "alpha",
     "α": "alpha", "offset": "offset",
@@ -36,14 +37,14 @@ _CONVENTIONS: Final = {"std": "standard", "sta": "standard", "mod": "modified"}
 _INDEX: Final = " ⱼ₋₁"
 _COLUMNS: Final = ("a", "alpha", "d", "theta")
 # A line below the headers without values, as Markdown draws it.
-_RULE: Final = re.compile(r"[\s|│┃║:=\-]+")
+_RULE: Final = regex(r"[\s|│┃║:=\-]+")
 _INDEXED: Final = r"[ _]?\{?[\d₁-₉]"
 # The joint variable, as the toolbox prints it or as a student writes it into the table.
-_VARIABLE: Final = re.compile(rf"[$\\]{{0,2}}(?:q|th|theta|θ|ϑ){_INDEXED}", re.IGNORECASE)
-_SLIDING: Final = re.compile(rf"\$?q{_INDEXED}", re.IGNORECASE)
-_ZERO: Final = re.compile(r"-?0(?:\.0*)?°?")
-_FRAME: Final = re.compile(r"(?<![^\W\d_])(?:tool|base)(?![^\W\d_])")
-_NUMBER: Final = re.compile(r"(?<![\w.])-?\d{1,12}(?:\.\d{0,12})?(?![\w.])")
+_VARIABLE: Final = regex(rf"[$\\]{{0,2}}(?:q|th|theta|θ|ϑ){_INDEXED}", re.IGNORECASE)
+_SLIDING: Final = regex(rf"\$?q{_INDEXED}", re.IGNORECASE)
+_ZERO: Final = regex(r"-?0(?:\.0*)?°?")
+_FRAME: Final = regex(r"(?<![^\W\d_])(?:tool|base)(?![^\W\d_])")
+_NUMBER: Final = regex(r"(?<![\w.])-?\d{1,12}(?:\.\d{0,12})?(?![\w.])")
 # The numbers of two unit matrices side by side, as older versions print base and tool.
 _UNIT_MATRICES: Final = [[float(i == j) for j in range(4)] * 2 for i in range(4)]
 

@@ -1,6 +1,5 @@
 """Notices of platforms (Platform Notification Service) about files that were handed in."""
 
-import re
 from collections.abc import Mapping
 from datetime import datetime
 from typing import Annotated, Any, Final, TypeGuard
@@ -12,12 +11,13 @@ from pydantic import BaseModel, ConfigDict, Field, StringConstraints, Validation
 from service.lti.messages import LTI, check_parties, check_times, signed_claims
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration, unusable
+from service.regex import regex
 
 HANDED_IN: Final = "LtiAssetProcessorSubmissionNotice"
 # With this one, platforms try whether notices arrive.
 HELLO: Final = "LtiHelloWorldNotice"
 MOST_FILES: Final = 20
-_SURROGATE: Final = re.compile(r"[\ud800-\udfff]")
+_SURROGATE: Final = regex(r"[\ud800-\udfff]")
 
 _Name = Annotated[str, StringConstraints(min_length=1, max_length=255)]
 _Address = Annotated[str, StringConstraints(min_length=1, max_length=1000)]

@@ -18,6 +18,7 @@ from service.lti.own_keys import SigningKey, ensure_key, signing_key
 from service.lti.problems import LtiError
 from service.lti.registrations import Registration
 from service.lti.scores.score_problems import LaterError, RefusedError
+from service.regex import regex
 from service.translations import say
 
 _ASSERTION: Final = "urn:ietf:params:oauth:client-assertion-type:jwt-bearer"
@@ -28,7 +29,7 @@ _PAST: Final = timedelta(seconds=5)
 _BEFORE_END: Final = 60.0
 _LONGEST: Final = 86_400.0
 _USUAL: Final = 3600.0
-_TOKEN: Final = re.compile(r"[\x21-\x7e]{1,16000}")
+_TOKEN: Final = regex(r"[\x21-\x7e]{1,16000}")
 
 
 class AccessTokens:

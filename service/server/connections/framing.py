@@ -7,16 +7,16 @@ parser decides whether they are valid.
 # The parser reads all bytes that it gets, stores a head of any size, and begins the next request of
 # a pipeline before the previous one is answered. So it gets only what it should read now.
 
-import re
 from enum import Enum, auto
 from typing import Final
 
+from service.regex import regex
 from service.server.limits import MAX_FRAME, MAX_HEADERS, MAX_URL
 from service.server.refusals import large_frame, long_address, malformed, too_many_headers
 
 _END: Final = b"\r\n"
-_BARE_NEWLINE: Final = re.compile(rb"(?<!\r)\n")
-_CHUNK_SIZE: Final = re.compile(rb"([0-9A-Fa-f]{1,8})[ \t]*(?:;.*)?")
+_BARE_NEWLINE: Final = regex(rb"(?<!\r)\n")
+_CHUNK_SIZE: Final = regex(rb"([0-9A-Fa-f]{1,8})[ \t]*(?:;.*)?")
 # The least number of bytes that a line of a chunked body counts: even a short line costs work.
 _LEAST_LINE: Final = 64
 # The bytes of a body or chunk that are passed on at once; fewer only at its end. Each piece wakes

@@ -21,6 +21,7 @@ from uvicorn.server import ServerState
 from service.access.client_key import client_key
 from service.api.http.problems import ProblemError
 from service.api.http.request_context import end_request
+from service.regex import regex
 from service.server.connections.early_cors import origin_in
 from service.server.connections.flow import LingeringTransport, Valve
 from service.server.connections.framing import Framing
@@ -38,10 +39,10 @@ from service.server.refusals import late, malformed, too_busy
 from service.submissions.strict_json import MAX_BODY_SIZE
 
 # A server may ignore an Upgrade header (RFC 9110, 7.8). The parser would stop at it.
-_UPGRADE: Final = re.compile(rb"\r\n(?=upgrade:)", re.IGNORECASE)
-_HOST: Final = re.compile(rb"\r\nhost[ \t]*:", re.IGNORECASE)
+_UPGRADE: Final = regex(rb"\r\n(?=upgrade:)", re.IGNORECASE)
+_HOST: Final = regex(rb"\r\nhost[ \t]*:", re.IGNORECASE)
 # The parser accepts thousands of leading zeros; int() refuses more than 4,300 digits.
-_LONG_LENGTH: Final = re.compile(rb"\r\ncontent-length:[ \t]*[0-9]{20}", re.IGNORECASE)
+_LONG_LENGTH: Final = regex(rb"\r\ncontent-length:[ \t]*[0-9]{20}", re.IGNORECASE)
 # The value of SO_LINGER with which closing a socket resets the connection: on, for 0 seconds.
 _NO_LINGER: Final = struct.pack("hh" if sys.platform == "win32" else "ii", 1, 0)
 

@@ -18,7 +18,7 @@ from service.solutions.work import Work
 _MOST_STEPS = 60
 
 
-def answer(part: DhRowSpec, work: Work) -> PrintedAnswer:
+def answer_dh_row(part: DhRowSpec, work: Work) -> PrintedAnswer:
     """Return the DH row of the part's transform, or the answer that the transform has none."""
     # The row follows from the entries of a link transform (Spong, Hutchinson, Vidyasagar, *Robot
     # Modeling and Control*, eq. 3.10; Craig, *Introduction to Robotics*, eq. 3.6).
@@ -45,7 +45,7 @@ def _simplified(length: sympy.Expr) -> sympy.Expr:
     return sympy.trigsimp(sympy.expand(length)) if length.count_ops() < _MOST_STEPS else length
 
 
-def lazy(_part: DhRowSpec, _exercise: Exercise) -> list[object]:
+def lazy_dh_row(_part: DhRowSpec, _exercise: Exercise) -> list[object]:
     """Return a row of zeros, which needs no knowledge."""
     # "No row" is not included, because this guess may be right.
     return [dict.fromkeys(COLUMNS, "0")]

@@ -8,7 +8,7 @@ from service.solutions.model_solution import PrintedAnswer
 from service.solutions.work import Work
 
 
-def answer(part: DhTableSpec, work: Work) -> PrintedAnswer:
+def answer_dh_table(part: DhTableSpec, work: Work) -> PrintedAnswer:
     """Return the table. If the part accepts either convention, the table names its convention."""
     robot = work.exercise.robot
     asked = part.convention
@@ -18,7 +18,7 @@ def answer(part: DhTableSpec, work: Work) -> PrintedAnswer:
     return layout.table(rows, table.labels, convention, named=asked == "either")
 
 
-def lazy(part: DhTableSpec, exercise: Exercise) -> list[object]:
+def lazy_dh_table(part: DhTableSpec, exercise: Exercise) -> list[object]:
     """Return a table with the joint variables in their columns and 0 elsewhere."""
     robot, asked = exercise.robot, part.convention
     convention = asked if isinstance(asked, Convention) else robot.convention

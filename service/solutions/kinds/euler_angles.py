@@ -8,7 +8,7 @@ from service.solutions.orientation import euler_angles
 from service.solutions.work import Work
 
 
-def answer(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
+def answer_euler_angles(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
     """Return the angles that the exercise file gives, or the angles of the robot's pose."""
     given = work.as_written(part)
     if given:
@@ -17,6 +17,6 @@ def answer(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
     return layout.listed(list(map(work.writer.angle, angles)))
 
 
-def lazy(_part: EulerAnglesSpec, _exercise: Exercise) -> list[object]:
+def lazy_euler_angles(_part: EulerAnglesSpec, _exercise: Exercise) -> list[object]:
     """Return the answer that needs no knowledge: three zeros."""
     return [["0"] * 3]

@@ -10,7 +10,7 @@ from service.solutions.model_solution import PrintedAnswer
 from service.solutions.work import Work
 
 
-def answer(part: FindSlipSpec, work: Work) -> PrintedAnswer:
+def answer_find_slip(part: FindSlipSpec, work: Work) -> PrintedAnswer:
     """Return the cells to mark, and the corrected table."""
     robot = work.exercise.robot
     table = robot.tables[part.convention]
@@ -21,6 +21,6 @@ def answer(part: FindSlipSpec, work: Work) -> PrintedAnswer:
     return layout.marked(marks, printed)
 
 
-def lazy(part: FindSlipSpec, exercise: Exercise) -> list[object]:
+def lazy_find_slip(part: FindSlipSpec, exercise: Exercise) -> list[object]:
     """Return the given table unchanged, with no cell marked."""
     return [{"table": {"rows": as_rows(slip_of(part, exercise).texts)}}]

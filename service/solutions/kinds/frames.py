@@ -16,7 +16,7 @@ from service.solutions.work import Work
 _BASE = "xyz"
 
 
-def answer(part: FramesSpec, work: Work) -> PrintedAnswer:
+def answer_frames(part: FramesSpec, work: Work) -> PrintedAnswer:
     """Return the frames of the robot's own table, with all joint variables 0."""
     exercise = work.exercise
     robot, algebra = exercise.robot, Algebra(exercise, home=True)
@@ -43,7 +43,7 @@ def _direction(vector: sympy.Matrix, work: Work) -> str | list[Node]:
     return [work.writer.number(each) for each in simple]
 
 
-def lazy(part: FramesSpec, exercise: Exercise) -> list[object]:
+def lazy_frames(part: FramesSpec, exercise: Exercise) -> list[object]:
     """Return frames on the correct joints that are all equal to the base frame."""
     standard = part.convention is Convention.STANDARD
     joints = [joint.index for joint in exercise.joints][int(standard) :]

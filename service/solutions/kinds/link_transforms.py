@@ -7,7 +7,7 @@ from service.solutions.model_solution import PrintedAnswer
 from service.solutions.work import Work
 
 
-def answer(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
+def answer_link_transforms(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
     """Return the link transforms in order, each with its name."""
     matrices = work.link_matrices(part.convention)
     return PrintedAnswer(
@@ -19,7 +19,7 @@ def answer(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
     )
 
 
-def lazy(part: LinkTransformsSpec, exercise: Exercise) -> list[object]:
+def lazy_link_transforms(part: LinkTransformsSpec, exercise: Exercise) -> list[object]:
     """Return the motion of each joint, and the identity for each row without a joint."""
     table = exercise.robot.tables[part.convention]
     fixed = len(table.rows) - len(table.joints)

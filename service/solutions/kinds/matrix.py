@@ -7,14 +7,14 @@ from service.solutions.model_solution import PrintedAnswer
 from service.solutions.work import Work
 
 
-def answer(part: MatrixSpec, work: Work) -> PrintedAnswer:
+def answer_matrix(part: MatrixSpec, work: Work) -> PrintedAnswer:
     """Return the matrix in the exercise file."""
     given = work.as_written(part)
     assert given is not None
     return layout.matrix(given)
 
 
-def lazy(part: MatrixSpec, _exercise: Exercise) -> list[object]:
+def lazy_matrix(part: MatrixSpec, _exercise: Exercise) -> list[object]:
     """Return two matrices: one of zeros, and one with 1 on the diagonal and 0 elsewhere."""
     rows, columns = len(part.quantities), len(part.quantities[0])
     zeros = [["0"] * columns for _ in range(rows)]

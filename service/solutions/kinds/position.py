@@ -8,7 +8,7 @@ from service.solutions.motions import multiplied
 from service.solutions.work import Work
 
 
-def answer(part: PositionSpec, work: Work) -> PrintedAnswer:
+def answer_position(part: PositionSpec, work: Work) -> PrintedAnswer:
     """Return the coordinates that the exercise file gives, or those of the robot's frame."""
     given = work.as_written(part)
     if given:
@@ -19,6 +19,6 @@ def answer(part: PositionSpec, work: Work) -> PrintedAnswer:
     )
 
 
-def lazy(part: PositionSpec, _exercise: Exercise) -> list[object]:
+def lazy_position(part: PositionSpec, _exercise: Exercise) -> list[object]:
     """Return the answer that needs no knowledge: all coordinates are 0."""
     return [["0"] * len(part.coordinates)]

@@ -11,7 +11,7 @@ from service.solutions.work import Work
 _AXES = {"x": X, "y": Y, "z": Z}
 
 
-def answer(part: RotationSpec, work: Work) -> PrintedAnswer:
+def answer_rotation(part: RotationSpec, work: Work) -> PrintedAnswer:
     """Return the rotation that the exercise file or the robot determines."""
     given = work.as_written(part) if part.steps is None else None
     return layout.matrix(given) if given else work.matrix(multiplied(_turns(part, work)).rotation)
@@ -28,6 +28,6 @@ def _turns(part: RotationSpec, work: Work) -> list[Motion]:
     return motions
 
 
-def lazy(_part: RotationSpec, exercise: Exercise) -> list[object]:
+def lazy_rotation(_part: RotationSpec, exercise: Exercise) -> list[object]:
     """Return the identity, and the rotation of an arm whose joints all have the same axis."""
     return [*poses(exercise, 3)]

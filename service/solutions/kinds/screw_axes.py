@@ -12,7 +12,7 @@ from service.solutions.motions import multiplied
 from service.solutions.work import Work
 
 
-def answer(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
+def answer_screw_axes(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
     """Return the screw axes that the exercise file gives, or else those of the robot."""
     # The robot's joints are at home.
     given = work.as_written(part)
@@ -39,7 +39,7 @@ def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, 
     ]
 
 
-def lazy(part: ScrewAxesSpec, exercise: Exercise) -> list[object]:
+def lazy_screw_axes(part: ScrewAxesSpec, exercise: Exercise) -> list[object]:
     """Return two answers: every axis is the z axis of the base frame, and every axis is zero."""
     kinds = [joint.prismatic for joint in exercise.joints]
     prismatic = kinds if part.expected is None else [False] * len(part.expected)

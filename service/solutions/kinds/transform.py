@@ -9,7 +9,7 @@ from service.solutions.motions import multiplied
 from service.solutions.work import Work
 
 
-def answer(part: TransformSpec, work: Work) -> PrintedAnswer:
+def answer_transform(part: TransformSpec, work: Work) -> PrintedAnswer:
     """Return the transform that the exercise file gives, or the pose of the robot."""
     given = work.as_written(part)
     return (
@@ -17,6 +17,6 @@ def answer(part: TransformSpec, work: Work) -> PrintedAnswer:
     )
 
 
-def lazy(_part: TransformSpec, exercise: Exercise) -> list[object]:
+def lazy_transform(_part: TransformSpec, exercise: Exercise) -> list[object]:
     """Return the identity, and the transform of an arm whose joints all have the same axis."""
     return [*poses(exercise, 4)]

@@ -7,13 +7,13 @@ from service.solutions.model_solution import PrintedAnswer
 from service.solutions.work import Work
 
 
-def answer(part: VectorSpec, work: Work) -> PrintedAnswer:
+def answer_vector(part: VectorSpec, work: Work) -> PrintedAnswer:
     """Return the components in order."""
     given = work.as_written(part)
     assert given is not None
     return layout.listed(given[0])
 
 
-def lazy(part: VectorSpec, _exercise: Exercise) -> list[object]:
+def lazy_vector(part: VectorSpec, _exercise: Exercise) -> list[object]:
     """Return the answer that needs no knowledge: all components are 0."""
     return [["0"] * len(part.components)]

@@ -1,15 +1,15 @@
 """The ids of generated robots: ``practice-2-modified~k3f9``."""
 
-import re
 from dataclasses import dataclass, replace
 from typing import Final
 
 from service.kinematics.dh import Convention
+from service.regex import regex
 from service.variants.robots.level import LEVELS
 
 _DIGITS: Final = "0123456789abcdefghijklmnopqrstuvwxyz"
 _LONGEST: Final = 8
-_ID: Final = re.compile(
+_ID: Final = regex(
     rf"practice-(\d)-({'|'.join(Convention)})~(0|[1-9a-z][0-9a-z]{{0,{_LONGEST - 1}}})"
 )
 # Every seed below is a robot's number.

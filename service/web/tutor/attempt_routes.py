@@ -11,6 +11,7 @@ from starlette.responses import Response
 from service.api.http.language import language_of
 from service.api.http.lookup import Catalogue, exercise_or_404, reachable_exercises
 from service.api.permissions.access import require_reach
+from service.regex import regex
 from service.web.assets import Assets
 from service.web.page_answer import page_answer
 from service.web.page_headers import PRIVATE_HEADERS
@@ -23,7 +24,7 @@ from service.web.tutor.attempt_pages import (
 )
 from service.web.tutor.tutor_routes import Tutoring
 
-_NAME: Final = re.compile(r"[a-z0-9-]{1,64}", re.ASCII)
+_NAME: Final = regex(r"[a-z0-9-]{1,64}", re.ASCII)
 
 
 def attempt_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:

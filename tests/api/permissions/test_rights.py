@@ -1,11 +1,14 @@
 """docs/keys.md lists the right that each route requires."""
 
+import asyncio
 import re
 from collections.abc import Callable, Mapping
+from pathlib import Path
 
 import httpx
 import pytest
 from fastapi import APIRouter, FastAPI, Request
+from fastapi.routing import iter_route_contexts
 from starlette.routing import Route
 
 from service.access.caller import Scope
@@ -15,6 +18,8 @@ from service.api.permissions.rights import RIGHTS, Reach, right_of
 from service.api.web_pages import WebPages
 from service.catalogue import Exercise
 from service.catalogue.drafts import Drafts
+from service.server.installed import installed_app
+from service.settings import load_settings
 from tests.api.permissions.rights_table import PAGE, row, with_table
 
 # Values for the texts of all problems.
@@ -77,11 +82,36 @@ def test_the_missing_scope_is_named(scope: Scope, allowed: str) -> None:
     assert problem.detail == f"This key may not {allowed}: it has not the scope {scope.value}."
 
 
-def test_a_route_without_an_entry_prevents_startup(catalogue: Mapping[str, Exercise]) -> None:
+def routes_of(app: FastAPI) -> set[str]:
+    return {
+        f"{method} {route.path}"
+        for route in iter_route_contexts(app.router.routes)
+        for method in (route.methods or {"ANY"}) - {"HEAD"}
+    }
+
+
+def test_the_table_has_each_route_and_no_other(tmp_path: Path) -> None:
+    # With a database and a secret, the service has all its routes.
+    database, secret = f"sqlite:///{tmp_path}/attempts.db", "one secret of thirty letters or more"
+    app = installed_app(load_settings(database=database, secret=secret))
+
+    async def routes() -> set[str]:
+        async with app.router.lifespan_context(app):
+            return routes_of(app)
+
+    assert asyncio.run(routes()) == RIGHTS.keys()
+
+
+def test_a_route_without_an_entry_answers_nobody(
+    catalogue: Mapping[str, Exercise], client_of: Callable[[FastAPI], httpx.Client]
+) -> None:
     pages = APIRouter(prefix="/tutor")
     pages.add_api_route("/secrets", lambda: "secret")
-    with pytest.raises(LookupError, match="GET /tutor/secrets"):
-        application(catalogue, pages=WebPages(pages, lambda *_: None, lambda: None, Drafts()))
+    app = application(catalogue, pages=WebPages(pages, lambda *_: None, lambda: None, Drafts()))
+    assert "GET /tutor/secrets" in routes_of(app)
+    answer = client_of(app).get("/tutor/secrets")
+    assert answer.status_code == 500
+    assert answer.json()["type"].endswith(":failed")
 
 
 def test_the_exercise_of_a_right_is_that_of_the_route(

@@ -10,6 +10,7 @@ import re
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from pkgutil import resolve_name
 
 import pytest
 
@@ -34,8 +35,10 @@ def vocabulary(repair: str) -> Vocabulary:
 
 
 def test_every_rule_is_registered_once_and_has_cases() -> None:
-    registered = [rule.__name__.rsplit(".", 1)[1] for rule in RULES]
-    assert sorted(registered) == sorted(MODULES - HELPERS) == NAMES
+    rules = [resolve_name(f"{repairs.__name__}.{name}:repair_{name}") for name in MODULES - HELPERS]
+    assert len(RULES) == len(rules)
+    assert set(RULES) == set(rules)
+    assert sorted(MODULES - HELPERS) == NAMES
     assert {name for name, case in CASES if case.code} == set(NAMES)
     assert {name for name, case in CASES if not case.code} == set(NAMES)
     assert len(CASES) > 560

@@ -1,14 +1,14 @@
 """The stack of open brackets while a text is read."""
 
-import re
 from typing import Final
 
 from service.expressions.characters.unicode import CLOSE, OPEN
 from service.expressions.errors import Span, UnreadableError
 from service.expressions.limits import LIMITS
+from service.regex import regex
 
 PARTNERS: Final = {"(": ")", "[": "]", "{": "}", "|": "|", OPEN: CLOSE}
-_ROUND: Final = re.compile("[()]")
+_ROUND: Final = regex("[()]")
 # The token index of redundant braces around round brackets, which have no token.
 WRAPPING: Final = -1
 

@@ -1,18 +1,18 @@
 """Indices as programs write them: q[0] in Python and q(1) or q{1} in MATLAB are both joint 1."""
 
-import re
 from typing import Final, Literal, NamedTuple
 
 from service.expressions.characters import greek
 from service.expressions.parsing.lexing.letter_case import split_in_other_case
 from service.expressions.parsing.lexing.words import Piece, split
 from service.expressions.vocabulary.symbols import Vocabulary
+from service.regex import regex
 
 Style = Literal["[", "("]
 
-INDEX: Final = re.compile(r"\s?(?:\[\s*([0-9]{1,3})\s*\]|\(\s*([0-9]{1,3})\s*\)|"
+INDEX: Final = regex(r"\s?(?:\[\s*([0-9]{1,3})\s*\]|\(\s*([0-9]{1,3})\s*\)|"
                           r"\{\s*([0-9]{1,3})\s*\})")  # fmt: skip
-_STEM: Final = re.compile(rf"[A-Za-z{greek.CLASS}]+$")
+_STEM: Final = regex(rf"[A-Za-z{greek.CLASS}]+$")
 
 
 class Indexed(NamedTuple):

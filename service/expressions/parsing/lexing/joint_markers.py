@@ -13,10 +13,10 @@ A raised star is always the marker.
 # star before + or before a subtracted angle is ambiguous. If a blank precedes the star (q1 * + k),
 # a star before + is ambiguous.
 
-import re
 from typing import Final, Literal
 
 from service.expressions.characters.unicode import CLOSE, OPEN
+from service.regex import regex
 
 # How a star was read; "noted" if the sign after it allows another reading.
 Star = Literal["marker", "noted_marker", "product", "noted_product", "ambiguous"]
@@ -27,10 +27,10 @@ _ANGLE_SUBTRACTED: Final = (
     rf"\s*-[\s({{{OPEN}]*(?:pi\b|π|[0-9.]+\s*+\*?+\s*+(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|"
     rf"[0-9{{}}/ ]+{CLOSE}\s*+\*?+\s*+(?:pi\b|π))|\s*-\s*[0-9]{{2,}}\s*$"
 )
-_NOTHING: Final = re.compile(r"\s*(?:[)\]},]|$)")
-_PLUS: Final = re.compile(r"\s*\+")
-_MINUS: Final = re.compile(r"\s*-")
-_SUBTRACTED: Final = re.compile(rf"\s+-\s|{_ANGLE_SUBTRACTED}")
+_NOTHING: Final = regex(r"\s*(?:[)\]},]|$)")
+_PLUS: Final = regex(r"\s*\+")
+_MINUS: Final = regex(r"\s*-")
+_SUBTRACTED: Final = regex(rf"\s+-\s|{_ANGLE_SUBTRACTED}")
 # These are read as stars, but are never the marker.
 _DOTS: Final = frozenset({"·", "⋅", "×", r"\cdot", r"\times"})
 

@@ -13,25 +13,26 @@ from service.expressions.parsing.lexing.tokens import END, OPERAND_ENDS, Token
 from service.expressions.parsing.lexing.word_lexer import WordLexer
 from service.expressions.parsing.lexing.words import RUN
 from service.expressions.tree import Number
+from service.regex import regex
 
 NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"
-_TOKEN: Final = re.compile(
+_TOKEN: Final = regex(
     rf"\s*(?:({RUN})|({NUMBER})|(\*\*|\.[*/^]|[-+*/^(),°√\[\]{{}}|{OPEN}{CLOSE}{MARKER}])|(.))",
     re.DOTALL,
 )
-_STRING: Final = re.compile(rf"{RUN}|{NUMBER}|\*\*|\.[*/^]|\s+|.", re.DOTALL)
+_STRING: Final = regex(rf"{RUN}|{NUMBER}|\*\*|\.[*/^]|\s+|.", re.DOTALL)
 _DIGITS: Final = frozenset("0123456789")
 _TERMINALS: Final = {
     "+": "PLUS", "-": "MINUS", "*": "STAR", "/": "SLASH", "^": "POWER", "**": "POWER",
     ".*": "STAR", "./": "SLASH", ".^": "POWER", ",": "COMMA",
 }  # fmt: skip
-_E_NAME: Final = re.compile(r"([eE])([+-]?)([0-9]+)$")
-_NUMERIC_FRACTION: Final = re.compile(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
-_BEGINS_WRAPPED: Final = re.compile(r"\{\s*\(")
-_ENDS_WRAPPED: Final = re.compile(r"\)\s*\}")
+_E_NAME: Final = regex(r"([eE])([+-]?)([0-9]+)$")
+_NUMERIC_FRACTION: Final = regex(rf"{OPEN}\{{?\s*[0-9]+\s*\}}?/\{{?\s*[0-9]+\s*\}}?{CLOSE}")
+_BEGINS_WRAPPED: Final = regex(r"\{\s*\(")
+_ENDS_WRAPPED: Final = regex(r"\)\s*\}")
 # A bar that LaTeX marks as a left bar, and how many characters before the bar are searched.
 _LEFT_REACH: Final = 40
-_LEFT_BAR: Final = re.compile(r"(?:\\(?:m?left|[bB]igg?l)\s*(?:\||\\[a-z]*)|\\lvert)\Z")
+_LEFT_BAR: Final = regex(r"(?:\\(?:m?left|[bB]igg?l)\s*(?:\||\\[a-z]*)|\\lvert)\Z")
 _SIGNS: Final = frozenset({"PLUS", "MINUS"})
 _TERM_STARTS: Final = frozenset({"LEFT", "OPEN", "COMMA"})
 _FACTOR_OPERATORS: Final = frozenset({"STAR", "SLASH", "POWER"})

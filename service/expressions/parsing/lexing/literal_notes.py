@@ -5,7 +5,6 @@
 """
 
 import math
-import re
 from collections.abc import Mapping
 from typing import Final
 
@@ -13,12 +12,13 @@ from service.expressions.errors import Note
 from service.expressions.tree import Binary, Call, Negation, Node, Number, SymbolNode
 from service.expressions.vocabulary.functions import TRIGONOMETRIC
 from service.expressions.vocabulary.symbols import Symbol
+from service.regex import regex
 from service.translations import say
 
 # Students hardly mean larger angles (90, 180 or 22.5) in radians.
 _WHOLE_TURN: Final = 2 * math.pi
-_SHORTHAND: Final = re.compile(r"(?:[cCsS]|cos|sin)_?[0-9₀-₉]+")
-_DIGIT: Final = re.compile(r"[1-9]")
+_SHORTHAND: Final = regex(r"(?:[cCsS]|cos|sin)_?[0-9₀-₉]+")
+_DIGIT: Final = regex(r"[1-9]")
 _DOTS: Final = ("·", "⋅", "∙", "•")
 
 

@@ -1,21 +1,19 @@
 """Words in the notation of programs: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi."""
 
-import re
 from typing import Final
 
 from service.expressions.characters import greek
 from service.expressions.tree import Binary, Call, Node, Number, Pi
 from service.expressions.vocabulary.functions import CONSTANTS
+from service.regex import regex
 
-MEMBER: Final = re.compile(r"(?:\.|::)(?=[^\W\d_])")
-_RADIANS: Final = re.compile(r"(?:radians|toRadians|rad)(?=\()")
+MEMBER: Final = regex(r"(?:\.|::)(?=[^\W\d_])")
+_RADIANS: Final = regex(r"(?:radians|toRadians|rad)(?=\()")
 # More than a turn in radians, so probably degrees, which ``rad`` converts in SymPy.
-_MANY: Final = re.compile(r"\(\s*[-+]?\s*(?:[7-9]|\d\d+)(?:\.\d*)?\s*\)")
-_SUBSCRIPT: Final = re.compile(rf"\[\s*([A-Za-z{greek.CLASS}]+)\s*,\s*([A-Za-z0-9]{{1,12}})\s*\]")
+_MANY: Final = regex(r"\(\s*[-+]?\s*(?:[7-9]|\d\d+)(?:\.\d*)?\s*\)")
+_SUBSCRIPT: Final = regex(rf"\[\s*([A-Za-z{greek.CLASS}]+)\s*,\s*([A-Za-z0-9]{{1,12}})\s*\]")
 # Mathematica and Maxima count from 1, and write an index in square brackets.
-_COUNTS_FROM_ONE: Final = re.compile(
-    r"(?:Sin|Cos|Tan|Sqrt|ArcSin|ArcCos|ArcTan|Subscript)\s*\[|%pi"
-)
+_COUNTS_FROM_ONE: Final = regex(r"(?:Sin|Cos|Tan|Sqrt|ArcSin|ArcCos|ArcTan|Subscript)\s*\[|%pi")
 
 
 def degrees_function_end(text: str, at: int) -> int | None:

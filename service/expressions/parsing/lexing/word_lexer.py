@@ -20,9 +20,10 @@ from service.expressions.parsing.lexing.words import LONGEST_RUN, Piece, sole_op
 from service.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
 from service.expressions.vocabulary.functions import IN_DEGREES, MODULES, UNIT_FUNCTIONS
 from service.expressions.vocabulary.symbols import Operand
+from service.regex import regex
 
-_FUNCTION_POWER: Final = re.compile(r"\s*(?:\^|\*\*)\s*")
-_EXPONENT: Final = re.compile(
+_FUNCTION_POWER: Final = regex(r"\s*(?:\^|\*\*)\s*")
+_EXPONENT: Final = regex(
     r"([0-9]+)(?![0-9.eE])|\(\s*([0-9]+)\s*\)|\{\s*([0-9]+)\s*\}|\[\s*([0-9]+)\s*\]"
 )
 

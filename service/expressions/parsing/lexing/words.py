@@ -5,7 +5,6 @@ taken only if the rest of the run would otherwise have no meaning. A name never 
 digits, so q12 is not q1·2.
 """
 
-import re
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
@@ -15,14 +14,13 @@ from service.expressions.characters import greek
 from service.expressions.vocabulary import functions
 from service.expressions.vocabulary.functions import PieceKind
 from service.expressions.vocabulary.symbols import Operand, Symbol, Vocabulary
+from service.regex import regex
 
 RUN: Final = rf"[A-Za-z{greek.CLASS}](?:_?[A-Za-z0-9{greek.CLASS}])*"
 
-_SHORTHAND: Final = re.compile(
-    r"(?P<function>cos|sin|[cCsS])(?P<angle>theta|th|θ|q)?(?P<index>[0-9]+)"
-)
+_SHORTHAND: Final = regex(r"(?P<function>cos|sin|[cCsS])(?P<angle>theta|th|θ|q)?(?P<index>[0-9]+)")
 _SHORT: Final = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
-_DIGITS: Final = re.compile(r"[0-9]+")
+_DIGITS: Final = regex(r"[0-9]+")
 _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
     **{spelling: ("function", name) for spelling, name in functions.CAPITALS.items()},
     **dict.fromkeys(functions.PI_CAPITALS, ("pi", "pi")),

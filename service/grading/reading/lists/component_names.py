@@ -2,7 +2,6 @@
 
 # A name may mean several places.
 
-import re
 import unicodedata
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
@@ -13,20 +12,19 @@ from service.expressions import Kind, LeftSide, Symbol, Vocabulary
 from service.expressions.characters import greek
 from service.expressions.vocabulary.symbols import normal_form
 from service.grading.reading.written_names import Places
+from service.regex import regex
 from service.translations import say
 
-_STYLE: Final = re.compile(
+_STYLE: Final = regex(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)(?![a-z])|\\begin\{[a-z]+\*?\}"
     r"|\b(?:let|const|var|double|float|auto)\s"
 )
 # The name of x(q1, q2) is x, without the arguments.
-_ARGUMENTS: Final = re.compile(r"[(\[][^()\[\]]*[^\W\d][^()\[\]]*[)\]]")
-_GREEK: Final = re.compile(f"[{greek.CLASS}]")
-_WORD: Final = re.compile(r"[a-z]+|[0-9]+")
+_ARGUMENTS: Final = regex(r"[(\[][^()\[\]]*[^\W\d][^()\[\]]*[)\]]")
+_GREEK: Final = regex(f"[{greek.CLASS}]")
+_WORD: Final = regex(r"[a-z]+|[0-9]+")
 # x, p_x, px, x_e, x_{ee}, but not xy.
-_COORDINATE: Final = re.compile(
-    r"(?:[a-w]|pos)?([xyz])|([xyz])(?:e|ee|ef|eff|end|p|o|n|t|tcp|tip|tool)"
-)
+_COORDINATE: Final = regex(r"(?:[a-w]|pos)?([xyz])|([xyz])(?:e|ee|ef|eff|end|p|o|n|t|tcp|tip|tool)")
 _NO_MARKS: Final = str.maketrans("", "", "{}$*^' ")
 
 

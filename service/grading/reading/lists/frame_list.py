@@ -20,14 +20,15 @@ from service.grading.reading.pasted import from_grid_error, pasted_grid, placed
 from service.grading.report import Verdict
 from service.grids import GridCell, GridError
 from service.kinematics.transforms import Numbers
+from service.regex import regex
 from service.translations import say
 
 LABEL: Final = "frame"
 _BASE_AXES: Final = "xyz"
 # x, +x, - x0, -X_0, +x_{0}: a direction of the base frame.
-_DIRECTION: Final = re.compile(r"([+-]?)\s?([xyzXYZ])_?(?:0|\{0\})?")
-_JOINT: Final = re.compile(r"(?:(?:joint|axis|z|j)[ _]?)?([0-9]{1,3})", re.IGNORECASE)
-_DIGIT: Final = re.compile(r"[0-9]")
+_DIRECTION: Final = regex(r"([+-]?)\s?([xyzXYZ])_?(?:0|\{0\})?")
+_JOINT: Final = regex(r"(?:(?:joint|axis|z|j)[ _]?)?([0-9]{1,3})", re.IGNORECASE)
+_DIGIT: Final = regex(r"[0-9]")
 _MINUS: Final = str.maketrans({"\u2212": "-", "\u2013": "-", "\u2080": "0"})
 # A longer text is no name; a longer vector is refused before it is split.
 _LONGEST_NAME: Final = 16

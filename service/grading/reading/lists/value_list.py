@@ -1,6 +1,5 @@
 """Read a list of values, from JSON or pasted text, as entries and their numbers."""
 
-import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -15,6 +14,7 @@ from service.grading.reading.unit_comments import refuse_other_lengths
 from service.grading.reading.written_names import arranged, name_of, with_order_note
 from service.grids import FULL_WIDTH, GridCell, GridError
 from service.kinematics.transforms import Numbers
+from service.regex import regex
 from service.translations import paragraph, say
 
 
@@ -283,30 +283,30 @@ def _shifted(entry: Entry, by: int) -> Entry:
 
 
 # The lines of a code fence around a text.
-_FENCE = re.compile(r"\A\s*(?:```|~~~)[\w+-]{0,20}[ \t]*\n(?=[\s\S]*(?:```|~~~)\s*\Z)")
-_FENCE_AFTER = re.compile(r"(?<=\n)[ \t]*(?:```|~~~)\s*\Z")
-_LETTER = re.compile(r"\S")
+_FENCE = regex(r"\A\s*(?:```|~~~)[\w+-]{0,20}[ \t]*\n(?=[\s\S]*(?:```|~~~)\s*\Z)")
+_FENCE_AFTER = regex(r"(?<=\n)[ \t]*(?:```|~~~)\s*\Z")
+_LETTER = regex(r"\S")
 # The sign of a transpose after a bracket, at the end of a text.
-_TRANSPOSED = re.compile(
+_TRANSPOSED = regex(
     r"(?:(?<=[\])])|(?<=matrix\})|(?<=array\}))"
     r"(?:\s?\^\s?\{?\s?(?:T|\\top|⊤|\\intercal)\s?\}?|[ᵀ⊤]|\.?'|\.T)\s{0,8}[;.]?\s{0,8}\Z"
 )
 _LONGEST_END = 40
 # The name of a vector before its bracket: p = (…).
-_NAME_BEFORE = re.compile(r"\s*[^\W\d][\w{}^,]{0,20}[ \t]{0,3}:?=[ \t]{0,3}(?=[(\[{])")
+_NAME_BEFORE = regex(r"\s*[^\W\d][\w{}^,]{0,20}[ \t]{0,3}:?=[ \t]{0,3}(?=[(\[{])")
 
 # A name and a colon at the start of a line: "x: l1 c1".
-_NAME_WITH_COLON = re.compile(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")
+_NAME_WITH_COLON = regex(r"(?m)^([ \t]*[^\W\d][\w{}^]{0,20}[ \t]{0,3}):(?![:=])")
 
 # A vector in angle brackets. Groups: blanks, opening bracket, values, closing bracket, blanks.
-_IN_ANGLE_BRACKETS = re.compile(
+_IN_ANGLE_BRACKETS = regex(
     r"(\s*)(<|⟨|\\langle(?![A-Za-z]))([^<>⟨⟩|]+)(>|⟩|\\rangle(?![A-Za-z]))(\s*)"
 )
 
-_LATEX_BLANK = re.compile(r"\\(?:q?quad(?![A-Za-z])|[,;:! ])")
+_LATEX_BLANK = regex(r"\\(?:q?quad(?![A-Za-z])|[,;:! ])")
 
 # A blank and a sign directly before a value: in MATLAB's brackets a new value begins there.
-_NEW_VALUE = re.compile(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
+_NEW_VALUE = regex(r"[^\s,;(\[{*/^+-]\s+[-+−–][^\s]")
 
 # The codes of errors whose messages are about tables, and the sentence for a list instead.
 _OF_TABLES = {

@@ -1,6 +1,5 @@
 """Find the matrix entry that a name means, as in T(1,4) = l1 c1 and r_12 = -s1."""
 
-import re
 import unicodedata
 from typing import Final
 
@@ -8,13 +7,14 @@ from service.expressions import LeftSide, Vocabulary
 from service.expressions.vocabulary.symbols import normal_form
 from service.grading.feedback import Finding
 from service.grading.reading.written_names import misnamed_value, name_of
+from service.regex import regex
 from service.translations import say
 
 # Letters that name matrices; p_12 and l_12 are not matrix entries. If the index is in brackets, the
 # letter may have frames: T_0^4(1,4).
 _LETTER: Final = r"\\?(?:[a-z]+\s*\{\s*)?(?<![a-z])[aghjmrt]\s*\}?"
-_GLUED: Final = re.compile(rf"{_LETTER}_?\{{?\s*([1-9])\s*,?\s*([1-9])\s*\}}?")
-_IN_BRACKETS: Final = re.compile(
+_GLUED: Final = regex(rf"{_LETTER}_?\{{?\s*([1-9])\s*,?\s*([1-9])\s*\}}?")
+_IN_BRACKETS: Final = regex(
     rf"{_LETTER}[\s_^{{}}0-9]*(?:[({{]\s*([0-9]{{1,2}})\s*,\s*([0-9]{{1,2}})\s*[)}}]"
     r"|\[\s*([0-9]{1,2})\s*(?:,|\]\s*\[)\s*([0-9]{1,2})\s*\])"
 )

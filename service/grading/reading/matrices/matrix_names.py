@@ -1,25 +1,25 @@
 r"""Find the place of a link transform by its name, such as A_2, T_{12}, {}^{1}T_2 or "Link 2"."""
 
-import re
 from collections.abc import Callable, Sequence
 from typing import Final
 
+from service.regex import regex
 from service.translations import template
 
-_COMMAND: Final = re.compile(r"\\[A-Za-z]{1,20}")
+_COMMAND: Final = regex(r"\\[A-Za-z]{1,20}")
 # The arguments of A_2(q_2), in contrast to the indices of A(2) and A{2}.
-_ARGUMENTS: Final = re.compile(r"\([^()]{0,40}[A-Za-zθ\\][^()]{0,40}\)")
-_INDEX: Final = re.compile(r"\d{1,4}|(?<![a-z])(?:ee|EE|e|E|n|tool|TCP)(?![A-Za-z])")
+_ARGUMENTS: Final = regex(r"\([^()]{0,40}[A-Za-zθ\\][^()]{0,40}\)")
+_INDEX: Final = regex(r"\d{1,4}|(?<![a-z])(?:ee|EE|e|E|n|tool|TCP)(?![A-Za-z])")
 
-_CHANGED: Final = re.compile(
+_CHANGED: Final = regex(
     r"(?i:inv|transp)|['’′]|\.T(?![A-Za-z])|\\top(?![a-z])|\\intercal"
     # The T in {}^T A is a frame and not a transpose.
     r"|(?<![\s{}^])\s?\^\s?\{?\s?(?:-|T(?!\w)|\\(?:mathrm|text|mathsf)\s?\{?\s?T)"
     r"|\}(?<!\{\})\^\s?\{?\s?(?:-|T(?!\w))"
 )
-_PRODUCT: Final = re.compile(r"[*@]|\\(?:cdot|times)(?![a-z])")
+_PRODUCT: Final = regex(r"[*@]|\\(?:cdot|times)(?![a-z])")
 # Two matrices, as in A_1 A_2, but not two frames of one matrix, as in T_{0 TCP}.
-_SIDE_BY_SIDE: Final = re.compile(
+_SIDE_BY_SIDE: Final = regex(
     r"(?<![\^_])(?<![\^_]\{)[A-Z]\s?_?\{?\d+\}?[\s_^{}\d]*(?!EE?|TCP)[A-Z](?![A-Za-z])"
 )
 

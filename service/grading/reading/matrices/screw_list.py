@@ -13,29 +13,30 @@ from service.grading.reading.entry import Reader
 from service.grading.reading.matrices.matrix_names import indices_of, places_of
 from service.grading.reading.pasted import pasted_grid, pasted_grids
 from service.grids import Grid, GridCell, GridError, SourceText
+from service.regex import regex
 from service.translations import say
 
 WIDTH: Final = 6
 _HALF: Final = 3
 
 # A transposed vector is the same axis. Its mark is replaced by blanks, so that spans stay valid.
-_TRANSPOSED: Final = re.compile(
+_TRANSPOSED: Final = regex(
     r"(?<=[\])}])[ \t]*(?:\^[ \t]*(?:\{[ \t]*)?(?:\\(?:top|intercal)(?![A-Za-z])"
     r"|(?:\\(?:mathrm|mathsf|text)[ \t]*\{?[ \t]*)?T(?![A-Za-z]))[ \t]*\}{0,2}"
     r"|\.T(?!\w)|\.?'|\.transpose\(\))"
 )
 # Numbers in round or curly brackets after a name: S1 = (0, 0, 1, 0, 0, 0).
-_BRACKETED: Final = re.compile(
+_BRACKETED: Final = regex(
     r"(?<=[=:])([ \t]*)[({]((?:[^(){}\[\]]|\([^(){}\[\]]{0,60}\)){1,400})[)}]"
 )
-_COMMA: Final = re.compile(r",")
-_STYLE: Final = re.compile(r"\\(?:hat|vec|bar|tilde|bm|boldsymbol|mathbf|mathrm|mathit|text)")
-_OMEGA: Final = re.compile(r"\\?omega|[ωw]")
-_VELOCITY: Final = re.compile(r"v")
+_COMMA: Final = regex(r",")
+_STYLE: Final = regex(r"\\(?:hat|vec|bar|tilde|bm|boldsymbol|mathbf|mathrm|mathit|text)")
+_OMEGA: Final = regex(r"\\?omega|[ωw]")
+_VELOCITY: Final = regex(r"v")
 # The names of ω and v within a longer header: "axis ω", "angular velocity".
 _IN_HEADER: Final = (
-    re.compile(r"omega|ω|angular|(?<![a-z])w(?![a-z])"),
-    re.compile(r"linear|(?<![a-z])v(?![a-z])"),
+    regex(r"omega|ω|angular|(?<![a-z])w(?![a-z])"),
+    regex(r"linear|(?<![a-z])v(?![a-z])"),
 )
 
 

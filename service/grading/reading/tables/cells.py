@@ -1,6 +1,5 @@
 """Find the cells of a DH table or of one row, as JSON or as text, and read them as entries."""
 
-import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from itertools import accumulate
@@ -23,6 +22,7 @@ from service.grading.reading.tables.row_labels import LAST, label_place
 from service.grading.reading.written_names import name_of
 from service.grading.work_budget import MAX_SYMBOLS, WorkBudget
 from service.kinematics.chain import COLUMNS
+from service.regex import regex
 
 # Part 1: the JSON shapes of a table -> the one that the reader expects.
 
@@ -188,19 +188,19 @@ def _in_order(rows: Sequence[_Read]) -> list[object]:
 
 _LONGEST_TEXT: Final = 2_000
 # A name before = or a colon, with or without an index: a, \alpha_1, θ₁.
-_NAMED: Final = re.compile(
+_NAMED: Final = regex(
     r"(?<![^\s,;({\[$|&])(\\?[A-Za-z\u0370-\u03ff⍺]+)(?:_?\{?[0-9]\}?|_\{?i\}?|[₀-₉])?\s{0,8}[=:]"
 )
-_BETWEEN: Final = re.compile(r"(?:[\s,;$|&]|\\[,;: ]|\\\\|\\quad|\\qquad|\band\b)+")
+_BETWEEN: Final = regex(r"(?:[\s,;$|&]|\\[,;: ]|\\\\|\\quad|\\qquad|\band\b)+")
 # The separators of rows in MATLAB, and of lines.
-_ENDS: Final = re.compile(r"[;\n]")
+_ENDS: Final = regex(r"[;\n]")
 # Four values separated by blanks only: a sign with blanks on both sides is an operator.
-_FOUR_VALUES: Final = re.compile(
+_FOUR_VALUES: Final = regex(
     r"\s*(?:[-+]?[^\s,;=+*/^-](?:[^\s,;=]*[^\s,;=+*/^-])?(?:[ \t]+|\s*$)){4}"
 )
-_BLANK: Final = re.compile(r"[ \t](?=[^ \t])")
-_STYLE: Final = re.compile(r"\\(?:text|textrm|textit|mathrm|mathit|operatorname)\s?\{([^{}]*)\}")
-_NONE: Final = re.compile(
+_BLANK: Final = regex(r"[ \t](?=[^ \t])")
+_STYLE: Final = regex(r"\\(?:text|textrm|textit|mathrm|mathit|operatorname)\s?\{([^{}]*)\}")
+_NONE: Final = regex(
     r"none|n/a|no (?:dh )?row|there is (?:none|no row)|does(?: not|n't) exist|\{none: ?true\}"
 )
 

@@ -23,17 +23,16 @@ from service.grading.reading.unit_comments import (
 from service.grids import GridError
 from service.grids.cutting.source_text import line_number
 from service.kinematics.chain import COLUMNS
+from service.regex import regex
 from service.translations import say
 
-_BETWEEN_NAMES: Final = re.compile(r"[\s,;|&:]+")
-_BEFORE_UNIT: Final = re.compile(r"\s{1,8}(?=[(\[])")
+_BETWEEN_NAMES: Final = regex(r"[\s,;|&:]+")
+_BEFORE_UNIT: Final = regex(r"\s{1,8}(?=[(\[])")
 # Numbers in a table with π, or in a script that converts them, are not in degrees or millimetres.
-_CONVERTS_ANGLES: Final = re.compile(
+_CONVERTS_ANGLES: Final = regex(
     r"(?<![^\W\d_])(?:pi|deg2rad|radians)(?![^\W\d_])|π|°", re.IGNORECASE
 )
-_OTHER_ANGLES: Final = re.compile(
-    r"limit|qlim|range|freedom|grenze|bereich|límite|rango", re.IGNORECASE
-)
+_OTHER_ANGLES: Final = regex(r"limit|qlim|range|freedom|grenze|bereich|límite|rango", re.IGNORECASE)
 
 
 def columns_in_comments(text: str) -> tuple[Header, ...] | None:

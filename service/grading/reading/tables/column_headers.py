@@ -17,6 +17,7 @@ from service.grading.reading.tables.words import (
     TERMS,
     in_plain_words,
 )
+from service.regex import regex
 
 LABEL: Final = "label"
 ASIDE: Final = "aside"
@@ -38,35 +39,33 @@ _SIGNS: Final = str.maketrans(
     {"⍺": "α", "∝": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
 )
 # An accent in LaTeX: \'e. And "n°", a number in French, Spanish and Italian.
-_ACCENT: Final = re.compile(r"\\['`\"^~](?=[a-z{])")
-_NUMERO: Final = re.compile(r"(?<![a-z])n\.?\s?°")
+_ACCENT: Final = regex(r"\\['`\"^~](?=[a-z{])")
+_NUMERO: Final = regex(r"(?<![a-z])n\.?\s?°")
 # The preposition in "n° d'articulation" and "numéro de l'axe" is not d.
-_OF: Final = re.compile(r"(?<=no|ro)\s(?:de\s)?[dl]['’](?=[a-z]{3})")
-_STYLE: Final = re.compile(
+_OF: Final = regex(r"(?<=no|ro)\s(?:de\s)?[dl]['’](?=[a-z]{3})")
+_STYLE: Final = regex(
     r"\\(?:mathrm|mathbf|mathit|mathsf|text|textbf|textit|textrm|operatorname|boldsymbol|bm|rm|bf"
     r"|boldmath|bfseries|itshape|makecell|thead)(?![a-z])|\\[,;:! ]"
 )
 # A unit of the package siunitx: \si{\milli\metre}.
-_SIUNITX: Final = re.compile(r"\\(?:si|unit)\s?\{([\\a-z ]{1,30})\}")
-_CIRCLE: Final = re.compile(r"\^\s?\(?\s?\{?\s?(?:\\circ|∘|°|o)\s?\}?\)?(?![a-z])|\\degree|∘")
-_MARKER: Final = re.compile(r"\^\s?\{?\s?\*\s?\}?")
-_SHIFTED: Final = re.compile(r"(?<![a-z])([ijkn])\s?-\s?1(?!\d)|([a-z])([ijkn])\s?-\s?1(?!\d)")
-_WORD: Final = re.compile(r"[a-z]+~?|#|[^\sa-z#]")
-_GLUED: Final = re.compile(r"(a|r|d|q|th|alpha|theta)([ijkn]~?)")
-_INDEX: Final = re.compile(r"[ijkn]~?")
+_SIUNITX: Final = regex(r"\\(?:si|unit)\s?\{([\\a-z ]{1,30})\}")
+_CIRCLE: Final = regex(r"\^\s?\(?\s?\{?\s?(?:\\circ|∘|°|o)\s?\}?\)?(?![a-z])|\\degree|∘")
+_MARKER: Final = regex(r"\^\s?\{?\s?\*\s?\}?")
+_SHIFTED: Final = regex(r"(?<![a-z])([ijkn])\s?-\s?1(?!\d)|([a-z])([ijkn])\s?-\s?1(?!\d)")
+_WORD: Final = regex(r"[a-z]+~?|#|[^\sa-z#]")
+_GLUED: Final = regex(r"(a|r|d|q|th|alpha|theta)([ijkn]~?)")
+_INDEX: Final = regex(r"[ijkn]~?")
 # The axis of a parameter: d_z, a_x, but d_x is the length along x.
-_ALONG: Final = re.compile(
-    r"(?<![a-z])(?:(a|r|d)\s?x|(d)\s?z|(alpha)\s?x|(theta|φ|phi)\s?z)(?![a-z])"
-)
+_ALONG: Final = regex(r"(?<![a-z])(?:(a|r|d)\s?x|(d)\s?z|(alpha)\s?x|(theta|φ|phi)\s?z)(?![a-z])")
 # The number of a row after the name of a parameter: θ_1, a_{2}, d(3); but not a_{i-1}.
-_NUMBER: Final = re.compile(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
+_NUMBER: Final = regex(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
 _IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
-_DIGITS_OR_OPERATORS: Final = re.compile(r"[0-9+\-*/=^]")
+_DIGITS_OR_OPERATORS: Final = regex(r"[0-9+\-*/=^]")
 
 _UNIT_NAMES: Final = "|".join(sorted((*ANGLE_UNITS, *METRES), key=len, reverse=True))
-_BRACKETED_UNIT: Final = re.compile(rf"[(\[]\s{{0,4}}(?:(?:in|en)\s)?({_UNIT_NAMES})\s{{0,4}}[)\]]")
+_BRACKETED_UNIT: Final = regex(rf"[(\[]\s{{0,4}}(?:(?:in|en)\s)?({_UNIT_NAMES})\s{{0,4}}[)\]]")
 # "in" or "en" before a unit is a preposition, not inches.
-_TRAILING_UNIT: Final = re.compile(
+_TRAILING_UNIT: Final = regex(
     rf"(?:[\s,;:/_]|(?<=[^a-z]))(?:(?:in|en)\s)?({_UNIT_NAMES})\s{{0,4}}$|(°)\s{{0,4}}$"
 )
 

@@ -1,6 +1,5 @@
 """Read which cells of a table a student marks: ``2.alpha``, or row ``2``, or several."""
 
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Final
@@ -9,6 +8,7 @@ from service.grading.feedback import Finding, reading_error
 from service.grading.report import Verdict
 from service.kinematics.chain import COLUMNS
 from service.kinematics.factors import CellIndex
+from service.regex import regex
 from service.translations import say
 
 _NAMES: Final = {
@@ -17,8 +17,8 @@ _NAMES: Final = {
     "θ": 3,
 }
 # A row's label, a column's name, or both: "2.alpha", "row 2, alpha" is two marks.
-_MARK: Final = re.compile(r"(?:row\s*)?([0-9]{1,3}|e2?)(?:\s*[./:\s]\s*([a-zα-ω]+))?")
-_SEPARATORS: Final = re.compile(r"[,;\n]")
+_MARK: Final = regex(r"(?:row\s*)?([0-9]{1,3}|e2?)(?:\s*[./:\s]\s*([a-zα-ω]+))?")
+_SEPARATORS: Final = regex(r"[,;\n]")
 MAX_MARKS: Final = 64
 MAX_CHARACTERS: Final = 1000
 

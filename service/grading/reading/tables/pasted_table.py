@@ -2,7 +2,6 @@
 
 # Spans count in the whole pasted text.
 
-import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -39,6 +38,7 @@ from service.grids import Grid, GridCell, GridError, RobotTable
 from service.grids.cutting.source_text import joined
 from service.grids.scripts.titles import check_sentences, check_units, left_aside
 from service.kinematics.chain import COLUMNS, THETA, D
+from service.regex import regex
 from service.translations import listed, say, say_count
 
 ColumnOrder = tuple[int | None, Header]
@@ -46,9 +46,9 @@ ColumnOrder = tuple[int | None, Header]
 _MOST_NAMES: Final = 3
 # One of several tables in a text has at least so many rows.
 _FEWEST_ROWS: Final = 2
-_WHOLE: Final = re.compile(r"\d{1,12}")
-_SHORT: Final = re.compile(r"\d{1,4}")
-_WORD: Final = re.compile(r"[^\W\d_]{3}")
+_WHOLE: Final = regex(r"\d{1,12}")
+_SHORT: Final = regex(r"\d{1,4}")
+_WORD: Final = regex(r"[^\W\d_]{3}")
 _OFFSETS: Final = (column_headers.OFFSET, column_headers.THETA_OFFSET)
 
 

@@ -1,6 +1,5 @@
 """Order the rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector."""
 
-import re
 import unicodedata
 from collections.abc import Sequence
 from typing import Final
@@ -8,6 +7,7 @@ from typing import Final
 from service.grading.feedback import Finding, reading_note
 from service.grading.reading.tables.words import PLACES, in_plain_words
 from service.grids import GridCell, GridError
+from service.regex import regex
 from service.translations import say
 
 LAST: Final = 10_000
@@ -15,13 +15,13 @@ _LONGEST: Final = 30
 _WORDS: Final = "|".join(sorted(PLACES - {"#", "name", "label"}, key=len, reverse=True))
 # Glied Nr. 1, articulation n° 1.
 _NUMERO: Final = r"(?:n[or°]|num|nummer|number|numero|#)\.?\s?"
-_NUMBER: Final = re.compile(
+_NUMBER: Final = regex(
     rf"(?:(?:{_WORDS}|[ijklnta#])[\s.]?)?(\d{{1,2}})\.?|(?:{_WORDS})?\s?{_NUMERO}(\d{{1,2}})"
 )
 # 1. Gelenk, 第1关节, and the numbers of Chinese.
-_ORDINAL: Final = re.compile(rf"第\s?(\d{{1,2}})(?:\s?joint)?|(\d{{1,2}})\.\s?(?:{_WORDS})")
+_ORDINAL: Final = regex(rf"第\s?(\d{{1,2}})(?:\s?joint)?|(\d{{1,2}})\.\s?(?:{_WORDS})")
 _NUMERALS: Final = str.maketrans("一二三四五六七八九", "123456789")
-_STEP: Final = re.compile(r"(\d{1,2})\s?(?:-|→|->|to)\s?(\d{1,2})")
+_STEP: Final = regex(r"(\d{1,2})\s?(?:-|→|->|to)\s?(\d{1,2})")
 _END: Final = frozenset(
     {"e", "ee", "tool", "tcp", "tip", "end", "effector", "end effector", "end-effector", "n+1"}
     | {"endeffektor", "werkzeug", "effecteur", "outil", "efector final", "herramienta"}

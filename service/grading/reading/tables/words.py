@@ -12,6 +12,7 @@ from collections.abc import Mapping
 from typing import Final
 
 from service.expressions import AngleUnit
+from service.regex import regex
 
 LETTERS: Final[Mapping[str, str]] = {
     "a": "a", "r": "a", "alpha": "alpha", "al": "alpha", "alfa": "alpha", "d": "d",
@@ -47,7 +48,7 @@ FILLERS: Final = frozenset(
     | {"de", "del", "la", "el", "du", "le", "di", "articular", "articulaire", "parametro"}
     | {"drehwinkel", "drehung", "giro", "rotacion", "traslacion", "translation", "en"}
 )
-ASIDES: Final = re.compile(
+ASIDES: Final = regex(
     r"(?:joint )?(?:type|var\.?|variables?|range|limits?)|comments?|notes?|remarks?"
     # Limits of a joint, and numbers that follow from an angle.
     r"|(?:(?:q|theta|d|joint|lower|upper)(?: ?i)? ?)?(?:min|max|limit|bound)(?: ?i)?"
@@ -95,13 +96,13 @@ _CHINESE: Final = {
     **dict.fromkeys(("弧度",), "rad"), **dict.fromkeys(("度",), "deg"),
     "毫米": "mm", "厘米": "cm", "米": "m",
 }  # fmt: skip
-_CHINESE_WORD: Final = re.compile("|".join(sorted(_CHINESE, key=len, reverse=True)))
+_CHINESE_WORD: Final = regex("|".join(sorted(_CHINESE, key=len, reverse=True)))
 # The preposition in "angolo di giunto" is not d_i.
-_DI: Final = re.compile(r"(?<=[a-z]{3}) di (?=[a-z]{3})", re.IGNORECASE)
-_HYPHEN: Final = re.compile(r"(?<=[a-z]{3})-(?=[a-z]{2})", re.IGNORECASE)
-_ACCENTED: Final = re.compile(r"[à-öø-ÿßāăąćčēęěīńňōőřśšūůűźžÀ-ÖØ-ß]")
+_DI: Final = regex(r"(?<=[a-z]{3}) di (?=[a-z]{3})", re.IGNORECASE)
+_HYPHEN: Final = regex(r"(?<=[a-z]{3})-(?=[a-z]{2})", re.IGNORECASE)
+_ACCENTED: Final = regex(r"[à-öø-ÿßāăąćčēęěīńňōőřśšūůűźžÀ-ÖØ-ß]")
 # In French, "grad" is a gon. The German noun has a capital.
-_GERMAN_DEGREES: Final = re.compile(r"(?<![^\W\d_])Grad(?![^\W\d_])")
+_GERMAN_DEGREES: Final = regex(r"(?<![^\W\d_])Grad(?![^\W\d_])")
 
 
 def in_plain_words(text: str) -> str:

@@ -8,7 +8,7 @@ from service.catalogue import Exercise
 from service.catalogue.parts.dh_table import DhTableSpec
 from service.grading import PartReport, Verdict
 from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
-from service.grading.kinds.dh_table import read
+from service.grading.kinds.dh_table import read_dh_table_answer
 from service.grading.numerics.samples import draw
 from service.grading.part import Grading
 from service.grading.reading.entry import Reader
@@ -190,7 +190,7 @@ def shifted(rows: Rows) -> Iterator[Rows]:
 def is_renumbered(exercise: Exercise, part: DhTableSpec, rows: Rows) -> bool:
     samples = draw(exercise, "")
     grading = Grading(exercise, samples, Reader.of(exercise, samples, "radians"))
-    answer = read(part, table(rows), grading)
+    answer = read_dh_table_answer(part, table(rows), grading)
     assert answer is not None
     return by_other_numbering(answer, grading) is not None
 
