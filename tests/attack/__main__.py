@@ -173,9 +173,10 @@ def _faults(submissions: Waits, health: Waits) -> Iterator[str]:
 
 
 def _longer(submissions: Waits, usual: Waits) -> float:
-    # Both were sent the same bodies in the same order, and some bodies take long by themselves.
-    both = min(len(submissions.seconds), len(usual.seconds))
-    submissions, usual = (Waits(each.seconds[:both]) for each in (submissions, usual))
+    # Both were sent the same bodies, and some bodies take long by themselves: those that only one
+    # of the runs answered in time are left out.
+    shared = set(submissions.bodies) & set(usual.bodies)
+    submissions, usual = submissions.of(shared), usual.of(shared)
     p50, p99 = (submissions.quantile(share) / usual.quantile(share) for share in (0.5, 0.99))
     print(f"    beside ordinary requests: {usual}", flush=True)  # noqa: T201
     print(f"    p50: {p50:.1f}, p99: {p99:.1f} times as long", flush=True)  # noqa: T201

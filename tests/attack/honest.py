@@ -3,7 +3,7 @@
 import http.client
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, field
 
@@ -22,6 +22,13 @@ class Waits:
 
     seconds: list[float] = field(default_factory=list)
     failures: list[str] = field(default_factory=list)
+    # The numbers of the bodies that were answered, in the order of ``seconds``.
+    bodies: list[int] = field(default_factory=list)
+
+    def of(self, bodies: Container[int]) -> "Waits":
+        """Return the waiting times of these bodies."""
+        both = zip(self.seconds, self.bodies, strict=True)
+        return Waits([seconds for seconds, body in both if body in bodies])
 
     def quantile(self, share: float) -> float:
         ordered = sorted(self.seconds) or [float("nan")]
@@ -44,18 +51,19 @@ def watched(
     submissions, health = Waits(), Waits()
     over = threading.Event()
 
-    def ask(waits: Waits, send: Callable[[http.client.HTTPConnection], None], pause: float) -> None:
+    def ask(waits: Waits, send: Callable[[http.client.HTTPConnection], int], pause: float) -> None:
         connection = http.client.HTTPConnection(
             "127.0.0.1", running.port, timeout=ANSWER, source_address=(source, 0)
         )
         while not over.is_set():
             began = time.perf_counter()
             try:
-                send(connection)
+                number = send(connection)
                 response = connection.getresponse()
                 response.read()
                 if response.status == 200:
                     waits.seconds.append(time.perf_counter() - began)
+                    waits.bodies.append(number)
                 else:
                     waits.failures.append(str(response.status))
             except (OSError, http.client.HTTPException) as error:
@@ -65,17 +73,19 @@ def watched(
         connection.close()
 
     # The same bodies in each run, half of them with one to four slips.
-    bodies = tables(seed=1, wrong=0.5)
+    bodies = enumerate(tables(seed=1, wrong=0.5))
     next(bodies)
     lock = threading.Lock()
 
-    def grade(connection: http.client.HTTPConnection) -> None:
+    def grade(connection: http.client.HTTPConnection) -> int:
         with lock:
-            body = next(bodies)
+            number, body = next(bodies)
         connection.request("POST", f"/v1/exercises/{body.exercise}/grade", body.content)
+        return number
 
-    def alive(connection: http.client.HTTPConnection) -> None:
+    def alive(connection: http.client.HTTPConnection) -> int:
         connection.request("GET", "/healthz")
+        return 0
 
     threads = [
         *(threading.Thread(target=ask, args=(submissions, grade, pause)) for _ in range(CLIENTS)),
