@@ -1,6 +1,7 @@
 """Routes for tutors: export and change recorded attempts."""
 
 from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import suppress
 from dataclasses import asdict
 from functools import partial
 from http import HTTPStatus
@@ -8,6 +9,7 @@ from typing import IO, TYPE_CHECKING, Annotated, Any, Final
 
 from fastapi import APIRouter, Query, Request, Response
 from starlette.background import BackgroundTask
+from starlette.requests import ClientDisconnect
 from starlette.responses import StreamingResponse
 
 from service.access.caller import Caller
@@ -286,10 +288,11 @@ def _change(changed: "RegradedAttempt", language: Language) -> AttemptChange:
 
 
 async def _pieces(file: IO[bytes], give_way: Callable[[], Awaitable[None]]) -> AsyncIterator[bytes]:
-    # A client may want the pieces compressed.
-    while piece := file.read(_PIECE):
-        yield piece
-        await give_way()
+    # A client may want the pieces compressed. A client that has gone needs no more of them.
+    with suppress(ClientDisconnect):
+        while piece := file.read(_PIECE):
+            yield piece
+            await give_way()
 
 
 def _stem(form: GradesFormat, exercise: str | None) -> str:

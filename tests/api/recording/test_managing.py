@@ -22,8 +22,12 @@ from service.attempts.results import grades
 from service.attempts.store import AttemptStore
 from service.catalogue import Exercise, load_catalogue, shipped_folder
 from tests.api.conftest import InProcess
+from tests.attack.honest import watched
+from tests.attack.interface import with_key
+from tests.attempts import campaign
 from tests.attempts.erasure import files_with, reader
 from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, recorded
+from tests.server.raw import HEALTH, service
 
 HERE = "http://127.0.0.1:8000"
 NOBODY = 32 * "0"
@@ -341,3 +345,25 @@ def test_others_are_answered_while_a_regrade_goes_on(
             return answered, regrade.done(), (await regrade).json()["regraded"]
 
     assert asyncio.run(both()) == (200, False, 20)
+
+
+@pytest.mark.long
+def test_a_tutor_who_leaves_during_an_export_leaves_no_error(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    # The log is read when the service ends. Beside other clients, an export waits for its turns.
+    settings, key = with_key(tmp_path)
+    store = AttemptStore.open(settings["DH_GRADER_DATABASE"])
+    monkeypatch.setattr(campaign, "TABLES", 20)
+    campaign.fill(store, load_catalogue(shipped_folder())["scara"], 50_000)
+    store.close()
+    ask = f"GET /v1/attempts/export HTTP/1.1\r\nHost: x\r\nAuthorization: Bearer {key}\r\n\r\n"
+    with (
+        service(tmp_path, **settings, DH_GRADER_OPEN="grade,record") as running,
+        watched(running) as (submissions, _),
+    ):
+        with running.connect(ask.encode()) as line:
+            assert b"200 OK" in line.recv(4096)
+        running.ask(HEALTH)
+    assert submissions.seconds
+    assert not submissions.failures
