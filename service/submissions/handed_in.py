@@ -263,6 +263,27 @@ class _Member:
     is_misplaced: bool
 
 
+class _OpenArchive:
+    """A zip file that stays open, so that its directory is read once and not for each file."""
+
+    def __init__(self, archive: Path, outer: tuple[str, ...]) -> None:
+        """Open a zip file. Raises UnusableFileError."""
+        # The file is closed when this object is deleted.
+        self._zip = _opened(archive, outer)
+
+    def members(self) -> list[_Member]:
+        """Return the files in the zip file."""
+        return _members(self._zip)
+
+    def start(self, name: str) -> bytes:
+        """Return the first bytes of a file; none if it cannot be read."""
+        try:
+            with self._zip.open(name) as file:
+                return file.read(MAX_START)
+        except UNREADABLE_ARCHIVE:
+            return b""
+
+
 class _ZipFile:
     """A zip file, or a folder in it."""
 
@@ -271,21 +292,23 @@ class _ZipFile:
         archive: Path,
         outer: tuple[str, ...] = (),
         shown: Path | None = None,
-        members: Sequence[_Member] | None = None,
+        folder: "tuple[_OpenArchive, Sequence[_Member]] | None" = None,
     ) -> None:
         """Read the names in a zip file. Raises UnusableFileError.
 
-        ``outer`` are the zip files between ``archive`` and this one. With ``members``, this is a
-        folder of a zip file whose names have been read.
+        ``outer`` are the zip files between ``archive`` and this one. With ``folder``, this is a
+        folder of an open zip file, with these files.
         """
         self.path = shown or archive
         self._archive = archive
         self._outer = outer
-        if members is None:
-            with _opened(archive, outer) as opened:
-                members = _members(opened)
-            start = _common_folder([each.steps for each in members])
-            members = [replace(each, steps=each.steps[start:]) for each in members]
+        if folder is None:
+            self._opened = _OpenArchive(archive, outer)
+            found = self._opened.members()
+            start = _common_folder([each.steps for each in found])
+            members: Sequence[_Member] = [replace(each, steps=each.steps[start:]) for each in found]
+        else:
+            self._opened, members = folder
         self._entries: dict[str, list[_Member]] = {}
         for each in members:
             self._entries.setdefault(each.steps[0], []).append(each)
@@ -310,7 +333,7 @@ class _ZipFile:
         shown = self.path / name
         if self.is_folder(name):
             below = [replace(each, steps=each.steps[1:]) for each in members if each.steps[1:]]
-            return _ZipFile(self._archive, self._outer, shown, below)
+            return _ZipFile(self._archive, self._outer, shown, (self._opened, below))
         if ending(name) == _ARCHIVE and len(self._outer) < _MOST_ARCHIVES:
             with suppress(UnusableFileError):
                 return _ZipFile(self._archive, (*self._outer, members[0].name), shown)
@@ -333,16 +356,7 @@ class _ZipFile:
     def start(self, path: str) -> bytes:
         steps = tuple(path.split("/"))
         found = [each for each in self._entries.get(steps[0], ()) if each.steps == steps]
-        if not found:
-            return b""
-        try:
-            with (
-                _opened(self._archive, self._outer) as archive,
-                archive.open(found[0].name) as file,
-            ):
-                return file.read(MAX_START)
-        except (UnusableFileError, *UNREADABLE_ARCHIVE):
-            return b""
+        return self._opened.start(found[0].name) if found else b""
 
 
 def _entry(level: _Level, name: str) -> ClassEntry:

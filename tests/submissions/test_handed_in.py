@@ -6,6 +6,7 @@ import sys
 import tracemalloc
 import zipfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -356,3 +357,25 @@ def test_outputs_among_the_submissions_are_left_out(tmp_path: Path) -> None:
         ("class", ["index.html"], b"", b"{}"),
         ("points.csv", [], b"{}", b""),
     ]
+
+
+@pytest.mark.parametrize("name", ["{}.csv", "{}/a.csv"])
+def test_the_directory_of_a_zip_file_is_read_once(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    archive = zipped(tmp_path / "class.zip", {name.format(i): "0 0 0 q1" for i in range(40)})
+    opened = []
+
+    class Counted(zipfile.ZipFile):
+        def __init__(self, *arguments: Any) -> None:
+            opened.append(arguments)
+            super().__init__(*arguments)
+
+    monkeypatch.setattr(zipfile, "ZipFile", Counted)
+
+    def is_output(entry: ClassEntry) -> bool:
+        assert entry.start("") or entry.start("a.csv")
+        return False
+
+    assert len([*all_handed_in([archive], is_output=is_output)]) == 40
+    assert len(opened) == 1

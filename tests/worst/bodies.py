@@ -67,7 +67,18 @@ _PASTED: Final[Mapping[str, str]] = {
     "short words in brackets": run("[", "a1 ", "]"),
 }
 
+# A table of an honest client, in which a row is missing and the last one moves nothing.
+_FEW_ROWS: Final = [
+    {"a": "0*0.649546", "alpha": "0", "d": "-(0)", "theta": "0"},
+    {"a": "l1", "alpha": "0", "d": "0", "theta": "q2"},
+    {"a": "l2", "alpha": "0", "d": "0", "theta": "q3"},
+    {"a": "0", "alpha": "0", "d": "0", "theta": "0"},
+]
+
 KNOWN: Final[Mapping[str, Attack]] = {
+    "a table with a row too few": Attack(
+        GRADE, "planar-rrr", {"answers": {"table": {"rows": _FEW_ROWS}}}
+    ),
     "cells that nearly repair": _graded(pose=_HALVES),
     "cells that nearly repair, in several parts": _graded(pose=_HALVES, links=[_HALVES] * 6),
     "a grid of cells that nearly repair": _previewed("\n".join(map(", ".join, grid(8, 4))), "pose"),

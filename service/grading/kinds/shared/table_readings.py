@@ -32,6 +32,7 @@ from service.grading.judging.table_filled import with_lazy_cells, written_conten
 from service.grading.part import Grading, Judged
 from service.grading.reading.tables.table import StudentTable
 from service.grading.report import CellReport, Place, RowReport, Verdict, row_report
+from service.grading.work_budget import WorkBudget
 from service.kinematics.chain import COLUMNS
 from service.kinematics.dh import Convention
 
@@ -82,8 +83,34 @@ def best_reading(
         silent = readings.in_silence()
         return silent.best(other, silent.as_written(other))
 
-    fair = FairPoints(part, judged_again, work, grading).limited(table, best)
+    judged_once = _once(judged_again, grading.reader.budget)
+    fair = FairPoints(part, judged_once, work, grading).limited(table, best)
     return replace(fair, written=written_content(table, fair.content.given, grading))
+
+
+def _once(
+    judge: Callable[[StudentTable], Judged], budget: WorkBudget
+) -> Callable[[StudentTable], Judged]:
+    """Return ``judge``, which does not judge the same table again.
+
+    A table whose judgement was charged is judged again, so that the budget stays the same.
+    """
+    # The tables are kept, so that no other object gets the id of an entry.
+    known: dict[object, tuple[StudentTable, Judged]] = {}
+
+    def judged(table: StudentTable) -> Judged:
+        entries = tuple(id(entry) for row in table.rows for entry in row.entries)
+        written = tuple(row.handed_in.tobytes() for row in table.rows)
+        key = entries, written, table.values.tobytes(), table.convention
+        if key not in known:
+            left = budget.searches, budget.explanations
+            found = judge(table)
+            if (budget.searches, budget.explanations) != left:
+                return found
+            known[key] = table, found
+        return known[key][1]
+
+    return judged
 
 
 def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> float:
