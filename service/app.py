@@ -21,6 +21,8 @@ def create() -> FastAPI:
         raise SystemExit(f"dh-grader cannot start:\n{error}") from error
 
 
-app = create()
-if _COLLECTS:
-    gc.enable()
+try:
+    app = create()
+finally:
+    if _COLLECTS:
+        gc.enable()

@@ -280,7 +280,7 @@ def test_a_cell_with_a_tab_is_quoted_readably(catalogue: Mapping[str, Exercise])
         catalogue, "| a | alpha | d\tx | theta |\n| 0 | 0 | 0 | q1 |\n| 1 | 0 | 0 | q2 |"
     )
     [message] = report.feedback
-    assert "`d x` (with a tab in it)" in message.message
+    assert "`d x` (with a tab character in it)" in message.message
 
 
 @pytest.mark.parametrize(

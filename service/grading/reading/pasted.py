@@ -217,7 +217,7 @@ def quoted(text: str) -> str:
     short = shown if len(shown) <= 30 else shown[:29] + "…"
     if "\t" in text:
         # Translators: the text of a cell, as a part of other sentences.
-        return say("`{text}` (with a tab in it)", text=short)
+        return say("`{text}` (with a tab character in it)", text=short)
     if shown == text:
         return f"`{short}`"
     # Translators: the text of a cell, as a part of other sentences.

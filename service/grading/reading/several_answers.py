@@ -85,7 +85,9 @@ def read_once(
 def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] | None:
     # The text up to the end of its first answer, and a note, if equal answers follow; None if the
     # text has only one answer. Raises GridError if the answers differ.
-    if len(text) > GRID_LIMITS.characters or not _FEWEST_LINES <= _count_lines(text) <= _MOST_LINES:
+    if len(text) > GRID_LIMITS.characters:
+        return None
+    if not _FEWEST_LINES <= len(text.splitlines()) <= _MOST_LINES:
         return None
     ways = list(_starts(lines := SourceText.of(text).lines()))
     if not ways or not reader.budget.affords_search(PASTED_WORK * 2 * len(text)):
@@ -101,10 +103,6 @@ def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] 
     finally:
         reader.budget.charge_search(SYMBOL_WORK * (MAX_SYMBOLS - max(own.budget.symbols, 0)))
     return None
-
-
-def _count_lines(text: str) -> int:
-    return len(text.splitlines())
 
 
 def _first(

@@ -44,7 +44,7 @@ from service.translations import listed, say, say_count
 ColumnOrder = tuple[int | None, Header]
 # The most rows above the headers that do not belong to the table.
 _MOST_NAMES: Final = 3
-# One of several tables in a text has at least so many rows.
+# If a text has several tables, each has at least this many rows.
 _FEWEST_ROWS: Final = 2
 _WHOLE: Final = regex(r"\d{1,12}")
 _SHORT: Final = regex(r"\d{1,4}")
