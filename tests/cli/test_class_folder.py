@@ -102,7 +102,7 @@ def test_an_interrupt_ends_the_run_and_leaves_no_files_or_processes(
 ) -> None:
     output = tmp_path / "out.csv"
     output.write_text("from yesterday", encoding="utf-8")
-    command = [*PROGRAM, *[str(folder)] * 40, "--format", "csv", "--jobs", "2"]
+    command = [*PROGRAM, *[str(folder)] * 40, "--format", "csv", "--jobs", "2", "--force"]
     process = subprocess.Popen(
         [*command, "--output", str(output)],
         stderr=subprocess.PIPE,
@@ -112,7 +112,8 @@ def test_an_interrupt_ends_the_run_and_leaves_no_files_or_processes(
     )
     try:
         # The file that is being written shows that the grading has begun.
-        wait_for(lambda: (tmp_path / ".out.csv.part").exists())
+        wait_for(lambda: (tmp_path / ".out.csv.part").exists() or process.poll() is not None)
+        assert process.returncode is None, process.stderr and process.stderr.read()
         # A process that has just begun may not have its own command line yet.
         wait_for(lambda: len(workers(process.pid)) == 2)
         # The run does not end by itself before the signal comes.

@@ -48,7 +48,8 @@ def _grouped(failure: Failure) -> Repair:
     plain = re.sub(r"[^0-9]", "", whole) + (f".{rest}" if rest else "")
     message = say(
         "`{typed}` has a thousands separator. Write {number}.",
-        typed=typed,
+        # A no-break space looks like a space, but cannot be printed everywhere.
+        typed=re.sub(r"\s", " ", typed),
         number=plain,
     )
     repaired = failure.source[: number.start()] + plain + failure.source[number.end() :]
