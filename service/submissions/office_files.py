@@ -19,8 +19,10 @@ from itertools import groupby, islice
 from typing import Any, Final
 from xml.etree import ElementTree as ET
 
+from service.grading.reading.tables.column_headers import read_header
+from service.grading.reading.unit_comments import comments
 from service.regex import regex
-from service.submissions.documents import pasted_from
+from service.submissions.documents import around_rows, around_table, pasted_from
 from service.submissions.strict_json import MalformedError, read_json
 from service.translations import say
 
@@ -53,12 +55,13 @@ class Excerpt:
     """A piece of a file that may be the answer to a part.
 
     ``name`` is the name of a sheet, or empty. An excerpt of a higher ``level`` counts only if none
-    of a lower level can be read.
+    of a lower level can be read. ``around`` are the lines, cells and comments beside it.
     """
 
     text: str
     name: str = ""
     level: int = 0
+    around: tuple[str, ...] = ()
 
 
 SheetRow = Sequence[str]
@@ -380,14 +383,40 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _of_sheets(sheets: Iterable[tuple[str, Sequence[SheetRow]]]) -> Iterator[Excerpt]:
+def _of_sheets(
+    sheets: Iterable[tuple[str, Sequence[SheetRow]]], comments: Sequence[str] = ()
+) -> Iterator[Excerpt]:
     filled = [(name, rows) for name, rows in sheets if any(any(row) for row in rows)]
     for name, rows in filled:
-        yield Excerpt(_as_table(rows), name)
+        yield Excerpt(_as_table(rows), name, around=(*_sentences(rows), *comments))
     for name, rows in filled:
         blocks = list(_blocks(rows))
-        if len(blocks) > 1:
-            yield from (Excerpt(_as_table(block), name, 1) for block in blocks if len(block) > 1)
+        if len(blocks) == 1:
+            continue
+        for block in blocks:
+            if len(block) > 1:
+                others = [row for other in blocks if other is not block for row in other]
+                around = (*_sentences(block), *_remarks(others), *comments)
+                yield Excerpt(_as_table(block), name, 1, around)
+
+
+def _sentences(rows: Iterable[SheetRow]) -> Iterator[str]:
+    # The cells with several words, which are no headers.
+    for row in rows:
+        for cell in row:
+            if len(cell.split()) > _MOST_WORDS and not read_header(cell):
+                yield cell
+
+
+def _remarks(rows: Iterable[SheetRow]) -> Iterator[str]:
+    # Rows with few cells are no rows of another table, but may be "Angles: | degrees".
+    for row in rows:
+        cells = list(filter(None, row))
+        yield from [" ".join(cells)] if len(cells) <= _MOST_WORDS else _sentences([cells])
+
+
+# The most words of an entry, and the most cells of a remark.
+_MOST_WORDS: Final = 2
 
 
 def _as_table(rows: Sequence[SheetRow]) -> str:
@@ -409,16 +438,38 @@ def _blocks(rows: Sequence[SheetRow]) -> Iterator[list[SheetRow]]:
 
 
 def _docx(data: bytes) -> Iterator[Excerpt]:
-    root = _Package(data).parsed("word/document.xml")
+    package = _Package(data)
+    root = package.parsed("word/document.xml")
     lines: list[str] = []
     tables: list[list[SheetRow]] = []
     body = next((each for each in root if _local(each) == "body"), root)
     _read_blocks(body, lines, tables)
-    texts = [_as_table(rows) for rows in tables]
-    yield from (Excerpt(text) for text in texts if text.strip())
     between = "\n".join(line for line in lines if line.strip())
+    notes = [*_text_boxes(body), *_notes(package, _NOTES_OF_WORD)]
+    for i, rows in enumerate(tables):
+        others = [row for other in (*tables[:i], *tables[i + 1 :]) for row in other]
+        around = (*between.splitlines(), *_sentences(rows), *_remarks(others), *notes)
+        if text := _as_table(rows).strip():
+            yield Excerpt(text, around=around)
     if between:
-        yield Excerpt(between, level=1 if texts else 0)
+        yield Excerpt(between, level=1 if tables else 0, around=tuple(notes))
+
+
+def _text_boxes(body: ET.Element) -> Iterator[str]:
+    for box in body.iter():
+        if _local(box) == "txbxContent":
+            yield from (_text_of_word(each) for each in box if _local(each) == "p")
+
+
+def _notes(package: _Package, names: re.Pattern[str]) -> Iterator[str]:
+    """Yield the texts of comments, footnotes and headers, which are parts of their own."""
+    for name in filter(names.fullmatch, package.names):
+        for each in package.parsed(name).iter():
+            if _local(each) in ("p", "text", "comment"):
+                yield "".join(_text_of_word(each))
+
+
+_NOTES_OF_WORD: Final = regex(r"word/(?:comments|footnotes|endnotes|header\d*|footer\d*)\.xml")
 
 
 def _read_blocks(parent: ET.Element, lines: list[str], tables: list[list[SheetRow]]) -> None:
@@ -593,7 +644,7 @@ def _rtf(data: bytes) -> Iterator[Excerpt]:
     text: str = rtf_to_text(data.decode("cp1252", "replace"), errors="replace")  # type: ignore[no-untyped-call]
     table = pasted_from(text, ".md")
     if table != text:
-        yield Excerpt(table)
+        yield Excerpt(table, around=around_table(text, ".md"))
     yield Excerpt(text, level=1 if table != text else 0)
 
 
@@ -617,12 +668,19 @@ def _notebook(data: bytes) -> Iterator[Excerpt]:
         raise UnusableFileError(say("is not a usable notebook")) from error
     code = [source for kind, source, _ in found if kind == "code" and source.strip()]
     texts = [source for kind, source, _ in found if kind != "code" and source.strip()]
-    tables = [table for text in texts if (table := pasted_from(text, ".md")) != text]
-    yield from (Excerpt(table) for table in tables)
+    lines = tuple(line for text in texts for line in text.splitlines() if "|" not in line)
+    said = tuple(comment[1] for source in code for comment in comments(source))
+    for text in texts:
+        if (table := pasted_from(text, ".md")) != text:
+            yield Excerpt(table, around=(*lines, *said))
     if code:
-        yield Excerpt("\n".join(code))
-        yield from (Excerpt(each, level=1) for each in code if len(code) > 1)
-    yield from (Excerpt(text, level=1) for text in texts)
+        yield Excerpt("\n".join(code), around=lines)
+        yield from (
+            Excerpt(each, level=1, around=(*lines, *said)) for each in code if len(code) > 1
+        )
+    yield from (
+        Excerpt(text, level=1, around=(*lines, *said, *around_rows(text))) for text in texts
+    )
     # What the code printed last counts only if nothing else is there.
     printed = [text for _, _, outputs in found for text in outputs if text.strip()]
     if printed:
@@ -707,7 +765,7 @@ def _web_page(data: bytes) -> Iterator[Excerpt]:
     page = _visible(page)
     has_table = _TABLE.search(page) is not None
     if has_table:
-        yield Excerpt(page)
+        yield Excerpt(page, around=around_rows(page))
     text = typed_text(page)
     if text:
         yield Excerpt(text, level=1 if has_table else 0)
