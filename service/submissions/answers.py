@@ -139,11 +139,17 @@ def _with_misplaced(answers: ExerciseAnswers, misplaced: Sequence[HandedFile]) -
     )
 
 
+def _reason(error: Exception) -> str:
+    # The ``str`` of an error or a sentence forgets the template of the sentence.
+    reason: str = error.args[0]
+    return reason
+
+
 def _problem_of(file: HandedFile) -> str:
     try:
         file.read()
     except UnusableFileError as error:
-        return str(error.args[0])
+        return _reason(error)
     return ""
 
 
@@ -198,7 +204,7 @@ def _why_unread(file: HandedFile, assigned: AssignedExercise) -> str:
     try:
         read_content(b"" if ending(file.name) in BY_HAND_ENDINGS else file.read(), file.name)
     except UnusableFileError as error:
-        return str(error.args[0])
+        return _reason(error)
     return _unnamed(assigned, ending(file.name))
 
 
@@ -369,7 +375,7 @@ def _combined(
         try:
             claims = _readable_claim(claims, assigned, choose)
         except _DifferentAnswersError as error:
-            problem = str(error.args[0])
+            problem = _reason(error)
             return ExerciseAnswers(shown, None, problem, names, dict.fromkeys(names, problem))
     for claim in claims:
         name = claim.file.own_name

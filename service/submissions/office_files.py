@@ -790,13 +790,32 @@ def decoded(data: bytes) -> str:
     except UnicodeDecodeError:
         pass
     # Python leaves five bytes of Windows-1252 undefined; no text has them.
+    if any(byte < 32 and byte not in b"\t\n\r\f" for byte in data):
+        raise UnusableFileError(say("is not text"))
     try:
         text = data.decode("cp1252")
     except UnicodeDecodeError as error:
-        raise UnusableFileError(say("is not text")) from error
-    if any(ord(sign) < 32 and sign not in "\t\n\r\f" for sign in text):
-        raise UnusableFileError(say("is not text"))
+        raise _other_encoding() from error
+    if _IMPLAUSIBLE.search(text):
+        raise _other_encoding()
     return text
+
+
+# Signs that no text in Windows-1252 has at such places, but one in GBK, in the code page of a Mac
+# or in Cyrillic letters, which is decoded as Windows-1252: "Á¬¸Ë³¤¶È", "180¡", "LŠnge", "¹/2".
+_IMPLAUSIBLE: Final = regex(
+    r"[¬¸¶¤¦¨¯]|[À-ÖØ-öø-ÿ¡-§©-¯±-¶¸-º¼-¿×÷ŠšŒœŽžŸƒˆ˜]{4}|[²³µ¼½¾±][À-ÖØ-öø-ÿ]"
+    r"|\w[¡§]|[€†‡…ˆ‰][a-z]|[A-Za-z][ŠŽŒŸ€†‡ˆ‰](?=[a-z\s])|(?<![\w)])¹"
+)
+
+
+def _other_encoding() -> UnusableFileError:
+    return UnusableFileError(
+        say(
+            "is not text in UTF-8 or Windows-1252; if it is a text, save it as UTF-8, and hand it "
+            "in again"
+        )
+    )
 
 
 def _wide(data: bytes) -> str:
