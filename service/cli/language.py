@@ -52,9 +52,9 @@ def _tag(locale: str) -> str:
     return locale.partition(".")[0].partition("@")[0]
 
 
-def spoken(text: str) -> str:
-    """Return a sentence in the language of the user."""
-    return told(text, user_language().translation_of_commands)
+def spoken(text: str, language: Language | None = None) -> str:
+    """Return a sentence in a language, by default that of the user."""
+    return told(text, (language or user_language()).translation_of_commands)
 
 
 def translate_help(command: Any) -> Any:

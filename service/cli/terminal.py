@@ -14,7 +14,7 @@ from service.catalogue import Exercise, exercise_files, load_catalogue, load_exe
 from service.cli.language import spoken
 from service.settings import load_settings
 from service.submissions.lookup import find_exercise
-from service.translations import Sentence, say
+from service.translations import Language, Sentence, say
 
 BELOW_PASS_MARK = 1
 UNUSABLE = 2
@@ -60,13 +60,14 @@ def tell_verdict(is_fine: bool | None, message: str) -> None:
     typer.echo(set_cell_size(words[is_fine], width) + spoken(message))
 
 
-def complain(message: str | Exception) -> None:
-    """Print a message to standard error, in the language of the user."""
+def complain(message: str | Exception, language: Language | None = None) -> None:
+    """Print a message to standard error, in a language, by default that of the user."""
     text = str(message)
     # The ``str`` of an error forgets the template of its sentence.
     if isinstance(message, Exception) and message.args and message.args[0] == text:
         text = message.args[0]
-    print(spoken(text if isinstance(message, Exception) else message), file=sys.stderr)  # noqa: T201 - a program's own error output
+    said = text if isinstance(message, Exception) else message
+    print(spoken(said, language), file=sys.stderr)  # noqa: T201 - a program's own error output
 
 
 def give_up(message: str | Exception) -> NoReturn:

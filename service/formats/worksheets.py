@@ -63,13 +63,15 @@ class UnfillableWorksheetError(UnusableWorksheetError):
 class Filled:
     """A worksheet with grades, and what is left to do.
 
-    ``grades`` is the number of rows that now have the grade of a submission; ``by_hand`` of those
-    that a person must still grade. ``problems`` are sentences for the tutor. ``kept`` is the number
-    of grades that were in the worksheet and differ from the points of the submission.
+    ``grades`` is the number of rows into which a grade was written; ``same`` of those that already
+    had the grade of the submission; ``by_hand`` of those that a person must still grade.
+    ``problems`` are sentences for the tutor. ``kept`` is the number of grades that were in the
+    worksheet and differ from the points of the submission.
     """
 
     content: bytes
     grades: int
+    same: int
     by_hand: int
     kept: int
     problems: tuple[str, ...]
@@ -88,6 +90,8 @@ class Grade:
     points: float
     max_points: float
     comment: str
+    # True if some entries could not be read.
+    has_unread_cells: bool = False
 
 
 def grade_of(submission: GradedSubmission, comment: str) -> Grade:
@@ -100,6 +104,7 @@ def grade_of(submission: GradedSubmission, comment: str) -> Grade:
         submission.points,
         submission.max_points,
         comment,
+        any(file.has_unread_cells for file in submission.files),
     )
 
 
@@ -132,7 +137,11 @@ class _Rows:
     # What was done with the rows so far.
     changes: list[tuple[_Cell, str]] = field(default_factory=list)
     filled: int = 0
+    same: int = 0
     comments: int = 0
+    replaced: list[str] = field(default_factory=list)
+    replaced_comments: list[str] = field(default_factory=list)
+    partly_unread: list[Grade] = field(default_factory=list)
     kept: list[str] = field(default_factory=list)
     unread: list[Grade] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
@@ -176,10 +185,17 @@ class Worksheet:
         for i, grade in grade_of_row.items():
             self._fill(rows, self._layout.rows[i], grade, replaces=replaces)
         problems += [*rows.problems, *_kept(rows.kept), *_kept_comments(rows.comments)]
-        problems += _by_hand(rows.unread)
+        problems += [*_replaced(rows.replaced), *_replaced_comments(rows.replaced_comments)]
+        problems += [*_partly_unread(rows.partly_unread), *_by_hand(rows.unread)]
         content = self._changed(rows.changes)
         return Filled(
-            content, rows.filled, len(rows.unread), len(rows.kept), tuple(problems), is_foreign
+            content,
+            rows.filled,
+            rows.same,
+            len(rows.unread),
+            len(rows.kept),
+            tuple(problems),
+            is_foreign,
         )
 
     def _matched(
@@ -218,16 +234,32 @@ class Worksheet:
         if has_grade and not is_same and not replaces:
             rows.kept.append(f"{_short(grade)} ({before} / {written})")
             return
-        rows.filled += 1
-        if not is_same:
+        if grade.has_unread_cells:
+            rows.partly_unread.append(grade)
+        if is_same:
+            rows.same += 1
+        else:
+            rows.filled += 1
             rows.changes.append((cell, written))
+        if has_grade and not is_same:
+            rows.replaced.append(f"{_short(grade)} ({before} → {written})")
+        self._fill_comment(rows, cells, grade, replaces=replaces)
+
+    def _fill_comment(
+        self, rows: "_Rows", cells: Sequence[_Cell], grade: Grade, *, replaces: bool
+    ) -> None:
         if self._layout.comment is None:
             return
         comment, told = cells[self._layout.comment], without_formulas(grade.comment)
-        if comment.value.strip() and not replaces:
-            rows.comments += comment.value != told
-        elif comment.value != told:
-            rows.changes.append((comment, told))
+        has_comment = bool(comment.value.strip())
+        if comment.value == told:
+            return
+        if has_comment and not replaces:
+            rows.comments += 1
+            return
+        rows.changes.append((comment, told))
+        if has_comment:
+            rows.replaced_comments.append(_short(grade))
 
     def _rows_of(self, grade: Grade) -> list[int]:
         layout = self._layout
@@ -603,6 +635,48 @@ def _kept_comments(count: int) -> list[Sentence]:
             "{count} comment that was already in the worksheet stays.",
             "{count} comments that were already in the worksheet stay.",
             count=count,
+        )
+    ]
+
+
+def _replaced(grades: Sequence[str]) -> list[Sentence]:
+    # All are named: the old grades are nowhere else in the output.
+    if not grades:
+        return []
+    return [
+        say_count(
+            "{count} grade in the worksheet is replaced (old → new): {grades}.",
+            "{count} grades in the worksheet are replaced (old → new): {grades}.",
+            count=len(grades),
+            grades=", ".join(grades),
+        )
+    ]
+
+
+def _replaced_comments(names: Sequence[str]) -> list[Sentence]:
+    if not names:
+        return []
+    return [
+        say_count(
+            "{count} comment in the worksheet is replaced: {names}.",
+            "{count} comments in the worksheet are replaced: {names}.",
+            count=len(names),
+            names=", ".join(names),
+        )
+    ]
+
+
+def _partly_unread(grades: Sequence[Grade]) -> list[Sentence]:
+    if not grades:
+        return []
+    return [
+        say_count(
+            "{count} submission has entries that could not be read, and earned no points for "
+            "them: {names}.",
+            "{count} submissions have entries that could not be read, and earned no points for "
+            "them: {names}.",
+            count=len(grades),
+            names=_named(list(map(_short, grades))),
         )
     ]
 

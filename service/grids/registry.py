@@ -14,6 +14,7 @@ from service.grids.formats.csv import FORMAT as CSV
 from service.grids.formats.data_frame import without_frame
 from service.grids.formats.decimal_commas import with_decimal_points
 from service.grids.formats.html import FORMAT as HTML
+from service.grids.formats.html import struck_out
 from service.grids.formats.latex import FORMAT as LATEX
 from service.grids.formats.markdown import FORMAT as MARKDOWN
 from service.grids.formats.named_values import FORMAT as NAMED_VALUES
@@ -72,6 +73,9 @@ FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］【】｛｝
 
 # The first line of a CSV file that names its separator to a spreadsheet.
 _SEPARATOR_LINE: Final = regex(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
+
+# Struck-out text, as Markdown writes it. Readers of files write it in the same way.
+_STRUCK_OUT: Final = regex(r"(?<!~)~~(?=[^\s~])[^~\n]{1,400}~~(?!~)")
 
 # LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"
@@ -133,6 +137,8 @@ def _limited(text: str) -> SourceText:
         raise GridError("too_long", message, (most, len(text)))
     plain = SourceText.of(text)
     plain = replace(plain, text=text.translate(FULL_WIDTH))
+    if struck := _STRUCK_OUT.search(plain.text):
+        raise struck_out(plain.span(*struck.span()))
     source = without_fence(plain.strip("\ufeff"))
     if separator := _SEPARATOR_LINE.match(source.text):
         source = source.cut(separator.end(), len(source.text))

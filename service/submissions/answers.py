@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 
+from service.catalogue import Exercise
 from service.catalogue.files.refusals import alternatives
+from service.grading.reading.entry import length_unit_of
 from service.submissions.assignment import AssignedExercise, Assignment
 from service.submissions.body import GradeRequest
 from service.submissions.file_content import (
@@ -36,6 +38,7 @@ from service.submissions.platform_names import (
     student_and_part,
     without_copy_number,
 )
+from service.submissions.remarks import changing_remark, shortened
 from service.translations import Sentence, joined, say
 
 if TYPE_CHECKING:
@@ -136,11 +139,17 @@ def _with_misplaced(answers: ExerciseAnswers, misplaced: Sequence[HandedFile]) -
     )
 
 
+def _reason(error: Exception) -> str:
+    # The ``str`` of an error or a sentence forgets the template of the sentence.
+    reason: str = error.args[0]
+    return reason
+
+
 def _problem_of(file: HandedFile) -> str:
     try:
         file.read()
     except UnusableFileError as error:
-        return str(error.args[0])
+        return _reason(error)
     return ""
 
 
@@ -195,7 +204,7 @@ def _why_unread(file: HandedFile, assigned: AssignedExercise) -> str:
     try:
         read_content(b"" if ending(file.name) in BY_HAND_ENDINGS else file.read(), file.name)
     except UnusableFileError as error:
-        return str(error.args[0])
+        return _reason(error)
     return _unnamed(assigned, ending(file.name))
 
 
@@ -366,7 +375,7 @@ def _combined(
         try:
             claims = _readable_claim(claims, assigned, choose)
         except _DifferentAnswersError as error:
-            problem = str(error.args[0])
+            problem = _reason(error)
             return ExerciseAnswers(shown, None, problem, names, dict.fromkeys(names, problem))
     for claim in claims:
         name = claim.file.own_name
@@ -456,13 +465,33 @@ def _readable_claim(
 def _body(claim: _Claim, assigned: AssignedExercise, choose: Choose) -> GradeRequest:
     content = read_content(claim.file.read(), claim.file.name)
     part = claim.part or assigned.only_part
-    if len(content.excerpts) > 1:
-        if part is not None:
-            chosen = choose(assigned, part, content.excerpts)
-            content = FileContent(chosen, is_pasted=True)
-        elif named := _by_sheet(content.excerpts, assigned):
-            content = FileContent({"answers": named})
+    if content.excerpts and part is not None:
+        several = len(content.excerpts) > 1
+        chosen = choose(assigned, part, content.excerpts) if several else str(content.value)
+        refuse_changing_remark(content.excerpts, chosen, assigned)
+        content = FileContent(chosen, is_pasted=True)
+    elif len(content.excerpts) > 1 and (named := _by_sheet(content.excerpts, assigned)):
+        for text in named.values():
+            refuse_changing_remark(content.excerpts, text, assigned)
+        content = FileContent({"answers": named})
     return read_body(content, assigned, part)
+
+
+def refuse_changing_remark(
+    excerpts: Sequence[Excerpt], chosen: str, assigned: AssignedExercise
+) -> None:
+    """Raise UnusableFileError if a sentence beside the chosen text may change its meaning."""
+    exercise = assigned.exercise
+    unit = length_unit_of(exercise) if isinstance(exercise, Exercise) else None
+    around = next((each.around for each in excerpts if each.text == chosen), ())
+    if sentence := changing_remark(chosen, around, unit):
+        raise UnusableFileError(
+            say(
+                "has a sentence beside the table or matrix that may change its meaning, so grade "
+                "it by hand: “{sentence}”",
+                sentence=shortened(sentence),
+            )
+        )
 
 
 def _by_sheet(excerpts: Sequence[Excerpt], assigned: AssignedExercise) -> dict[str, str]:

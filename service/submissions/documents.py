@@ -5,8 +5,10 @@ Such a document may have other words or statements around the answer.
 
 import re
 from collections.abc import Callable, Iterator, Mapping
+from html import unescape
 from typing import Final
 
+from service.grading.reading.unit_comments import comments
 from service.grids import ASSIGNMENT
 from service.regex import regex
 
@@ -39,6 +41,36 @@ def pasted_from(text: str, suffix: str) -> str:
     last = text.find(first.rpartition("\n")[2], text.find(first.partition("\n")[0]))
     above = text.count("\n", 0, max(last, 0)) - first.count("\n")
     return "\n" * above + first
+
+
+def around_table(text: str, suffix: str) -> tuple[str, ...]:
+    """Return the lines of a document that are not in what ``pasted_from`` returns."""
+    table = pasted_from(text, suffix).strip("\n")
+    if suffix == ".m":
+        said = (comment[1] for comment in comments(text))
+        return tuple(each for each in said if each not in table)
+    lines = "\n".join(text.splitlines()) if suffix == ".md" else text
+    rest = lines.replace(table, "\n") if len(table) < len(text) else ""
+    return (*filter(str.strip, rest.splitlines()), *around_rows(text))
+
+
+def around_rows(page: str) -> tuple[str, ...]:
+    """Return the texts around the rows of the tables in a text with HTML tags."""
+    first, *rows = _ROW.split(page)
+    if not rows:
+        return ()
+    ends = (_ROW_END.split(row, maxsplit=1)[1:] for row in rows)
+    pieces = (first, *(piece for end in ends for piece in end))
+    lines = (unescape(_TAG.sub(" ", line)) for piece in pieces for line in _LINE.split(piece))
+    return tuple(line for line in lines if line.strip())
+
+
+_ROW: Final = regex(r"<tr(?![A-Za-z0-9-])", re.IGNORECASE)
+_ROW_END: Final = regex(r"</(?:tr|table)(?![A-Za-z0-9-])[^<>]{0,200}>", re.IGNORECASE)
+_LINE: Final = regex(
+    r"</?(?:p|div|br|li|caption|h[1-6])(?![A-Za-z0-9-])[^<>]{0,2000}>", re.IGNORECASE
+)
+_TAG: Final = regex(r"</?[A-Za-z][^<>]{0,2000}>")
 
 
 # A line of a CSV file that is one cell in quotation marks.

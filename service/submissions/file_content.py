@@ -14,7 +14,7 @@ from typing import Any, Final
 
 from service.catalogue import read_regular
 from service.regex import regex
-from service.submissions.documents import pasted_from
+from service.submissions.documents import around_rows, around_table, pasted_from
 from service.submissions.office_files import (
     OFFICE_ENDINGS,
     Excerpt,
@@ -143,7 +143,9 @@ def read_content(data: bytes, name: str) -> FileContent:
         case ".txt":
             return _recognised(text)
         case known if known in PASTED_ENDINGS:
-            return FileContent(pasted_from(text, known), is_pasted=True)
+            pasted = pasted_from(text, known)
+            around = around_table(text, known)
+            return FileContent(pasted, is_pasted=True, excerpts=(Excerpt(pasted, around=around),))
         case _ if name == STANDARD_INPUT:
             return _recognised(text)
         case known if known in DATA_ENDINGS:
@@ -234,7 +236,7 @@ def _recognised(text: str) -> FileContent:
         else:
             if isinstance(value, dict) and "answers" in value:
                 return FileContent(value)
-    return FileContent(text, is_pasted=True)
+    return FileContent(text, is_pasted=True, excerpts=(Excerpt(text, around=around_rows(text)),))
 
 
 _TAGS: Final = regex("</(?:p|div|span)>|<br ?/?>", re.IGNORECASE)

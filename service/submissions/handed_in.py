@@ -127,7 +127,7 @@ class HandedIn:
             boundary = inside or entry.path
             for file in _files_below(entry, boundary, MAX_FOLDERS_DEEP):
                 if len(found) == MAX_FILES:
-                    raise UnusableFileError(f"holds more than {MAX_FILES:,} files")
+                    raise UnusableFileError(say("holds more than {most:,} files", most=MAX_FILES))
                 found.append(file)
         return found
 

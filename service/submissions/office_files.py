@@ -12,16 +12,19 @@ import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta
 from html import unescape
 from itertools import groupby, islice
 from typing import Any, Final
 from xml.etree import ElementTree as ET
 
+from service.grading.reading.tables.column_headers import read_header
+from service.grading.reading.unit_comments import comments
 from service.regex import regex
-from service.submissions.documents import pasted_from
+from service.submissions.documents import around_rows, around_table, pasted_from
 from service.submissions.strict_json import MalformedError, read_json
+from service.submissions.word_formulas import local_name, written_formula
 from service.translations import say
 
 # Bytes of the XML in one file after unpacking. A table of a student needs a hundredth of that.
@@ -53,12 +56,13 @@ class Excerpt:
     """A piece of a file that may be the answer to a part.
 
     ``name`` is the name of a sheet, or empty. An excerpt of a higher ``level`` counts only if none
-    of a lower level can be read.
+    of a lower level can be read. ``around`` are the lines, cells and comments beside it.
     """
 
     text: str
     name: str = ""
     level: int = 0
+    around: tuple[str, ...] = ()
 
 
 SheetRow = Sequence[str]
@@ -169,10 +173,6 @@ def _require_plain(content: bytes) -> None:
         raise _damaged()
 
 
-def _local(element: ET.Element) -> str:
-    return element.tag.rpartition("}")[2]
-
-
 def _attribute(element: ET.Element, name: str) -> str:
     for key, value in element.attrib.items():
         if key.rpartition("}")[2] == name:
@@ -186,6 +186,7 @@ def _attribute(element: ET.Element, name: str) -> str:
 def _xlsx(data: bytes) -> Iterator[Excerpt]:
     package = _Package(data)
     kept = io.BytesIO()
+    parts: dict[str, bytes] = {}
     # A copy of only the parts that are read, so that the library meets nothing else.
     with zipfile.ZipFile(kept, "w") as copy:
         for name in package.names:
@@ -194,6 +195,7 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
             content = package.read(name)
             _require_plain(content)
             if "worksheets/" in name:
+                parts[name] = content
                 _require_few_cells(content)
                 if _WITHOUT_VALUE.search(content):
                     raise UnusableFileError(
@@ -211,9 +213,84 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
     for sheet in book.worksheets:
         if sheet.sheet_state == "visible":
             sheet.reset_dimensions()
-            rows = sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS, values_only=True)
-            sheets.append((sheet.title, [[_shown(value) for value in row] for row in rows]))
-    yield from _of_sheets(sheets)
+            rows = sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS)
+            hidden = _Hidden.of_xlsx(parts.get(sheet._worksheet_path, b""))
+            sheets.append((sheet.title, hidden.without([list(map(_of_xlsx, row)) for row in rows])))
+    yield from _of_sheets(sheets, [*_notes(package, _NOTES_OF_SHEETS)])
+
+
+def _of_xlsx(cell: Any) -> str:
+    if cell.value is None:
+        return ""
+    text = _with_unit(cell.value, cell.number_format)
+    return _struck(text) if cell.font and cell.font.strike else text
+
+
+_NOTES_OF_SHEETS: Final = regex(r"xl/(?:comments/?[^/]{0,20}|threadedComments/[^/]{1,60})\.xml")
+
+
+@dataclass(frozen=True, slots=True)
+class _Hidden:
+    """The rows and columns of a sheet that nobody sees, counted from 0."""
+
+    rows: frozenset[int]
+    columns: frozenset[int]
+
+    @classmethod
+    def of_xlsx(cls, content: bytes) -> "_Hidden":
+        """Return the hidden rows and columns in the XML of a sheet."""
+        rows: set[int] = set()
+        columns: set[int] = set()
+        for tag in _SIZED.finditer(content):
+            if not _HIDDEN_IN_XLSX.search(tag[0]):
+                continue
+            numbers = {name: int(value) for name, value in _NUMBERED.findall(tag[0])}
+            if tag[1] == b"row":
+                rows.add(numbers.get(b"r", 0) - 1)
+            else:
+                first, last = numbers.get(b"min", 1), numbers.get(b"max", 0)
+                columns.update(range(first - 1, min(last, MAX_COLUMNS)))
+        return cls(frozenset(rows), frozenset(columns))
+
+    def without(self, rows: Sequence[SheetRow]) -> list[SheetRow]:
+        """Return the rows that are visible, with their visible cells."""
+        if not self.rows and not self.columns:
+            return list(rows)
+        return [
+            [cell for j, cell in enumerate(row) if j not in self.columns]
+            for i, row in enumerate(rows)
+            if i not in self.rows
+        ]
+
+
+_SIZED: Final = regex(rb"<(?:\w{1,20}:)?(row|col)(?=[ \t\r\n])[^<>]{0,1000}>")
+_HIDDEN_IN_XLSX: Final = regex(rb"\shidden=[\"'](?:1|true)[\"']")
+_NUMBERED: Final = regex(rb"\s(r|min|max)=[\"'](\d{1,7})[\"']")
+
+
+def _with_unit(value: object, number_format: str) -> str:
+    """Return the text of a cell, with the unit that its number format shows after the number."""
+    shown = _shown(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return shown
+    found = _SHOWN_UNIT.search(number_format.partition(";")[0])
+    return f"{shown}{_UNITS_SHOWN.get(found[1].lower(), found[1])}" if found else shown
+
+
+# A unit after the digits of a number format: 0"°", 0.0\°, 0" mm".
+_SHOWN_UNIT: Final = regex(
+    r"[0#?][^;\"]{0,10}?[\"\\]?\s{0,2}(°|deg(?:rees?)?|grad|rad|mm|cm|m)\s{0,2}\"?\s{0,2}\Z",
+    re.IGNORECASE,
+)
+_UNITS_SHOWN: Final = {
+    **dict.fromkeys(("deg", "degree", "degrees", "grad"), "°"),
+    **{name: f" {name}" for name in ("rad", "mm", "cm", "m")},
+}
+
+
+def _struck(text: str) -> str:
+    """Return struck-out text as Markdown writes it, which no reader of tables takes."""
+    return f"~~{text.replace('~', '')}~~" if text.strip(" ~") else text
 
 
 _OF_SHEETS: Final = regex(
@@ -238,17 +315,23 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
 
     if sum(_cells_in_records(data)) > MAX_RECORDS:
         raise _too_much()
-    book = xlrd.open_workbook(file_contents=data, ragged_rows=True, logfile=io.StringIO())
+    book = xlrd.open_workbook(
+        file_contents=data, ragged_rows=True, formatting_info=True, logfile=io.StringIO()
+    )
     sheets = []
     for sheet in book.sheets():
         if sheet.visibility == 0:
             if sum(map(sheet.row_len, range(sheet.nrows))) > MAX_CELLS:
                 raise _too_much()
             rows = [
-                [_of_xls(cell, book.datemode) for cell in sheet.row(i)[:MAX_COLUMNS]]
+                [_of_xls(book, cell) for cell in sheet.row(i)[:MAX_COLUMNS]]
                 for i in range(min(sheet.nrows, MAX_ROWS))
             ]
-            sheets.append((sheet.name, rows))
+            hidden = _Hidden(
+                frozenset(i for i, info in sheet.rowinfo_map.items() if info.hidden),
+                frozenset(j for j, info in sheet.colinfo_map.items() if info.hidden),
+            )
+            sheets.append((sheet.name, hidden.without(rows)))
     yield from _of_sheets(sheets)
 
 
@@ -279,45 +362,74 @@ def _cells_in_records(data: bytes) -> Iterator[int]:
 _CELLS_IN_RECORD: Final = {0xBD: 6, 0xBE: 2}
 
 
-def _of_xls(cell: Any, datemode: int) -> str:
+def _of_xls(book: Any, cell: Any) -> str:
+    format_ = book.xf_list[cell.xf_index]
+    text = _value_of_xls(cell, book.datemode, book.format_map[format_.format_key].format_str)
+    return _struck(text) if text and book.font_list[format_.font_index].struck_out else text
+
+
+def _value_of_xls(cell: Any, datemode: int, number_format: str) -> str:
     import xlrd
 
     if cell.ctype == xlrd.XL_CELL_DATE:
         return _shown(xlrd.xldate_as_datetime(cell.value, datemode))
     if cell.ctype == xlrd.XL_CELL_ERROR:
         return str(xlrd.error_text_from_code.get(cell.value, "#N/A"))
-    return _shown(bool(cell.value) if cell.ctype == xlrd.XL_CELL_BOOLEAN else cell.value)
+    if cell.ctype == xlrd.XL_CELL_BOOLEAN:
+        return _shown(bool(cell.value))
+    return _with_unit(cell.value, number_format)
 
 
 def _ods(data: bytes) -> Iterator[Excerpt]:
     root = _Package(data).parsed("content.xml")
     yield from _of_sheets(
-        [(_attribute(table, "name"), list(_rows_of_ods(table))) for table in _tables_of_ods(root)]
+        [
+            (_attribute(table, "name"), list(_rows_of_ods(table, _struck_styles(root))))
+            for table in _tables_of_ods(root)
+        ],
+        ["".join(each.itertext()) for each in root.iter() if local_name(each) == "annotation"],
+    )
+
+
+def _struck_styles(root: ET.Element) -> frozenset[str]:
+    # The names of the styles of cells whose text is struck out.
+    return frozenset(
+        _attribute(style, "name")
+        for style in root.iter()
+        if local_name(style) == "style"
+        and any(
+            _attribute(each, "text-line-through-style") not in ("", "none")
+            or _attribute(each, "text-line-through-type") not in ("", "none")
+            for each in style
+        )
     )
 
 
 def _tables_of_ods(root: ET.Element) -> Iterator[ET.Element]:
     # A table in another one belongs to it: its rows are read once.
     for each in root:
-        if _local(each) == "table":
+        if local_name(each) == "table":
             yield each
         else:
             yield from _tables_of_ods(each)
 
 
-def _rows_of_ods(table: ET.Element) -> Iterator[list[str]]:
+def _rows_of_ods(table: ET.Element, struck: frozenset[str]) -> Iterator[list[str]]:
     waiting = 0
     found = 0
     for row in table.iter():
-        if _local(row) != "table-row":
+        if local_name(row) != "table-row" or _attribute(row, "visibility") in (
+            "collapse",
+            "filter",
+        ):
             continue
         times = _times(row, "number-rows-repeated")
         cells: list[str] = []
         blank = 0
         for cell in row:
-            if _local(cell) not in ("table-cell", "covered-table-cell"):
+            if local_name(cell) not in ("table-cell", "covered-table-cell"):
                 continue
-            text, repeated = _cell_of_ods(cell), _times(cell, "number-columns-repeated")
+            text, repeated = _cell_of_ods(cell, struck), _times(cell, "number-columns-repeated")
             if not text:
                 blank += repeated
             elif len(cells) + blank + repeated > MAX_COLUMNS:
@@ -342,19 +454,38 @@ def _times(element: ET.Element, name: str) -> int:
     return int(text[:9]) if text.isascii() and text.isdigit() else 1
 
 
-def _cell_of_ods(cell: ET.Element) -> str:
+def _cell_of_ods(cell: ET.Element, struck: frozenset[str]) -> str:
+    text = _value_of_ods(cell, struck)
+    return _struck(text) if _attribute(cell, "style-name") in struck else text
+
+
+def _value_of_ods(cell: ET.Element, struck: frozenset[str]) -> str:
+    lines = [_paragraph_of_ods(each, struck) for each in cell if local_name(each) == "p"]
     kind = _attribute(cell, "value-type")
     if kind in ("float", "percentage", "currency"):
         try:
-            return _shown(float(_attribute(cell, "value")))
+            return _with_unit(float(_attribute(cell, "value")), f"0{_unit_of_ods(lines)}")
         except ValueError:
             return _attribute(cell, "value")
     if kind == "date":
         return _as_date(_attribute(cell, "date-value"))
     if kind == "time":
         return _as_date(_attribute(cell, "time-value"))
-    lines = ("".join(each.itertext()) for each in cell if _local(each) == "p")
     return _one_line(" ".join(lines))
+
+
+def _unit_of_ods(lines: Sequence[str]) -> str:
+    # What the cell shows after its number.
+    return "".join(lines).lstrip("0123456789.,-+− ")
+
+
+def _paragraph_of_ods(paragraph: ET.Element, struck: frozenset[str]) -> str:
+    pieces = [paragraph.text or ""]
+    for each in paragraph:
+        text = "".join(each.itertext())
+        pieces += [_struck(text) if _attribute(each, "style-name") in struck else text]
+        pieces += [each.tail or ""]
+    return "".join(pieces)
 
 
 def _shown(value: object) -> str:
@@ -380,14 +511,40 @@ def _one_line(text: str) -> str:
     return " ".join(text.split())
 
 
-def _of_sheets(sheets: Iterable[tuple[str, Sequence[SheetRow]]]) -> Iterator[Excerpt]:
+def _of_sheets(
+    sheets: Iterable[tuple[str, Sequence[SheetRow]]], comments: Sequence[str] = ()
+) -> Iterator[Excerpt]:
     filled = [(name, rows) for name, rows in sheets if any(any(row) for row in rows)]
     for name, rows in filled:
-        yield Excerpt(_as_table(rows), name)
+        yield Excerpt(_as_table(rows), name, around=(*_sentences(rows), *comments))
     for name, rows in filled:
         blocks = list(_blocks(rows))
-        if len(blocks) > 1:
-            yield from (Excerpt(_as_table(block), name, 1) for block in blocks if len(block) > 1)
+        if len(blocks) == 1:
+            continue
+        for block in blocks:
+            if len(block) > 1:
+                others = [row for other in blocks if other is not block for row in other]
+                around = (*_sentences(block), *_remarks(others), *comments)
+                yield Excerpt(_as_table(block), name, 1, around)
+
+
+def _sentences(rows: Iterable[SheetRow]) -> Iterator[str]:
+    # The cells with several words, which are no headers.
+    for row in rows:
+        for cell in row:
+            if len(cell.split()) > _MOST_WORDS and not read_header(cell):
+                yield cell
+
+
+def _remarks(rows: Iterable[SheetRow]) -> Iterator[str]:
+    # Rows with few cells are no rows of another table, but may be "Angles: | degrees".
+    for row in rows:
+        cells = list(filter(None, row))
+        yield from [" ".join(cells)] if len(cells) <= _MOST_WORDS else _sentences([cells])
+
+
+# The most words of an entry, and the most cells of a remark.
+_MOST_WORDS: Final = 2
 
 
 def _as_table(rows: Sequence[SheetRow]) -> str:
@@ -409,21 +566,46 @@ def _blocks(rows: Sequence[SheetRow]) -> Iterator[list[SheetRow]]:
 
 
 def _docx(data: bytes) -> Iterator[Excerpt]:
-    root = _Package(data).parsed("word/document.xml")
+    package = _Package(data)
+    root = package.parsed("word/document.xml")
     lines: list[str] = []
     tables: list[list[SheetRow]] = []
-    body = next((each for each in root if _local(each) == "body"), root)
+    body = next((each for each in root if local_name(each) == "body"), root)
     _read_blocks(body, lines, tables)
-    texts = [_as_table(rows) for rows in tables]
-    yield from (Excerpt(text) for text in texts if text.strip())
     between = "\n".join(line for line in lines if line.strip())
+    notes = [*_text_boxes(body), *_notes(package, _NOTES_OF_WORD)]
+    for i, rows in enumerate(tables):
+        others = [row for other in (*tables[:i], *tables[i + 1 :]) for row in other]
+        around = (*between.splitlines(), *_sentences(rows), *_remarks(others), *notes)
+        if text := _as_table(rows).strip():
+            yield Excerpt(text, around=around)
     if between:
-        yield Excerpt(between, level=1 if texts else 0)
+        yield Excerpt(between, level=1 if tables else 0, around=tuple(notes))
+
+
+def _text_boxes(body: ET.Element) -> Iterator[str]:
+    for box in body.iter():
+        if local_name(box) == "txbxContent":
+            yield from (_text_of_word(each) for each in box if local_name(each) == "p")
+
+
+def _notes(package: _Package, names: re.Pattern[str]) -> Iterator[str]:
+    """Yield the texts of comments, footnotes and headers, which are parts of their own."""
+    for name in filter(names.fullmatch, package.names):
+        for each in package.parsed(name).iter():
+            if local_name(each) == "p":
+                yield _text_of_word(each)
+            elif local_name(each) == "text":
+                # A comment of a spreadsheet.
+                yield "".join(each.itertext())
+
+
+_NOTES_OF_WORD: Final = regex(r"word/(?:comments|footnotes|endnotes|header\d*|footer\d*)\.xml")
 
 
 def _read_blocks(parent: ET.Element, lines: list[str], tables: list[list[SheetRow]]) -> None:
     for element in _blocks_of(parent):
-        if _local(element) == "p":
+        if local_name(element) == "p":
             lines.extend(_text_of_word(element).split("\n"))
             continue
         rows: list[SheetRow] = [
@@ -436,23 +618,23 @@ def _read_blocks(parent: ET.Element, lines: list[str], tables: list[list[SheetRo
 def _blocks_of(parent: ET.Element) -> Iterator[ET.Element]:
     # Paragraphs and tables, also those in content controls and insertions.
     for each in parent:
-        if _local(each) in ("p", "tbl"):
+        if local_name(each) in ("p", "tbl"):
             yield each
-        elif _local(each) in ("sdt", "sdtContent", "ins", "customXml", "smartTag"):
+        elif local_name(each) in ("sdt", "sdtContent", "ins", "customXml", "smartTag"):
             yield from _blocks_of(each)
 
 
 def _children(parent: ET.Element, name: str) -> Iterator[ET.Element]:
     for each in parent:
-        if _local(each) == name:
+        if local_name(each) == name:
             yield each
-        elif _local(each) in ("sdt", "sdtContent", "ins", "customXml"):
+        elif local_name(each) in ("sdt", "sdtContent", "ins", "customXml"):
             yield from _children(each, name)
 
 
 def _paragraphs(cell: ET.Element) -> Iterator[str]:
     for each in _blocks_of(cell):
-        if _local(each) == "p":
+        if local_name(each) == "p":
             yield _text_of_word(each)
         else:
             # A table in a cell is not an entry that anybody could read.
@@ -461,7 +643,7 @@ def _paragraphs(cell: ET.Element) -> Iterator[str]:
 
 def _text_of_word(element: ET.Element) -> str:
     """Return the text of a paragraph with its formulas written in one line."""
-    name = _local(element)
+    name = local_name(element)
     match name:
         case "t":
             return element.text or ""
@@ -478,24 +660,37 @@ def _text_of_word(element: ET.Element) -> str:
         case "sym":
             return _symbol(element)
         case "oMath":
-            return _formula(element)
-    if name == "r" and _is_raised(element):
-        return f"^({_inside(element)})" if _inside(element).strip() not in ("o", "°") else "°"
+            return written_formula(element)
+    if name == "r":
+        return _run(element)
     return _inside(element)
+
+
+def _run(element: ET.Element) -> str:
+    looks = _looks(element)
+    text = _inside(element)
+    if "vanish" in looks:
+        return ""
+    if "strike" in looks or "dstrike" in looks:
+        return _struck(text)
+    if looks.get("vertAlign") == "superscript":
+        return f"^({text})" if text.strip() not in ("o", "°") else "°"
+    return text
 
 
 def _inside(element: ET.Element) -> str:
     return "".join(map(_text_of_word, element))
 
 
-def _is_raised(run: ET.Element) -> bool:
-    for properties in run:
-        if _local(properties) == "rPr":
-            return any(
-                _local(each) == "vertAlign" and _attribute(each, "val") == "superscript"
-                for each in properties
-            )
-    return False
+def _looks(run: ET.Element) -> Mapping[str, str]:
+    # The properties of a run that are not turned off.
+    return {
+        local_name(each): _attribute(each, "val")
+        for properties in run
+        if local_name(properties) == "rPr"
+        for each in properties
+        if _attribute(each, "val") not in ("0", "false", "off", "none")
+    }
 
 
 # Letters of the font "Symbol", which Word puts in by its code.
@@ -508,73 +703,6 @@ def _symbol(element: ET.Element) -> str:
     except ValueError:
         return "(symbol)"
     return _SYMBOLS.get(letter, letter if letter.isdigit() else "(symbol)")
-
-
-def _formula(element: ET.Element) -> str:
-    """Return a formula of Word's equation editor as one would type it."""
-    name = _local(element)
-    if name == "t":
-        return element.text or ""
-    if name.endswith("Pr"):
-        return ""
-    written = _FORMULAS.get(name)
-    if written is None:
-        return "".join(map(_formula, element))
-    return written(_Parts(element))
-
-
-class _Parts:
-    """The written parts of a formula: numerator, index and so on, by Word's names."""
-
-    def __init__(self, element: ET.Element) -> None:
-        self.all: Final = [(_local(each), each) for each in element]
-
-    def __getitem__(self, name: str) -> str:
-        return "".join(_formula(each) for own, each in self.all if own == name)
-
-
-def _power(parts: _Parts) -> str:
-    return f"{parts['e']}°" if parts["sup"] in ("∘", "°") else f"{parts['e']}^({parts['sup']})"
-
-
-def _root(parts: _Parts) -> str:
-    degree = parts["deg"].strip()
-    return f"sqrt({parts['e']})" if degree in ("", "2") else f"({parts['e']})^(1/({degree}))"
-
-
-def _bracketed(parts: _Parts) -> str:
-    inner = ", ".join(_formula(each) for name, each in parts.all if name == "e")
-    # A matrix has brackets of its own.
-    return inner if inner.startswith("[[") else f"({inner})"
-
-
-def _matrix(parts: _Parts) -> str:
-    rows = (
-        ", ".join(_formula(each) for each in row if _local(each) == "e")
-        for name, row in parts.all
-        if name == "mr"
-    )
-    return f"[{', '.join(f'[{row}]' for row in rows)}]"
-
-
-def _index(text: str) -> str:
-    return text if text.isalnum() else f"{{{text}}}"
-
-
-# Other structures, such as sums, are no answers; their text must not be taken for one.
-_FORMULAS: Final[Mapping[str, Callable[[_Parts], str]]] = {
-    "f": lambda parts: f"({parts['num']})/({parts['den']})",
-    "sSup": _power,
-    "sSub": lambda parts: f"{parts['e']}_{_index(parts['sub'])}",
-    "sSubSup": lambda parts: f"{parts['e']}_{_index(parts['sub'])}^({parts['sup']})",
-    "rad": _root,
-    "func": lambda parts: f"{parts['fName']}({parts['e']})",
-    "d": _bracketed,
-    "m": _matrix,
-    **dict.fromkeys(
-        ("nary", "limLow", "limUpp", "eqArr", "groupChr", "acc", "sPre"), lambda _: "(formula)"
-    ),
-}
 
 
 def _rtf(data: bytes) -> Iterator[Excerpt]:
@@ -590,13 +718,18 @@ def _rtf(data: bytes) -> Iterator[Excerpt]:
     )
     if len(data) > MAX_RTF:
         raise _too_much()
+    data = _STRUCK_IN_RTF.sub(rb"{~~\1~~}", data)
     text: str = rtf_to_text(data.decode("cp1252", "replace"), errors="replace")  # type: ignore[no-untyped-call]
     table = pasted_from(text, ".md")
     if table != text:
-        yield Excerpt(table)
+        yield Excerpt(table, around=around_table(text, ".md"))
     yield Excerpt(text, level=1 if table != text else 0)
 
 
+_STRUCK_IN_RTF: Final = regex(
+    rb"\\striked?1?(?![a-z0-9]) ?((?:[^\\{}]|\\(?!striked?0|plain|par|cell)){1,400})"
+    rb"(?:\\striked?0)?"
+)
 # Bytes between braces. With so few other signs beside hexadecimal digits, they are a picture.
 _LONG_PIECE: Final = 1_000
 _OTHER_SIGNS: Final = 200
@@ -617,12 +750,19 @@ def _notebook(data: bytes) -> Iterator[Excerpt]:
         raise UnusableFileError(say("is not a usable notebook")) from error
     code = [source for kind, source, _ in found if kind == "code" and source.strip()]
     texts = [source for kind, source, _ in found if kind != "code" and source.strip()]
-    tables = [table for text in texts if (table := pasted_from(text, ".md")) != text]
-    yield from (Excerpt(table) for table in tables)
+    lines = tuple(line for text in texts for line in text.splitlines() if "|" not in line)
+    said = tuple(comment[1] for source in code for comment in comments(source))
+    for text in texts:
+        if (table := pasted_from(text, ".md")) != text:
+            yield Excerpt(table, around=(*lines, *said))
     if code:
-        yield Excerpt("\n".join(code))
-        yield from (Excerpt(each, level=1) for each in code if len(code) > 1)
-    yield from (Excerpt(text, level=1) for text in texts)
+        yield Excerpt("\n".join(code), around=lines)
+        yield from (
+            Excerpt(each, level=1, around=(*lines, *said)) for each in code if len(code) > 1
+        )
+    yield from (
+        Excerpt(text, level=1, around=(*lines, *said, *around_rows(text))) for text in texts
+    )
     # What the code printed last counts only if nothing else is there.
     printed = [text for _, _, outputs in found for text in outputs if text.strip()]
     if printed:
@@ -659,6 +799,11 @@ _BREAK: Final = regex(
 # The start of an element that a browser does not show.
 _HIDDEN: Final = regex(r"<(head|style|script|title)(?![A-Za-z0-9-])|<!--|<!", re.IGNORECASE)
 _TAG: Final = regex(r"</?[A-Za-z][^<>]{0,2000}>")
+_STRUCK_TAG: Final = regex(
+    r"<(s|del|strike|span(?=[^<>]{1,400}line-through))(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,400})"
+    r"</\1>",
+    re.IGNORECASE,
+)
 _RAISED: Final = regex(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)
 
 
@@ -673,6 +818,7 @@ def typed_text(page: str) -> str:
     if not is_preformatted and _BREAK.search(page):
         # Line ends in the source of a page mean no more than blanks.
         page = " ".join(page.split("\n"))
+    page = _STRUCK_TAG.sub(lambda found: _struck(found[2]), page)
     page = _RAISED.sub(lambda found: "°" if found[1] in "oO0°" else f"^({found[1]})", page)
     text = unescape(_TAG.sub("", _BREAK.sub("\n", page))).replace("\u00a0", " ")
     lines = (line.strip(" ") for line in text.splitlines())
@@ -707,7 +853,7 @@ def _web_page(data: bytes) -> Iterator[Excerpt]:
     page = _visible(page)
     has_table = _TABLE.search(page) is not None
     if has_table:
-        yield Excerpt(page)
+        yield Excerpt(page, around=around_rows(page))
     text = typed_text(page)
     if text:
         yield Excerpt(text, level=1 if has_table else 0)
@@ -732,13 +878,32 @@ def decoded(data: bytes) -> str:
     except UnicodeDecodeError:
         pass
     # Python leaves five bytes of Windows-1252 undefined; no text has them.
+    if any(byte < 32 and byte not in b"\t\n\r\f" for byte in data):
+        raise UnusableFileError(say("is not text"))
     try:
         text = data.decode("cp1252")
     except UnicodeDecodeError as error:
-        raise UnusableFileError(say("is not text")) from error
-    if any(ord(sign) < 32 and sign not in "\t\n\r\f" for sign in text):
-        raise UnusableFileError(say("is not text"))
+        raise _other_encoding() from error
+    if _IMPLAUSIBLE.search(text):
+        raise _other_encoding()
     return text
+
+
+# Signs that no text in Windows-1252 has at such places, but one in GBK, in the code page of a Mac
+# or in Cyrillic letters, which is decoded as Windows-1252: "Á¬¸Ë³¤¶È", "180¡", "LŠnge", "¹/2".
+_IMPLAUSIBLE: Final = regex(
+    r"[¬¸¶¤¦¨¯]|[À-ÖØ-öø-ÿ¡-§©-¯±-¶¸-º¼-¿×÷ŠšŒœŽžŸƒˆ˜]{4}|[²³µ¼½¾±][À-ÖØ-öø-ÿ]"
+    r"|\w[¡§]|[€†‡…ˆ‰][a-z]|[A-Za-z][ŠŽŒŸ€†‡ˆ‰](?=[a-z\s])|(?<![\w)])¹"
+)
+
+
+def _other_encoding() -> UnusableFileError:
+    return UnusableFileError(
+        say(
+            "is not text in UTF-8 or Windows-1252; if it is a text, save it as UTF-8, and hand it "
+            "in again"
+        )
+    )
 
 
 def _wide(data: bytes) -> str:
@@ -784,4 +949,11 @@ def excerpts(data: bytes, ending: str) -> tuple[Excerpt, ...]:
         raise _damaged() from error
     if not any(each.text.strip() for each in found):
         raise UnusableFileError(say("is empty"))
-    return found
+    return tuple(replace(each, around=_not_struck(each.around)) for each in found)
+
+
+def _not_struck(lines: Iterable[str]) -> tuple[str, ...]:
+    return tuple(_STRUCK_TEXT.sub(" ", line) for line in lines)
+
+
+_STRUCK_TEXT: Final = regex(r"~~[^~\n]{1,400}~~")

@@ -10,7 +10,17 @@ from dataclasses import dataclass, replace
 
 import pytest
 
-from service.formats.worksheets import Grade, UnusableWorksheetError, Worksheet, is_worksheet
+from service import grading
+from service.formats.shared.graded import GradedFile, GradedSubmission, answered
+from service.formats.worksheets import (
+    Grade,
+    UnusableWorksheetError,
+    Worksheet,
+    grade_of,
+    is_worksheet,
+)
+from service.grading import Submission
+from tests.formats.submissions import planar
 
 
 @dataclass(frozen=True)
@@ -301,13 +311,17 @@ def test_a_grade_that_a_person_entered_stays_unless_it_shall_be_replaced() -> No
     found = sheet.filled([ADA, BEN])
     # Ben's grade is the same, and the comments of a person stay, too.
     assert found.content == before
-    assert (found.grades, found.kept) == (1, 1)
+    assert (found.grades, found.same, found.kept) == (0, 1, 1)
     assert list(found.problems) == [
         KEPT,
         "1 comment that was already in the worksheet stays.",
     ]
     replaced = sheet.filled([ADA, BEN], replaces=True)
-    assert (replaced.grades, replaced.kept, replaced.problems) == (2, 0, ())
+    assert (replaced.grades, replaced.same, replaced.kept) == (1, 1, 0)
+    assert replaced.problems == (
+        "1 grade in the worksheet is replaced (old → new): Ada Byron_1234 (5.00 → 7).",
+        "2 comments in the worksheet are replaced: Ada Byron_1234, Ben Okri_1235.",
+    )
     assert imported(replaced.content, WORDS["en"], ",") == {
         1234: (7.0, "Table: 7 / 8"),
         1235: (2.33, 'Table: "2.33" / 8; a, b'),
@@ -409,3 +423,60 @@ def test_worksheets_are_recognised_by_their_beginning() -> None:
         "1;2;3\n",
     ):
         assert not is_worksheet(table.encode())
+
+
+def test_replaced_grades_and_comments_are_named_each() -> None:
+    words = WORDS["en"]
+    before, _ = filled([ADA, BEN], moodle(words))
+    regraded = [replace(ADA, share=4 / 8, points=4.0, comment="Table: 4 / 8"), BEN]
+    found = Worksheet(before).filled(regraded, replaces=True)
+    assert list(found.problems) == [
+        "1 grade in the worksheet is replaced (old → new): Ada Byron_1234 (7 → 4).",
+        "1 comment in the worksheet is replaced: Ada Byron_1234.",
+    ]
+    # Ben's grade was already there.
+    assert (found.grades, found.same) == (1, 1)
+
+
+def test_emptied_cells_are_filled_without_replacing_others() -> None:
+    words = WORDS["en"]
+    before, _ = filled([ADA, BEN], moodle(words))
+    emptied = before.replace(b",7,8.00", b",,8.00").replace(b"Table: 7 / 8", b"")
+    assert emptied != before
+    regraded = [replace(each, share=4 / 8, points=4.0, comment="new") for each in (ADA, BEN)]
+    after = imported(Worksheet(emptied).filled(regraded).content, words, ",")
+    assert after[1234] == (4.0, "new")
+    assert after[1235] == imported(before, words, ",")[1235]
+
+
+def test_submissions_with_unread_entries_are_named() -> None:
+    unread = replace(BEN, has_unread_cells=True)
+    _, problems = filled([ADA, unread], moodle(WORDS["en"]))
+    assert problems == [
+        (
+            "1 submission has entries that could not be read, and earned no points for them: "
+            "Ben Okri_1235."
+        )
+    ]
+
+
+@pytest.mark.parametrize(
+    ("cells", "share", "has_unread"),
+    [
+        # Half of the sixteen cells; all but one of a row that has nothing else; a few.
+        (["1..2"] * 8 + ["0"] * 8, None, True),
+        (["1..2"] * 3 + ["0"] + [""] * 12, None, True),
+        (["1..2"] * 2 + ["0"] * 14, float, True),
+        (["0"] * 16, float, False),
+    ],
+)
+def test_an_answer_of_which_most_was_not_read_gets_no_grade(
+    cells: list[str], share: type[float] | None, has_unread: bool
+) -> None:
+    lines = [", ".join(cells[i : i + 4]) for i in range(0, 16, 4)]
+    text = "\n".join(["a, alpha, d, theta", *lines])
+    report = grading.grade(planar(), Submission({"table": text}))
+    file = GradedFile("table.csv", answered(planar()), report)
+    found = grade_of(GradedSubmission("in/Ada_1", "Participant 1", (file,), 0.8), "")
+    assert (found.share is None) is (share is None)
+    assert found.has_unread_cells is has_unread

@@ -88,7 +88,10 @@ def test_parts_that_are_not_set_are_left_out(tmp_path: Path) -> None:
         ({"a.png": b"\x89PNG", "b.jpg": b"\xff"}, "by hand: a program cannot read a.png, b.jpg"),
         ({"x.xyz": b"a"}, "x.xyz is a file of a kind that is not read (.xyz); known are .json"),
         ({"table.docx": b"PK\x03\x04\0"}, "table.docx is damaged, or not what its name says"),
-        ({"table.csv": b"\x81\xfa"}, "table.csv is not text"),
+        (
+            {"table.csv": b"\x81\xfa"},
+            "table.csv is not text in UTF-8 or Windows-1252",
+        ),
         ({"table.csv": b"a\0b"}, "zero bytes"),
         ({"table.csv": " \n"}, "is empty"),
         ({"table.csv": b"x" * 300_000}, "larger than 256 KiB"),

@@ -23,6 +23,7 @@ from service.submissions.office_files import (
     OFFICE_ENDINGS,
     Excerpt,
     UnusableFileError,
+    decoded,
     excerpts,
     typed_text,
 )
@@ -449,3 +450,28 @@ def test_any_bytes_are_read_or_refused(data: bytes, ending: str) -> None:
     except UnusableFileError:
         return
     assert any(each.text.strip() for each in found)
+
+
+@pytest.mark.parametrize(
+    ("encoding", "text"),
+    [
+        ("gb18030", "连杆长度,扭转角,偏距,关节角"), ("gb18030", "0, α, 0, θ1"),
+        ("gb18030", "a2, 180°, 0, q2"), ("mac_roman", "a2, 180°, 0, q2"),
+        ("mac_roman", "Länge, Winkel"), ("mac_roman", "0, π/2, 0, q1"),
+        ("cp1251", "Длина, угол"),
+    ],
+)  # fmt: skip
+def test_text_in_another_encoding_is_not_guessed(encoding: str, text: str) -> None:
+    with pytest.raises(UnusableFileError, match="save it as UTF-8"):
+        decoded(f"a, b, c\n{text}\n".encode(encoding))
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "Länge, Größe, Übung, théta [°]", "180°, ±90°, l²/2, µ", "“a” – „b“…", "¡Hola! ¿qué?",
+        "Ødegård, Žižek, Tomáš, Œuvre", "§ 5, 10 €", "mañana — «très»",
+    ],
+)  # fmt: skip
+def test_text_in_windows_1252_is_read(text: str) -> None:
+    assert decoded(text.encode("cp1252")) == text

@@ -323,7 +323,14 @@ def command(
                 write(pieces, output, at_once=at_once, quiet=quiet)
             remember(output, folders)
         if sheet and worksheet:
-            filling = _Filling(sheet, worksheet, replaces=replace_grades, force=force, quiet=quiet)
+            filling = _Filling(
+                sheet,
+                worksheet,
+                replaces=replace_grades,
+                force=force,
+                quiet=quiet,
+                language=None if language is None else terms.language,
+            )
             run.exit_code = max(run.exit_code, filling.fill(run.grades))
     except UnusableFolderError as error:
         give_up(joined(": ", [str(output), error.args[0]]))
@@ -417,33 +424,48 @@ class _Filling:
     replaces: bool
     force: bool
     quiet: bool
+    # The language that the tutor chose for the report, if any.
+    language: Language | None = None
 
     def fill(self, grades: Iterable[Grade]) -> int:
         """Write the filled worksheet; return the exit code."""
         filled = self.sheet.filled(grades, replaces=self.replaces)
         for problem in filled.problems:
-            complain(problem)
+            self._complain(problem)
         if filled.kept:
-            complain(say("To replace these grades, add --replace-grades."))
+            self._complain(
+                say(
+                    "To replace all these grades, add --replace-grades. To replace only some, "
+                    "empty their cells in the worksheet."
+                )
+            )
         if filled.content == self.sheet.content:
-            complain(say("{file}: no grade was filled in; no file is written", file=str(self.file)))
+            self._complain(
+                say("{file}: no grade was filled in; no file is written", file=str(self.file))
+            )
             return UNUSABLE if filled.is_foreign else 0
         target, others = self._target(filled.content)
         write([filled.content], target, at_once=True)
         if others:
             names = ", ".join(map(str, others))
-            complain(say("{files}: exists with other contents, and stays as it is", files=names))
+            self._complain(
+                say("{files}: exists with other contents, and stays as it is", files=names)
+            )
         if others or not self.quiet:
-            complain(
+            self._complain(
                 say(
-                    "{file}: is written. Grades filled in: {count}. Left for grading by hand: "
-                    "{left}.",
+                    "{file}: is written. Grades filled in: {count}. Already the same: {same}. "
+                    "Left for grading by hand: {left}.",
                     file=str(target),
                     count=filled.grades,
+                    same=filled.same,
                     left=filled.by_hand,
                 )
             )
         return 0
+
+    def _complain(self, sentence: str) -> None:
+        complain(sentence, self.language)
 
     def _target(self, content: bytes) -> tuple[Path, list[Path]]:
         # A tutor may have changed an earlier file, so that only an equal one is replaced.

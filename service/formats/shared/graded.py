@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 from enum import StrEnum
 
 from service.catalogue import Exercise
-from service.grading import Report, Verdict
+from service.grading import PartReport, Report, Verdict
 from service.grading.report import rounded_points
 from service.submissions.outline import SetExercise
 
@@ -68,6 +68,21 @@ def is_answered(report: Report) -> bool:
     return any(part.verdict is not Verdict.MISSING for part in report.parts)
 
 
+def is_mostly_unread(part: PartReport) -> bool:
+    """True if at least half of the written cells of a part could not be read.
+
+    Then the points of the part say too little, and a person has to grade it.
+    """
+    written = [
+        cell.verdict
+        for row in part.rows
+        for cell in row.cells
+        if cell.verdict is not Verdict.MISSING
+    ]
+    unread = written.count(Verdict.UNREADABLE)
+    return part.verdict is Verdict.UNREADABLE or 0 < len(written) <= 2 * unread
+
+
 @dataclass(frozen=True, slots=True)
 class GradedFile:
     """A file with its report, or with the problem that prevents a full report."""
@@ -94,9 +109,20 @@ class GradedFile:
 
     @property
     def is_unread(self) -> bool:
-        """True if something in the file could not be read, so its points say too little."""
+        """True if so much in the file could not be read that its points say too little."""
         parts = self.report.parts if self.report else ()
-        return bool(self.problem) or any(part.verdict is Verdict.UNREADABLE for part in parts)
+        return bool(self.problem) or any(map(is_mostly_unread, parts))
+
+    @property
+    def has_unread_cells(self) -> bool:
+        """True if any cell could not be read."""
+        parts = self.report.parts if self.report else ()
+        return any(
+            cell.verdict is Verdict.UNREADABLE
+            for part in parts
+            for row in part.rows
+            for cell in row.cells
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,7 +160,7 @@ class GradedSubmission:
 
     @property
     def is_complete(self) -> bool:
-        """True if the points count: everything that the learner handed in was read.
+        """True if the points count: each file and most of each answer was read.
 
         An unread file or answer is not wrong: somebody has to grade it by hand.
         """

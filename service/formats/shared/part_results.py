@@ -5,7 +5,12 @@ from dataclasses import dataclass
 from itertools import chain, count
 from typing import Final
 
-from service.formats.shared.graded import AnsweredPart, GradedFile, GradedSubmission
+from service.formats.shared.graded import (
+    AnsweredPart,
+    GradedFile,
+    GradedSubmission,
+    is_mostly_unread,
+)
 from service.formats.shared.messages import VERDICT_NAMES, Message, marks, messages
 from service.formats.shared.plain_text import (
     first_lines,
@@ -62,8 +67,8 @@ class PartResult:
 
     @property
     def is_unread(self) -> bool:
-        """True if nothing of the part could be read, so that its points say nothing."""
-        return self.verdict is Verdict.UNREADABLE
+        """True if so much of the part could not be read that its points say too little."""
+        return self.report is None or is_mostly_unread(self.report)
 
     @property
     def verdict_name(self) -> str:

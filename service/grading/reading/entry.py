@@ -88,10 +88,7 @@ class Reader:
         budget: WorkBudget | None = None,
     ) -> Self:
         """Return a reader for a submission to an exercise."""
-        lengths = [each for each in exercise.variables if each.kind == "length"]
-        units: Set[str] = {length.unit for length in lengths}
-        units = units or _stated_units(exercise.statement)
-        [unit] = units if len(units) == 1 else [None]
+        unit = length_unit_of(exercise)
         return cls(exercise.vocabulary, samples, angle_unit, unit, budget or WorkBudget())
 
     def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
@@ -172,6 +169,15 @@ def entry_values(entries: Sequence[Entry], quantities: Sequence[Kind], samples: 
         numbers[i] = values
     numbers[np.abs(numbers) > _bounds(tuple(quantities))] = np.nan
     return numbers
+
+
+def length_unit_of(exercise: Exercise) -> str | None:
+    """Return the unit of all lengths of an exercise, or None if there are several."""
+    lengths = [each for each in exercise.variables if each.kind == "length"]
+    units: Set[str] = {length.unit for length in lengths}
+    units = units or _stated_units(exercise.statement)
+    [unit] = units if len(units) == 1 else [None]
+    return unit
 
 
 @lru_cache(maxsize=256)

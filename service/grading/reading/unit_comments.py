@@ -11,6 +11,7 @@ from service.grading.reading.pasted import once
 from service.grading.reading.tables.words import ANGLE_UNITS, METRES, in_plain_words
 from service.grids import GridError
 from service.grids.cutting.source_text import line_number
+from service.grids.scripts.titles import is_correction
 from service.regex import regex
 from service.translations import say
 
@@ -37,6 +38,7 @@ def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> No
 
 
 def _refuse_other_lengths(text: str, reader: Reader) -> None:
+    refuse_corrections(text)
     if CONVERTS_LENGTHS.search(text):
         return
     for comment in comments_and_captions(text):
@@ -45,6 +47,18 @@ def _refuse_other_lengths(text: str, reader: Reader) -> None:
             message = say(
                 "Line {line} names a unit of length. Delete the line, and write lengths as the "
                 "exercise does.",
+                line=line_number(text, comment.start()),
+            )
+            raise GridError("text_around", message, comment.span())
+
+
+def refuse_corrections(text: str) -> None:
+    """Raise GridError if a comment says that the table or matrix is wrong."""
+    for comment in comments(text):
+        if is_correction(comment[1]):
+            message = say(
+                "The sentence in line {line} may correct the table. Write the correction into the "
+                "table, and delete the sentence.",
                 line=line_number(text, comment.start()),
             )
             raise GridError("text_around", message, comment.span())

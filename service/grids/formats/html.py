@@ -26,6 +26,8 @@ _LAYOUT: Final = frozenset({
     "th",
 })  # fmt: skip
 _SKIPPED: Final = frozenset({"style", "script", "caption"})
+_CELLS: Final = frozenset({"tr", "td", "th"})
+_STRUCK_OUT: Final = regex("line-through", re.IGNORECASE)
 _MARK: Final = regex("<(?=[/!A-Za-z])|&")
 _DEGREE_SIGNS: Final = frozenset({"o", "O", "0", "°", "º", "∘", "˚"})
 
@@ -52,6 +54,8 @@ def _parse(source: SourceText) -> Grid:
     while i < len(text):
         if text[i] == "<" and (tag := _NAME.match(text, i)):
             end = _after_tag(source, i)
+            if table.cell_at is not None or tag[1].lower() in _CELLS:
+                _refuse_struck_out(source, i, end)
             i = _tag(source, table, tag, end)
         elif text.startswith("<!", i):
             close = text.find("-->" if text.startswith("<!--", i) else ">", i)
@@ -135,6 +139,16 @@ def refuse_span(source: SourceText, start: int, end: int) -> None:
                 ),
                 source.span(*span.span()),
             )
+
+
+def _refuse_struck_out(source: SourceText, start: int, end: int) -> None:
+    if found := _STRUCK_OUT.search(source.text, start, end):
+        raise struck_out(source.span(*found.span()))
+
+
+def struck_out(place: tuple[int, int]) -> GridError:
+    """Return the error that struck-out text is not read: nobody knows whether it counts."""
+    return GridError("unread_tag", say("Struck-out text cannot be read. Delete it."), place)
 
 
 def _raise_or_lower(source: SourceText, table: _Table, name: str, start: int, end: int) -> None:

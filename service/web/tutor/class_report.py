@@ -296,8 +296,9 @@ def _add_worksheet(
 ) -> None:
     filled = sheet.filled(grades)
     counts = say(
-        "Grades filled in: {count}. Left for grading by hand: {left}.",
+        "Grades filled in: {count}. Already the same: {same}. Left for grading by hand: {left}.",
         count=filled.grades,
+        same=filled.same,
         left=filled.by_hand,
     )
     sentences = [told(each, language.translation) for each in (counts, *filled.problems)]

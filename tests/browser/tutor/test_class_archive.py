@@ -138,7 +138,9 @@ def test_the_worksheet_is_filled_and_a_download_in_a_zip_file_is_found(
     # The worksheet may be chosen after the zip file.
     page.get_by_label("Worksheet, if you have one").set_input_files(sheet)
     told = page.get_by_role("list", name="Worksheet").get_by_role("listitem")
-    expect(told.first).to_have_text("Grades filled in: 2. Left for grading by hand: 0.")
+    expect(told.first).to_have_text(
+        "Grades filled in: 2. Already the same: 0. Left for grading by hand: 0."
+    )
     expect(told).to_have_count(2)
     filled = saved(page, "Filled worksheet", tmp_path)
     assert filled.name == "Grades 3-graded.csv"

@@ -789,7 +789,10 @@ def test_the_worksheet_says_what_was_written(run: Run, tmp_path: Path) -> None:
     sheet.write_bytes(WORKSHEET.encode())
     command = ("grade", given, *IN_TABLE, "--worksheet", sheet)
     first = tmp_path / "Grades-graded.csv"
-    said = f"{first}: is written. Grades filled in: 1. Left for grading by hand: 1."
+    said = (
+        f"{first}: is written. Grades filled in: 1. Already the same: 0. Left for grading by "
+        "hand: 1."
+    )
     assert run(*command).stderr.splitlines()[-1] == said
     assert said not in run(*command, "--quiet").stderr
     # The tutor enters Ben's grade by hand, and grades again.
@@ -822,6 +825,27 @@ def test_grades_that_a_tutor_entered_stay(run: Run, tmp_path: Path) -> None:
     replaced = run(*command, "--replace-grades")
     assert replaced.exit_code == 0
     assert b"grading,8,8.00" in (tmp_path / "Grades-graded.csv").read_bytes()
+
+
+def test_the_chosen_language_is_that_of_all_sentences_about_a_class(
+    run: Run, tmp_path: Path
+) -> None:
+    given = zip_file(
+        tmp_path / "all.zip",
+        {
+            "Ada Byron_1234_assignsubmission_file/table.csv": TABLE,
+            "Ben Okri_1235_assignsubmission_file/a.csv": TABLE,
+            "Ben Okri_1235_assignsubmission_file/b.csv": OTHER,
+        },
+    )
+    sheet = tmp_path / "Grades.csv"
+    sheet.write_bytes(WORKSHEET.encode())
+    said = run("grade", given, *IN_TABLE, "--worksheet", sheet, "--lang", "de").stderr
+    assert "a.csv, b.csv haben Antworten zu table, die sich unterscheiden" in said
+    assert "Von Hand zu bewerten: 1." in said
+    assert "1 Zeile der Bewertungstabelle bleibt" in said
+    assert "hand" not in said
+    assert b"Denavit-Hartenberg-Tabelle: 8 / 8" in (tmp_path / "Grades-graded.csv").read_bytes()
 
 
 def test_the_worksheet_of_another_course_is_refused(run: Run, tmp_path: Path) -> None:

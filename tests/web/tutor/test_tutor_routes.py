@@ -385,7 +385,7 @@ def test_the_worksheet_of_the_platform_is_filled_as_on_the_command_line(
     assert b"Participant 1,Ada Byron,Submitted,8,8.00" in filled
     assert b"Participant 2,Ben Okri,Submitted,5.00,8.00,Yes,-,-,fine" in filled
     counts, *told = archive.read("worksheet.txt").decode().splitlines()
-    assert counts == "Grades filled in: 1. Left for grading by hand: 1."
+    assert counts == "Grades filled in: 1. Already the same: 0. Left for grading by hand: 1."
     about = [line for line in result.stderr.splitlines() if " of the worksheet" in line]
     assert [line.replace(f"{tmp_path}/in/", "") for line in about] == told
     assert len(told) == 3

@@ -18,6 +18,7 @@ from service.grading.reading.unit_comments import (
     CONVERTS_LENGTHS,
     comments,
     comments_and_captions,
+    refuse_corrections,
     units_in,
 )
 from service.grids import GridError
@@ -52,9 +53,13 @@ def columns_in_comments(text: str) -> tuple[Header, ...] | None:
 
 
 def refuse_other_units(text: str, headers: Sequence[Header], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption names a unit, but not the columns in this unit."""
+    """Raise GridError if a comment or a caption names a unit, but not the columns in this unit.
+
+    Also raises GridError if a comment corrects the table.
+    """
     # Units of angles are ignored if a header has one, and so are units of lengths. The reader's own
     # units and comments with numbers are ignored, too.
+    refuse_corrections(text)
     has_angles = any(header.angle_unit for header in headers) or _CONVERTS_ANGLES.search(text)
     has_lengths = any(header.metres for header in headers) or CONVERTS_LENGTHS.search(text)
     for comment in comments_and_captions(text):

@@ -36,7 +36,7 @@ from service.grading.reading.tables.words import METRES
 from service.grading.reading.written_names import Arrangement
 from service.grids import Grid, GridCell, GridError, RobotTable
 from service.grids.cutting.source_text import joined
-from service.grids.scripts.titles import check_sentences, check_units, left_aside
+from service.grids.scripts.titles import check_sentences, left_aside
 from service.kinematics.chain import COLUMNS, THETA, D
 from service.regex import regex
 from service.translations import listed, say, say_count
@@ -188,7 +188,7 @@ def _without_names_above(grid: Grid, reader: Reader) -> Grid:
         headers = [read_header(cell.text) for cell in row]
         if any(header and header.unit for header in headers):
             return grid  # the units would be lost
-        check_units(joined(row, row[0].at))
+        check_sentences([joined(row, row[0].at)], [])
     return replace(
         grid, rows=grid.rows[first:], notes=(*grid.notes, left_aside(place_of(above[0])))
     )
