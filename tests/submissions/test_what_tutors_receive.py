@@ -204,8 +204,8 @@ def lengths(catalogue: Mapping[str, Exercise], text: str) -> PartReport:
     ("typed", "number"),
     [
         ("1.431,8", "1431.8"), ("12.431,8", "12431.8"), ("1.000.431,8", "1000431.8"),
-        ("1 431,8", "1431.8"), ("1\u202f431,8", "1431.8"), ("1'431.8", "1431.8"),
-        ("1’431,8", "1431.8"),
+        ("1 431,8", "1431.8"), ("1\u202f431,8", "1431.8"), ("1\u00a0431,8", "1431.8"),
+        ("1'431.8", "1431.8"), ("1’431,8", "1431.8"),
     ],
 )  # fmt: skip
 @pytest.mark.parametrize("sign", [";", "\t"])
@@ -216,7 +216,8 @@ def test_a_thousands_separator_is_named(
     cell = report.rows[1].cells[0]
     assert cell.verdict.value == "unreadable"
     [message] = cell.feedback
-    assert message.message == f"`{typed}` has a thousands separator. Write {number}."
+    shown = typed.replace("\u202f", " ").replace("\u00a0", " ")
+    assert message.message == f"`{shown}` has a thousands separator. Write {number}."
     # Only this cell is unread: the decimal commas of the others are sure.
     assert report.points == report.max_points - 1.25
 
