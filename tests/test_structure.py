@@ -11,15 +11,14 @@ from pathlib import Path
 from typing import get_args
 
 import pytest
-
-from service.catalogue.parts import SPECS
-from service.cli.program import COMMANDS, PLACES
-from service.grading.kinds import KINDS
-from service.grids import FORMATS
-from service.solutions.kinds import ANSWERS, LAZY
+from dh_grader.catalogue.kinds import SPECS
+from dh_grader.cli import COMMANDS, PLACES
+from dh_grader.grading.kinds import KINDS
+from dh_grader.pasting import FORMATS
+from dh_grader.solutions import ANSWERS, LAZY
 
 ROOT = Path(__file__).parents[1]
-SERVICE = ROOT / "service"
+SERVICE = ROOT / "service" / "dh_grader"
 TESTS = ROOT / "tests"
 
 # Each package or file of service/ may import those listed before it.
@@ -71,7 +70,7 @@ SUITES = {
 
 
 def module_name(file: Path) -> str:
-    """Return the dotted name of a file, such as ``service.grading.part``."""
+    """Return the dotted name of a file, such as ``dh_grader.grading.grading``."""
     return ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 
@@ -134,12 +133,12 @@ def test_no_package_imports_a_later_one() -> None:
 
 
 def test_every_room_of_grading_has_a_floor() -> None:
-    assert rooms("service.grading") - set().union(*GRADING_FLOORS) == set()
+    assert rooms("dh_grader.grading") - set().union(*GRADING_FLOORS) == set()
 
 
 def test_no_room_of_grading_imports_a_later_one() -> None:
     place = {room: i for i, floor in enumerate(GRADING_FLOORS) for room in floor}
-    assert against_the_order(place, "service.grading") == []
+    assert against_the_order(place, "dh_grader.grading") == []
 
 
 def test_no_modules_import_each_other_in_a_circle() -> None:
@@ -150,7 +149,7 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
 
 
 def test_grading_stays_easy_to_survey() -> None:
-    assert len(rooms("service.grading")) <= GRADING_ROOMS
+    assert len(rooms("dh_grader.grading")) <= GRADING_ROOMS
 
 
 def test_no_file_is_longer_than_one_can_read_at_once() -> None:
@@ -183,7 +182,7 @@ def test_the_tables_have_the_same_kinds() -> None:
 
 
 def test_importing_the_diagnosis_imports_each_of_its_modules() -> None:
-    package = "service.grading.diagnosis"
+    package = "dh_grader.grading.diagnosis"
     modules = {name for name in trees() if name.startswith(f"{package}.")}
     with_code = {name for name in modules if trees()[name].body[1:]}
     assert with_code <= imports()[package]
@@ -204,7 +203,7 @@ def modules_with(name: str, folder: str) -> set[str]:
 
 def test_each_format_of_pasted_text_is_tried() -> None:
     assert len(FORMATS) == len(modules_with("FORMAT", "grids")) > 10
-    assert modules_with("FORMAT", "grids") <= imports()["service.grids.registry"]
+    assert modules_with("FORMAT", "grids") <= imports()["dh_grader.pasting"]
 
 
 def test_each_command_can_be_called() -> None:
@@ -239,8 +238,8 @@ def test_no_two_public_types_share_a_name() -> None:
 
 def has_home(test: Path) -> bool:
     """True if a test file is in the folder that belongs to the tested code."""
-    # The tests of `service/x/y/z.py` are in `tests/x/y/test_z.py`, those of the package
-    # `service/x/y` in `tests/x/y/test_y.py`, and those of a test helper next to the helper. In a
+    # The tests of `service/dh_grader/x/y/z.py` are in `tests/x/y/test_z.py`, those of the package
+    # `service/dh_grader/x/y` in `tests/x/y/test_y.py`, and those of a test helper next to the helper. In a
     # folder such as `tests/x`, a test file with a docstring may also be about the whole package.
     *folders, file = test.relative_to(TESTS).parts
     if not folders or folders[0] in SUITES:

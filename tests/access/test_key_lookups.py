@@ -9,10 +9,9 @@ from collections.abc import Collection, Mapping
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from dh_grader import access as key_lookups
+from dh_grader.access import Key, KeyLookups, KeyPlace, KeysBusyError
 
-from service.access import key_lookups
-from service.access.key_lookups import KeyLookups, KeyPlace
-from service.access.keys import Key, KeysBusyError
 from tests.guards import ANSWER
 
 NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)

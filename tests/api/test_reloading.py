@@ -6,8 +6,8 @@ from pathlib import Path
 
 import httpx
 import pytest
+from dh_grader.authoring import template
 
-from service.authoring import template
 from tests.api.serving import Served, served
 from tests.guards import ANSWER
 

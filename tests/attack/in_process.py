@@ -5,8 +5,9 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
-from service.api.application import application
-from service.catalogue import Exercise
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+
 from tests.shipped import shipped_exercises
 
 

@@ -1,9 +1,8 @@
 from pathlib import Path
 
 import pytest
-
-from service.authoring import UnusableIdError, examine, template
-from service.catalogue import load_exercise
+from dh_grader.authoring import UnusableIdError, examine, template
+from dh_grader.catalogue import load_exercise
 
 
 def test_a_new_file_gets_no_remarks(tmp_path: Path) -> None:

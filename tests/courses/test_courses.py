@@ -12,18 +12,11 @@ from typing import Any
 
 import httpx
 import pytest
-from pydantic import SecretStr
-from sqlalchemy import Connection
-
-from service.access.caller import Scope
-from service.access.key_table import add_key, settle
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.api.turns import ARRIVED
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.tutoring import forget
-from service.catalogue import Exercise
-from service.contract.courses import (
+from dh_grader import courses as roll
+from dh_grader.access import Scope, Secret, add_key, new_key_text, settle
+from dh_grader.api.http import ARRIVED
+from dh_grader.catalogue import Exercise
+from dh_grader.contract.courses import (
     AssignmentChange,
     Extension,
     LinksRequest,
@@ -31,17 +24,26 @@ from service.contract.courses import (
     NewCourse,
     NewLearner,
 )
-from service.courses import learner_view, roll
-from service.courses.assignments import add_assignment, assignments_of, change_assignment, extend
-from service.courses.errors import CourseError
-from service.courses.links import issue_links, revoke_links
-from service.courses.results.gradebook import gradebook, handed_in, missing, written_gradebook
-from service.courses.terms import learner_terms, terms_of
-from service.server.installed import installed_app
-from service.settings import Settings
-from service.translations import ENGLISH
-from service.web.assets import load_assets
-from service.web.courses.course_pages import CourseState, assignment_page
+from dh_grader.courses import CourseError, issue_links, learner_view, revoke_links
+from dh_grader.courses.assignments import (
+    add_assignment,
+    assignments_of,
+    change_assignment,
+    extend,
+    learner_terms,
+    terms_of,
+)
+from dh_grader.courses.gradebook import gradebook, handed_in, missing, written_gradebook
+from dh_grader.server import installed_app
+from dh_grader.settings import Settings
+from dh_grader.store.database import in_transaction, open_database
+from dh_grader.store.learner_data import forget
+from dh_grader.translations import ENGLISH
+from dh_grader.web.assets import load_assets
+from dh_grader.web.courses import CourseState, assignment_page
+from pydantic import SecretStr
+from sqlalchemy import Connection
+
 from tests.access.kept_services import SECRET
 from tests.attempts.databases import KINDS
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, Class, days

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-SERVICE = ROOT / "service"
+SERVICE = ROOT / "service" / "dh_grader"
 PAGE = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
 # The folders to which paths on the page are relative.
 STARTS = (ROOT, SERVICE, SERVICE / "expressions", SERVICE / "grading", SERVICE / "web" / "static")

@@ -6,12 +6,11 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from dh_grader import formats
+from dh_grader.formats import FORMAT_NAMES, report_format
+from dh_grader.formats.graded import GradedSubmission, UnusableSettingError
+from dh_grader.formats.texts import distinct_names
 
-from service import formats
-from service.formats import FORMAT_NAMES, report_format
-from service.formats.shared.graded import GradedSubmission
-from service.formats.shared.part_results import distinct_names
-from service.formats.shared.report_format import UnusableSettingError
 from tests.formats.submissions import cases, document, graded, setting
 from tests.together import together
 

@@ -29,8 +29,8 @@ for place in /tmp /srv /opt/dh-grader; do
 done
 dh-grader grade - --exercise stanford-arm --format jsonl
 python -m service serve >/dev/null & service=$!
-for _ in $(seq 60); do python -m service.server.alive && break; sleep 1; done
-python -m service.server.alive; echo "health $?"
+for _ in $(seq 60); do python -m dh_grader.server.alive && break; sleep 1; done
+python -m dh_grader.server.alive; echo "health $?"
 kill -TERM "$service"; wait "$service"; echo "end $?"
 """
 # The mounts end together with their namespace.

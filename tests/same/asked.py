@@ -13,9 +13,9 @@ from itertools import islice, product
 from typing import Any, Final
 
 import numpy as np
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.misconception import all_records
 
-from service.catalogue import Exercise
-from service.grading.misconception import all_records
 from tests.docs import sentences
 from tests.expressions.corpus_files import cases, repair_cases, repairs
 from tests.frame_choice import misconceptions

@@ -4,8 +4,7 @@ import re
 from pathlib import Path
 
 import pytest
-
-from service import web
+from dh_grader import web
 
 PAGES = sorted(Path(web.__file__).parent.rglob("*.html"))
 FORMS = [

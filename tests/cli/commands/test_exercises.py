@@ -4,10 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from dh_grader.authoring import template
+from dh_grader.catalogue import shipped_folder
 from typer.testing import Result
 
-from service.authoring import template
-from service.catalogue import shipped_folder
 from tests.shipped import shipped_exercises
 
 Run = Callable[..., Result]

@@ -1,6 +1,6 @@
 """Test the corrections that the reader suggests for unreadable texts."""
 
-# The cases of `service/expressions/repairs/<name>.py` are in `corpus/repairs/<name>.txt`, one on
+# The cases of `service/dh_grader/expressions/repairs/<name>.py` are in `corpus/repairs/<name>.txt`, one on
 # each line, with the names of `ROBOT`:
 #
 #     text that is refused | code | from-to and the text there | repaired text, or -
@@ -13,9 +13,9 @@ from pathlib import Path
 from pkgutil import resolve_name
 
 import pytest
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, read, repairs
+from dh_grader.expressions.repairs import RULES
 
-from service.expressions import ExpressionError, Symbol, Vocabulary, read, repairs
-from service.expressions.repairs import RULES
 from tests.expressions import corpus_files
 from tests.expressions.corpus_files import ROBOT, RepairCase, repair_cases
 from tests.together import together

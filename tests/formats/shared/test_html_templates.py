@@ -6,15 +6,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from dh_grader.formats import texts as html_templates
+from dh_grader.formats.texts import lines, own_html
+from dh_grader.translations import say
 from jinja2 import Environment, UndefinedError
 
-from service.formats.shared import html_templates
-from service.formats.shared.html_templates import lines, own_html
-from service.translations import say
 from tests.formats.submissions import HOSTILE
 from tests.translations.pseudo import PSEUDO
 
-SERVICE = Path(__file__).parents[3] / "service"
+SERVICE = Path(__file__).parents[3] / "service" / "dh_grader"
 TEMPLATES = sorted(SERVICE.rglob("templates/*.html"))
 # The functions that call `own_html`, with the HTML that each one passes.
 TRUSTED = {

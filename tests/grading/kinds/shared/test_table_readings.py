@@ -6,9 +6,10 @@ from pathlib import Path
 from types import FrameType
 from typing import Any
 
-import service
-from service.catalogue import Exercise
-from service.grading import FeedbackLevel, Submission, Verdict, grade
+import dh_grader
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import FeedbackLevel, Submission, Verdict, grade
+
 from tests.solutions.solved import solved
 
 # An arm with six rows whose only part is its table.
@@ -20,7 +21,7 @@ RIGHT, WRONG_SIGN = 22, 62
 def files_of(exercise: Exercise, answer: Any, verdict: Verdict) -> set[str]:
     submission = Submission({"table": answer}, feedback=FeedbackLevel.HINTS)
     assert grade(exercise, submission).parts[0].verdict is verdict
-    root, found = Path(service.__file__).parent, set[str]()
+    root, found = Path(dh_grader.__file__).parent, set[str]()
 
     def note(frame: FrameType, event: str, _: object) -> None:
         if event == "call" and frame.f_code.co_filename.startswith(f"{root}/"):

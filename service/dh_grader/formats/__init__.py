@@ -1,0 +1,33 @@
+"""Report formats for people and programs.
+
+``documents/`` and ``platforms/`` have one file for each format, ``shared/`` helpers of several.
+"""
+
+from collections.abc import Mapping
+from pkgutil import resolve_name
+from typing import Final
+
+from dh_grader.formats.graded import ReportFormat
+
+# Where each format is. A format is imported when it is used: some need half a second.
+_FORMATS: Final[Mapping[str, str]] = {
+    "classroom50": "dh_grader.formats.platforms:CLASSROOM50",
+    "csv": "dh_grader.formats.documents:CSV",
+    "github": "dh_grader.formats.platforms:GITHUB",
+    "gradebook": "dh_grader.formats.documents:GRADEBOOK",
+    "gradescope": "dh_grader.formats.platforms:GRADESCOPE",
+    "html": "dh_grader.formats.documents:HTML",
+    "json": "dh_grader.formats.documents:JSON",
+    "jsonl": "dh_grader.formats.documents:JSONL",
+    "junit": "dh_grader.formats.platforms:JUNIT",
+    "markdown": "dh_grader.formats.documents:MARKDOWN",
+    "prairielearn": "dh_grader.formats.platforms:PRAIRIELEARN",
+    "text": "dh_grader.formats.documents:TEXT",
+}
+FORMAT_NAMES: Final[tuple[str, ...]] = tuple(_FORMATS)
+
+
+def report_format(name: str) -> ReportFormat:
+    """Return the format of this name, one of ``FORMAT_NAMES``."""
+    found: ReportFormat = resolve_name(_FORMATS[name])
+    return found
