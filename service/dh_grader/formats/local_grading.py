@@ -89,17 +89,28 @@ def unknown_part(body: GradeRequest, assigned: AssignedExercise) -> str:
     )
 
 
+def report_of(body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms) -> Report:
+    """Return the report on answers, in the language of the terms. Raises UnknownPartError."""
+    report = grade(_own_exercise(assigned), terms.submission(body, assigned))
+    return report_in(report, terms.language)
+
+
+def _own_exercise(assigned: AssignedExercise) -> Exercise:
+    exercise = assigned.exercise
+    if not isinstance(exercise, Exercise):
+        raise TypeError(f"{exercise.id} is an exercise of a server, and cannot be graded here")
+    return exercise
+
+
 def report_here(
     body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
 ) -> tuple[Report | None, str]:
     """Grade answers on this machine; return a report and "", or None and an error message."""
-    exercise = assigned.exercise
-    if not isinstance(exercise, Exercise):
-        raise TypeError(f"{exercise.id} is an exercise of a server, and cannot be graded here")
+    _own_exercise(assigned)
     if problem := unknown_part(body, assigned):
         return None, problem
     try:
-        return report_in(grade(exercise, terms.submission(body, assigned)), terms.language), ""
+        return report_of(body, assigned, terms), ""
     except Exception as error:  # noqa: BLE001 - a fault of the program affects only this submission
         place = traceback.extract_tb(error.__traceback__)[-1]
         return None, say(
