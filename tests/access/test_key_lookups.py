@@ -9,8 +9,9 @@ from collections.abc import Collection, Mapping
 from datetime import UTC, datetime, timedelta
 
 import pytest
-from dh_grader import access as key_lookups
-from dh_grader.access import Key, KeyLookups, KeyPlace, KeysBusyError
+from dh_grader.access import Key, KeysBusyError
+from dh_grader.access import key_ring as key_lookups
+from dh_grader.access.key_ring import KeyLookups, KeyPlace
 
 from tests.guards import ANSWER
 

@@ -14,17 +14,9 @@ from typing import Any
 
 import httpx
 import pytest
-from dh_grader.access import (
-    OPEN_HERE,
-    Caller,
-    KeyRing,
-    Rates,
-    Scope,
-    Secret,
-    add_key,
-    new_key_text,
-    settle,
-)
+from dh_grader.access import OPEN_HERE, Caller, Scope, Secret, new_key_text
+from dh_grader.access.key_ring import KeyRing, add_key, settle
+from dh_grader.access.rates import Rates
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise

@@ -68,15 +68,8 @@ from dh_grader.regex import regex
 from dh_grader.settings import load_settings
 from dh_grader.solutions import ModelSolution, Shown, solve
 from dh_grader.translations import joined, say, say_count
-from dh_grader.variants import (
-    CheckedVariant,
-    NoVariantError,
-    TooFewVariantsError,
-    built,
-    checked_variant,
-    deploy,
-    with_deployed,
-)
+from dh_grader.variants import NoVariantError, built
+from dh_grader.variants.deployment import CheckedVariant, TooFewVariantsError, checked_variant, deploy, with_deployed
 
 # Write new exercise files without replacing existing ones.
 

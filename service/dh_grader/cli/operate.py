@@ -12,17 +12,8 @@ from sqlalchemy import Connection, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from dh_grader import courses as courses_courses
-from dh_grader.access import (
-    WRONG_SECRET,
-    Key,
-    Scope,
-    add_key,
-    all_keys,
-    fits,
-    new_key_text,
-    revoke_key,
-    settle,
-)
+from dh_grader.access import WRONG_SECRET, Key, Scope, new_key_text
+from dh_grader.access.key_ring import add_key, all_keys, fits, revoke_key, settle
 from dh_grader.api.permissions import is_loopback
 from dh_grader.catalogue import CatalogueError, load_catalogue
 from dh_grader.cli.attempts import database, encodable
