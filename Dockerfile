@@ -44,4 +44,4 @@ EXPOSE 8000
 # It asks /healthz at the port that DH_GRADER_PORT names.
 HEALTHCHECK --interval=30s --timeout=5s --start-period=5s --retries=3 \
     CMD ["python", "-m", "dh_grader.server.alive"]
-CMD ["python", "-m", "service", "serve"]
+CMD ["python", "-m", "dh_grader", "serve"]

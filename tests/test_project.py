@@ -105,7 +105,9 @@ def test_the_version_is_stated_in_pyproject_only() -> None:
     assert importlib.metadata.version("dh-grader") == version
     stated = re.compile(rf"""["']{re.escape(version)}["']|__version__\s*=\s*["']""")
     repeats = [
-        path for path in (ROOT / "service" / "dh_grader").rglob("*.py") if stated.search(path.read_text("utf-8"))
+        path
+        for path in (ROOT / "service" / "dh_grader").rglob("*.py")
+        if stated.search(path.read_text("utf-8"))
     ]
     assert repeats == []
 

@@ -1,4 +1,4 @@
-"""`python -m service` runs the command `dh-grader`."""
+"""`python -m dh_grader` runs the command `dh-grader`."""
 
 from dh_grader.cli import main
 

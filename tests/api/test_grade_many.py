@@ -189,6 +189,6 @@ def test_the_readme_s_example_is_the_documented_one() -> None:
     root = Path(__file__).parents[2]
     shown = (root / "docs" / "examples" / "many.json").read_text("utf-8")
     example = (
-        root / "service" / "dh_grader" / "api" / "document" / "examples" / "grade-many-request.json"
+        root / "service" / "dh_grader" / "api" / "examples" / "grade-many-request.json"
     )
     assert shown == example.read_text("utf-8")

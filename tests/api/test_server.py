@@ -1,4 +1,4 @@
-"""Test the real process, `python -m service serve`, on a free port."""
+"""Test the real process, `python -m dh_grader serve`, on a free port."""
 
 import json
 import os

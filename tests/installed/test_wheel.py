@@ -29,7 +29,7 @@ def test_the_program_is_the_installed_one(programs: Path, tmp_path: Path) -> Non
     assert checked(programs / "dh-grader", "--version", cwd=tmp_path).split() == [
         "dh-grader", version("dh-grader"),
     ]  # fmt: skip
-    ask = "import service; print(dh_grader.__file__)"
+    ask = "import dh_grader; print(dh_grader.__file__)"
     file = Path(checked(programs / "python", "-c", ask, cwd=tmp_path).strip())
     assert file.is_relative_to(programs.parent)
     assert file.with_name("py.typed").is_file()
@@ -116,5 +116,5 @@ def test_the_program_rebuilds_its_own_wheel(wheel: Path, programs: Path, tmp_pat
     assert [
         name
         for name, content in built.items()
-        if name.startswith("service/") and from_checkout[name] != content
+        if name.startswith("dh_grader/") and from_checkout[name] != content
     ] == []

@@ -37,7 +37,7 @@ def _stage(frame: FrameType | None) -> tuple[str, str]:
         path = _path(frame)
         paths.append(path)
         if not innermost and "/dh_grader/" in path:
-            innermost = f"{path.partition('/service/')[2]}:{frame.f_code.co_name}"
+            innermost = f"{path.partition('/dh_grader/')[2]}:{frame.f_code.co_name}"
         if "/grading/kinds/" in path:
             follows |= bool(getattr(frame.f_locals.get("grading"), "following", False))
         frame = frame.f_back

@@ -35,20 +35,20 @@ COMMANDS: Final = {
 }
 # Where each command is. It is imported when it is called.
 PLACES: Final = {
-    "serve": "dh_grader.cli.operate:commands",
-    "exercises": "dh_grader.cli.exercises:commands",
-    "assignments": "dh_grader.cli.courses:commands",
-    "grade": "dh_grader.cli.grade:commands",
-    "merge": "dh_grader.cli.grade:commands",
-    "attempts": "dh_grader.cli.attempts:commands",
-    "courses": "dh_grader.cli.courses:commands",
-    "lti": "dh_grader.cli.lti:commands",
-    "keys": "dh_grader.cli.operate:commands",
-    "learners": "dh_grader.cli.attempts:commands",
-    "backup": "dh_grader.cli.attempts:commands",
-    "restore": "dh_grader.cli.attempts:commands",
-    "doctor": "dh_grader.cli.operate:commands",
-    "bundle": "dh_grader.cli.exercises:commands",
+    "serve": "dh_grader.cli.operate:serve_commands",
+    "exercises": "dh_grader.cli.exercises:exercises_commands",
+    "assignments": "dh_grader.cli.courses:assignments_commands",
+    "grade": "dh_grader.cli.grade:grade_commands",
+    "merge": "dh_grader.cli.grade:merge_commands",
+    "attempts": "dh_grader.cli.attempts:attempts_commands",
+    "courses": "dh_grader.cli.courses:courses_commands",
+    "lti": "dh_grader.cli.lti:lti_commands",
+    "keys": "dh_grader.cli.operate:keys_commands",
+    "learners": "dh_grader.cli.attempts:learners_commands",
+    "backup": "dh_grader.cli.attempts:backup_commands",
+    "restore": "dh_grader.cli.attempts:restore_commands",
+    "doctor": "dh_grader.cli.operate:doctor_commands",
+    "bundle": "dh_grader.cli.exercises:bundle_commands",
 }
 
 

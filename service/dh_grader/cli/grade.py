@@ -557,7 +557,7 @@ def grade_command(
         str | None,
         typer.Option(
             metavar="KEY",
-            help="The key for the server. Better set DH_GRADER_KEY: others may see your grade_command "
+            help="The key for the server. Better set DH_GRADER_KEY: others may see your command "
             "line.",
             show_default=False,
         ),

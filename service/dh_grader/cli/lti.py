@@ -132,17 +132,17 @@ def own_address(option: str | None) -> str:
 
 R = TypeVar("R")
 
-commands = typer.Typer(
+lti_commands = typer.Typer(
     help="LTI 1.3: platforms that launch courses, and the keys for them.",
     no_args_is_help=True,
     add_completion=False,
 )
 _keys = typer.Typer(help="The keys with which this service signs.", no_args_is_help=True)
-commands.add_typer(_keys, name="keys")
-commands.command("invite")(invite_platform)
-commands.command("allow")(allow_platform)
-commands.command("canvas")(canvas)
-commands.command("scores")(scores)
+lti_commands.add_typer(_keys, name="keys")
+lti_commands.command("invite")(invite_platform)
+lti_commands.command("allow")(allow_platform)
+lti_commands.command("canvas")(canvas)
+lti_commands.command("scores")(scores)
 
 RegistrationId = Annotated[
     str, typer.Argument(help="The id of a registration, as list shows it.", callback=encodable)
@@ -150,7 +150,7 @@ RegistrationId = Annotated[
 Value = Annotated[str | None, typer.Option(callback=encodable, help="As the platform shows it.")]
 
 
-@commands.command("register")
+@lti_commands.command("register")
 def register(
     file: Annotated[
         Path | None, typer.Option(help="A JSON file with the values, instead of the options.")
@@ -213,7 +213,7 @@ def register(
     _show(_done(added, create=True), new.deployments)
 
 
-@commands.command("list")
+@lti_commands.command("list")
 def list_registrations() -> None:
     """List the registered platforms."""
     found = _done(registrations.all_registrations)
@@ -230,21 +230,21 @@ def list_registrations() -> None:
         stdout().print("  ".join(told), soft_wrap=True)
 
 
-@commands.command("show")
+@lti_commands.command("show")
 def show(registration: RegistrationId) -> None:
     """Show a registration, and the values to paste at the platform."""
     found = _done(lambda it: registrations.registration(it, registration))
     _show(found, _done(lambda it: registrations.deployments_of(it, registration)))
 
 
-@commands.command("remove")
+@lti_commands.command("remove")
 def remove(registration: RegistrationId) -> None:
     """Remove a registration. Its courses and their attempts stay, and launch no more."""
     _done(lambda it: registrations.remove_registration(it, registration))
     tell(say("Removed. Pages that are open work until their tokens end, at most twelve hours."))
 
 
-@commands.command("check")
+@lti_commands.command("check")
 def check(registration: RegistrationId) -> None:
     """Test one registration: keys, clocks, last launch. The exit code is 1 if a test fails."""
     found = _done(lambda it: registrations.registration(it, registration))
@@ -256,7 +256,7 @@ def check(registration: RegistrationId) -> None:
     raise SystemExit(1 if is_wrong else 0)
 
 
-@commands.command("roster")
+@lti_commands.command("roster")
 def roster(
     course: Annotated[
         str,

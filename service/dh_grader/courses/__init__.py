@@ -32,8 +32,9 @@ from dh_grader.contract.courses import (
 from dh_grader.formats import texts
 from dh_grader.formats.texts import visible
 from dh_grader.regex import regex
+from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
-from dh_grader.store.tables import assignments, course_learners, courses, keys
+from dh_grader.store.tables import course_learners, courses, keys
 from dh_grader.translations import say
 
 
@@ -80,8 +81,9 @@ def _courses(connection: Connection, condition: ColumnElement[bool]) -> list[Cou
         .order_by(courses.c.created_at.desc(), courses.c.id)
     ).all()
     ids: dict[str, list[str]] = {row.id: [] for row in rows}
-    ordered = select(assignments.c.course, assignments.c.id).order_by(assignments.c.number)
-    for course_id, assignment in connection.execute(ordered.where(assignments.c.course.in_(ids))):
+    of = tables.assignments.c
+    ordered = select(of.course, of.id).order_by(of.number)
+    for course_id, assignment in connection.execute(ordered.where(of.course.in_(ids))):
         ids[course_id].append(assignment)
     return [Course(**row._mapping, assignments=ids[row.id]) for row in rows]
 

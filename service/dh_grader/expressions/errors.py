@@ -2,7 +2,7 @@
 
     TextError            code, message, span
     ├─ ExpressionError   a formula that cannot be read, and its repaired text, if any
-    └─ GridError         a pasted text that is not a table or matrix (service/dh_grader/pasting/__init__.py)
+    └─ GridError         a pasted text that is not a table or matrix (dh_grader/pasting)
 
     UnreadableError      the place where the reader stopped; internal, because
                          ``repairs.explain`` turns it into an ExpressionError

@@ -178,7 +178,7 @@ def _symbols_of(answer: object) -> int:
     return min(found, MAX_SYMBOLS)
 
 
-# The rules that ``service/dh_grader/hints`` explains. ``of_column`` is the rule of the column of a DH table.
+# The rules that ``hints.py`` explains. ``of_column`` is the rule of the column of a DH table.
 RuleName: TypeAlias = Literal[
     "of_column",
     "link_length",

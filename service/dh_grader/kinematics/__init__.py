@@ -679,9 +679,8 @@ def dependent(jacobian: Screws) -> NDArray[np.bool_]:
 
 # A table as a product of factors: alternating screw motions about x and z.
 #
-# A screw motion is a shift along an axis and a turn about it. The factors are X = Trans_x(a)
-# Rot_x(α)
-# and Z = Rot_z(θ) Trans_z(d).
+# A screw motion is a shift along an axis and a turn about it. The factors are
+# X = Trans_x(a) Rot_x(α) and Z = Rot_z(θ) Trans_z(d).
 #
 # Shapes: L samples, K factors; a table is ``(rows, 4, L)`` with the columns a, α, d, θ.
 

@@ -650,8 +650,10 @@ def nearest_table(
     else:
         beam, freedom = _from_free_base(rows[0], targets[0])
         remaining = list(zip(rows[1:], targets[1:], strict=True))
-    for row, target in remaining:
-        beam = _next_beam(beam, row, target, length_scale, directions_given, freedom, z_ends_rows)
+    for constants, target in remaining:
+        beam = _next_beam(
+            beam, constants, target, length_scale, directions_given, freedom, z_ends_rows
+        )
         if target.reference is not None and target.rebases and not freedom.is_used_up:
             freedom = freedom.at_next(target.reference, target.kind, length_scale)
     best = int(np.argmin(beam.cost))

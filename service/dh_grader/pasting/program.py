@@ -29,7 +29,8 @@ from dh_grader.translations import say
 _RENAMED_SYMBOLS_NAME: Final = r"[A-Za-z_θα]\w{0,30}"
 _DECLARES: Final = regex(
     rf"(?:^|(?<=;))[ \t]{{0,40}}(?:>>>?[ \t]?|In ?\[\d{{1,4}}\]: ?)?"
-    rf"(?P<statement>\(?(?P<names>{_RENAMED_SYMBOLS_NAME}(?:[ \t]{{0,4}},[ \t]{{0,4}}{_RENAMED_SYMBOLS_NAME}){{0,23}})"
+    rf"(?P<statement>\(?(?P<names>{_RENAMED_SYMBOLS_NAME}"
+    rf"(?:[ \t]{{0,4}},[ \t]{{0,4}}{_RENAMED_SYMBOLS_NAME}){{0,23}})"
     r"[ \t]{0,4},?\)?[ \t]{0,8}=[ \t]{0,8}"
     r"(?:\w{1,20}\.){0,2}(?P<function>(?:dynamic)?symbols|Symbol|var|sym)"
     r"\([ \t]{0,4}[rRuU]?(?P<quote>['\"])(?P<symbols>[^'\"\n]{1,300})(?P=quote)"

@@ -39,9 +39,8 @@ __all__ = [
 # Sentences for people: a template in English with named values.
 #
 # A sentence is its English text, and keeps its template and values, so that it can be translated
-# later. A value is a name, a number, a formula or another sentence. ::
-#
-#     say("Joint {joint} slides, and its variable is {name}.", joint=3, name="d3")
+# later. A value is a name, a number, a formula or another sentence. Example: ``joint`` and ``name``
+# in ``say("Joint {joint} slides, and its variable is {name}.", joint=3, name="d3")``.
 
 
 # The extraction finds the templates in the calls of ``say``, ``say_count`` and ``template``, so

@@ -567,7 +567,10 @@ def repair_detached_index(failure: Failure) -> Repair:
 
 
 _BRACED_STEM_LETTER = rf"\\?[A-Za-z]+|[{characters.CLASS}{''.join(characters.VARIANTS)}]"
-_BRACED_STEM_STEM = rf"{_BRACED_STEM_LETTER}|\\(?:{'|'.join(sorted(characters.STYLES))})\s*\{{\s*(?:{_BRACED_STEM_LETTER})\s*\}}"
+_BRACED_STEM_STEM = (
+    rf"{_BRACED_STEM_LETTER}|\\(?:{'|'.join(sorted(characters.STYLES))})"
+    rf"\s*\{{\s*(?:{_BRACED_STEM_LETTER})\s*\}}"
+)
 _INDEX = rf"(?:_(?:\{{[^{{}}]*\}}|[A-Za-z0-9]+)|[{''.join(SUBSCRIPTS)}]+|[0-9]+)"
 _BRACED = regex(rf"\{{\s*({_BRACED_STEM_STEM})\s*\}}(\s*{_INDEX})")
 _WITHOUT_ARGUMENT = {*characters.FUNCTIONS, *characters.PLAIN, *characters.SPACES}

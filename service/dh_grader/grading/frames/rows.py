@@ -242,9 +242,9 @@ def remarks_on(
         departs = _chosen(departs, rows_right)
     findings = []
     joints = compress(exercise.robot.joints, departs)
-    for pose, joint in zip(relative_poses[departs], joints, strict=True):
+    for departed, joint in zip(relative_poses[departs], joints, strict=True):
         frame = joint.index - 1 if convention is Convention.STANDARD else joint.index
-        departures = _departures(pose, frame, joint, exercise.length_scale)
+        departures = _departures(departed, frame, joint, exercise.length_scale)
         if departures:
             hint = paragraph(*departures)
             findings.append(Finding(OWN_FRAME_CHOICE, hint, severity=Severity.INFO))

@@ -1,7 +1,6 @@
 """Run the migrations on the given connection; Alembic calls this module."""
 
 from alembic import context
-
 from dh_grader.store.tables import metadata
 
 connection = context.config.attributes["connection"]

@@ -2,7 +2,6 @@
 
 import sqlalchemy as sa
 from alembic import op
-
 from dh_grader.store.tables import RowNumber, UtcTime
 
 revision = "0002"

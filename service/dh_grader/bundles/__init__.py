@@ -128,7 +128,7 @@ def _read(file: Path) -> Any:
 
 _NAME = "dh-grader"
 _WHEEL = "Wheel-Version: 1.0\nGenerator: dh-grader\nRoot-Is-Purelib: true\nTag: py3-none-any\n"
-_PACKAGE = Path(__file__).parent
+_PACKAGE = Path(__file__).parents[1]
 
 
 def own_wheel() -> BundledFile:
@@ -190,7 +190,7 @@ def _record(files: list[BundledFile], record: str) -> bytes:
 # The content of every bundle: the program, its dependencies, the assignment, its exercises.
 
 
-_TEMPLATES = Path(__file__).with_suffix("") / "templates"
+_TEMPLATES = Path(__file__).parent / "templates"
 
 
 class BundleError(Exception):
