@@ -18,8 +18,8 @@ from dh_grader.cli import COMMANDS, PLACES
 from dh_grader.expressions.repairs import RULES
 from dh_grader.grading.kinds import KINDS
 from dh_grader.pasting import FORMATS
-from dh_grader.solutions import ANSWERS
-from dh_grader.solutions import LAZY as LAZY_ANSWERS
+from dh_grader.solutions.answers import ANSWERS
+from dh_grader.solutions.lazy import LAZY as LAZY_ANSWERS
 
 ROOT = Path(__file__).parents[1]
 SERVICE = ROOT / "service" / "dh_grader"

@@ -36,6 +36,7 @@ from dh_grader.grading.report import messages_of
 from dh_grader.kinematics import Numbers, coincident, exponential, identity, moved, rank
 from dh_grader.regex import regex
 from dh_grader.solutions import solve
+from dh_grader.solutions.lazy import LAZY
 from dh_grader.translations import Sentence, joined, say, say_count
 from dh_grader.translations import template as translations_template
 
@@ -385,8 +386,6 @@ MOST_OF_A_POSE: Final = 0.5
 
 def lazy_shares(exercise: Exercise) -> Mapping[str, float]:
     """Return the fraction of points that zeros and joint variables alone earn, by part id."""
-    from dh_grader.solutions import LAZY
-
     return {
         part.id: max(
             _share(_report(exercise, part.id, answer)) for answer in LAZY[part.kind](part, exercise)
