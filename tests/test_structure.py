@@ -80,6 +80,8 @@ SMALL_FOLDERS: Final = {
 LAZY: Final = {
     "alembic": "migrations only",
     "dh_grader.bundles": "one command",
+    "dh_grader.cli.remote_grading": "loads the client",
+    "dh_grader.client": "loads httpx, for runs with --server only",
     "dh_grader.solutions": "SymPy takes half a second; nothing that grades needs it",
     "dh_grader.store": "drivers of databases; a service without a database has none",
     "jinja2": "pages and reports in HTML",

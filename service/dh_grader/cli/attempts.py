@@ -17,16 +17,8 @@ from sqlalchemy.exc import SQLAlchemyError
 
 from dh_grader.catalogue import Exercise
 from dh_grader.cli.grade import write
-from dh_grader.cli.terminal import (
-    complain,
-    give_up,
-    installed,
-    installed_exercise,
-    progress,
-    spoken,
-    stdout,
-    tell,
-)
+from dh_grader.cli.options import installed, installed_exercise
+from dh_grader.cli.terminal import complain, give_up, progress, spoken, stdout, tell
 from dh_grader.formats.texts import number, visible, whole_percent
 from dh_grader.settings import load_settings
 from dh_grader.store.attempts import AttemptFilter, GradesFormat

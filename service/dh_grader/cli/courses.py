@@ -17,15 +17,8 @@ from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.cli.attempts import database, encodable
 from dh_grader.cli.exercises import warn_of_unread
 from dh_grader.cli.grade import write
-from dh_grader.cli.terminal import (
-    complain,
-    give_up,
-    installed,
-    installed_exercise,
-    spoken,
-    stdout,
-    tell,
-)
+from dh_grader.cli.options import installed, installed_exercise
+from dh_grader.cli.terminal import complain, give_up, spoken, stdout, tell
 from dh_grader.contract.courses import (
     LONGEST_LINK_DAYS,
     AssignedPoints,

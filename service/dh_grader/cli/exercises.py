@@ -34,14 +34,11 @@ from dh_grader.catalogue import (
 from dh_grader.catalogue.files import line_of, read_regular, value_lines, with_line
 from dh_grader.catalogue.robot import Robot
 from dh_grader.cli.grade import chosen_assignment, write
+from dh_grader.cli.options import installed, installed_exercise, installed_file, named_exercise
 from dh_grader.cli.terminal import (
     UNUSABLE,
     complain,
     give_up,
-    installed,
-    installed_exercise,
-    installed_file,
-    named_exercise,
     spoken,
     stdout,
     unreadable,
@@ -69,7 +66,13 @@ from dh_grader.settings import load_settings
 from dh_grader.solutions import ModelSolution, Shown, solve
 from dh_grader.translations import joined, say, say_count
 from dh_grader.variants import NoVariantError, built
-from dh_grader.variants.deployment import CheckedVariant, TooFewVariantsError, checked_variant, deploy, with_deployed
+from dh_grader.variants.deployment import (
+    CheckedVariant,
+    TooFewVariantsError,
+    checked_variant,
+    deploy,
+    with_deployed,
+)
 
 # Write new exercise files without replacing existing ones.
 

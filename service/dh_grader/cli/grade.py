@@ -19,6 +19,7 @@ import typer
 from rich.console import Console
 
 from dh_grader.catalogue import load_exercise, read_regular
+from dh_grader.cli.options import choice, listed, one_of, own_file, report_language
 from dh_grader.cli.remote import REQUESTS, graded_by, require_no_own_files, server_of, set_exercise
 from dh_grader.cli.running import (
     Shard,
@@ -34,15 +35,10 @@ from dh_grader.cli.terminal import (
     BELOW_PASS_MARK,
     UNUSABLE,
     Progress,
-    choice,
     complain,
     give_up,
     interruptible,
-    listed,
-    one_of,
-    own_file,
     progress,
-    report_language,
     spoken,
     stdout,
     unreadable,

@@ -17,15 +17,8 @@ from dh_grader.access.key_ring import add_key, all_keys, fits, revoke_key, settl
 from dh_grader.api.permissions import is_loopback
 from dh_grader.catalogue import CatalogueError, load_catalogue
 from dh_grader.cli.attempts import database, encodable
-from dh_grader.cli.terminal import (
-    complain,
-    give_up,
-    installed_exercise,
-    spoken,
-    stdout,
-    tell,
-    tell_verdict,
-)
+from dh_grader.cli.options import installed_exercise
+from dh_grader.cli.terminal import complain, give_up, spoken, stdout, tell, tell_verdict
 from dh_grader.courses import CourseError, zone_named
 from dh_grader.formats.texts import visible
 from dh_grader.settings import Settings, SettingsError, load_settings

@@ -1,4 +1,4 @@
-"""Output to the terminal, errors that end the program, and the installed exercises."""
+"""Output to the terminal in the language of the user, and errors that end the program."""
 
 import gettext
 import os
@@ -9,29 +9,16 @@ import time
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
-from enum import StrEnum
 from gettext import NullTranslations
 from pathlib import Path
-from typing import Any, Final, NoReturn, TypeVar
+from typing import Any, Final, NoReturn
 
 import typer
 from rich.cells import cell_len, set_cell_size
 from rich.console import Console
 from typer.core import TyperCommand
 
-from dh_grader.catalogue import Exercise, exercise_files, load_catalogue, load_exercise
-from dh_grader.settings import Settings, load_settings
-from dh_grader.submissions.bodies import find_exercise, nearest
-from dh_grader.translations import (
-    ENGLISH,
-    Language,
-    Sentence,
-    language_named,
-    paragraph,
-    say,
-    template,
-    told,
-)
+from dh_grader.translations import ENGLISH, Language, Sentence, language_named, say, template, told
 
 # Handle SIGINT and SIGTERM so that no unfinished files and no processes are left.
 
@@ -157,45 +144,6 @@ def give_up(message: str | Exception) -> NoReturn:
     """Print a message to standard error, and exit because the input is unusable."""
     complain(message)
     raise SystemExit(UNUSABLE)
-
-
-def installed() -> Mapping[str, Exercise]:
-    """Return the exercises of this installation. Raises SettingsError or CatalogueError."""
-    return load_catalogue(*load_settings().exercises_dir)
-
-
-def installed_exercise(exercise_id: str) -> Exercise:
-    """Return the installed exercise or variant with this id.
-
-    Raises SettingsError, CatalogueError or UnknownExerciseError.
-    """
-    # Only the file of this exercise is read.
-    plain_id = exercise_id.partition("~")[0]
-    plain = load_exercise(installed_file(plain_id))
-    return find_exercise({plain_id: plain}, exercise_id)
-
-
-def named_exercise(name: str) -> Exercise:
-    """Return the exercise in a file ``….toml``, or the installed exercise with this id.
-
-    Raises SettingsError, CatalogueError or UnknownExerciseError.
-    """
-    own = own_file(name)
-    return installed_exercise(name) if own is None else load_exercise(own)
-
-
-def own_file(name: str) -> Path | None:
-    """Return the path of an exercise file if ``name`` is ``….toml``; None for an id."""
-    return Path(name) if name.endswith(".toml") else None
-
-
-def installed_file(exercise_id: str) -> Path:
-    """Return the path of the file of an installed exercise.
-
-    Raises SettingsError, CatalogueError or UnknownExerciseError.
-    """
-    files = {file.stem: file for file in exercise_files(*load_settings().exercises_dir)}
-    return find_exercise(files, exercise_id)
 
 
 # A progress bar for long runs on a terminal.
@@ -324,40 +272,3 @@ class _Formatter(TyperCommand.context_class.formatter_class):  # type: ignore[na
         translation = user_language().translation_of_commands
         shown = translation.gettext(_USAGE) if translation else prefix
         super().write_usage(prog, args, shown)
-
-
-# Options of the command line that take one of several words.
-
-
-_Choice = TypeVar("_Choice", bound=StrEnum)
-
-
-def one_of(name: str, known: Iterable[str]) -> str:
-    """Return ``name`` if it is a known word. Raises typer.BadParameter."""
-    names = list(known)
-    if name in names:
-        return name
-    meant = nearest(name, names)
-    unknown = say("{name!r} is not one of {names}.", name=name, names=", ".join(names))
-    hint = say("Did you mean {meant}?", meant=meant) if meant else ""
-    raise typer.BadParameter(spoken(paragraph(unknown, hint)))
-
-
-def choice(of: type[_Choice]) -> Callable[[str], _Choice]:
-    """Return a parser for an option whose values are those of an enumeration."""
-    return lambda text: of(one_of(text, [each.value for each in of]))
-
-
-def listed(of: type[StrEnum]) -> str:
-    """Return the values of an enumeration as ``--help`` shows them: ``[a|b]``."""
-    return f"[{'|'.join(each.value for each in of)}]"
-
-
-def report_language(settings: Settings, output_format: str) -> Language:
-    """Return the language of reports."""
-    # Without a setting, reports in the format ``text`` are in the language of the user.
-    if output_format == "text" and "language" not in settings.model_fields_set:
-        return user_language()
-    found = language_named(settings.language)
-    assert found is not None, "the settings have only known languages"
-    return found

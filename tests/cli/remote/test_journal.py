@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.cli.remote import Journal, digest, journal_beside
+from dh_grader.cli.remote_grading import Journal, digest, journal_beside
 from dh_grader.grading import Report, Submission, grade
 
 ONE, OTHER, THIRD = digest(["θ", 1]), digest(["θ", 2]), digest(["θ", "1"])

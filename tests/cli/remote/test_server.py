@@ -8,7 +8,7 @@ from random import Random
 
 import httpx
 import pytest
-from dh_grader.cli.remote import Journal
+from dh_grader.cli.remote_grading import Journal
 from dh_grader.grading import Report
 
 from tests.api.serving import Served, served
