@@ -139,7 +139,7 @@ def test_a_record_that_no_engine_asks_is_named() -> None:
 def test_a_record_that_another_one_hides_is_named() -> None:
     complaint = complaint_about_signs(WrongPosition, 35, -1)
     assert complaint.startswith("signed: on its example it is hidden by ")
-    assert "position.reversed_position" in complaint
+    assert "lists.reversed_position" in complaint
 
 
 @pytest.mark.usefixtures("known")

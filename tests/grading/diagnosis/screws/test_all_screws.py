@@ -50,6 +50,7 @@ PAIRS = [
         all_screws.all_screws_exchanged_halves,
         case(SPACE[:, [3, 4, 5, 0, 1, 2]]),
         case(SPACE[:, [3, 4, 5, 0, 2, 1]]),
+        "exchanged_halves",
     ),
     Pair(all_screws.axes_reversed, case(-SPACE), case(-BODY), "axis_reversed"),
     Pair(
