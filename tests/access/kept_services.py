@@ -5,7 +5,7 @@ from typing import Any
 
 import pytest
 from dh_grader.access import KeyRing, Secret
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.tables import metadata
 
 from tests.attempts.databases import migrated_database, new_file

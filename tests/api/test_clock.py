@@ -21,7 +21,7 @@ from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.schema_fields import AttemptsSpec
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 
 from tests.attempts.databases import new_file

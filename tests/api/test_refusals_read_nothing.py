@@ -20,7 +20,7 @@ from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.schema_fields import AttemptsSpec
 from dh_grader.grading import grade
 from dh_grader.grading.reading.entries import Reader
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 
 from tests.attempts.databases import new_file

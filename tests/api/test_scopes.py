@@ -16,7 +16,6 @@ from urllib.parse import urljoin, urlsplit
 
 import httpx
 import pytest
-from dh_grader import courses as roll
 from dh_grader.access import OPEN_HERE, Caller, Scope, Secret, new_key_text, open_access
 from dh_grader.access.key_ring import KeyRing, add_key, revoke_key
 from dh_grader.access.rates import Rates
@@ -28,10 +27,11 @@ from dh_grader.api.permissions import RIGHTS, Access
 from dh_grader.catalogue import Exercise, shipped_folder
 from dh_grader.contract import MEDIA_TYPE, PROBLEM_TYPES, TYPE_PREFIX
 from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from dh_grader.courses import issue_links
+from dh_grader.courses import roll
 from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
 from dh_grader.grading import Report, Submission, grade
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 from dh_grader.store.learner_data import override
 from dh_grader.store.tables import (

@@ -15,7 +15,7 @@ from dh_grader.access.key_ring import KeyRing, add_key, revoke_key
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 from dh_grader.web import Tutoring, web_routes
 from dh_grader.web.pages import own_path

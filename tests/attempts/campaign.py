@@ -15,8 +15,9 @@ from pathlib import Path
 from typing import Any
 
 from dh_grader.catalogue import Exercise, FeedbackLevel, load_catalogue, shipped_folder
-from dh_grader.store import AttemptStore
-from dh_grader.store.attempts import AttemptFilter, outcome_ids
+from dh_grader.store import AttemptFilter
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.attempts import outcome_ids
 from dh_grader.store.database import in_transaction
 from dh_grader.store.regrades import Regrading
 from dh_grader.store.results import exercise_statistics, page

@@ -5,7 +5,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import open_database
 
 from tests.attempts.databases import KINDS, new_file

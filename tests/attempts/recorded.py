@@ -7,16 +7,16 @@ from typing import Any
 
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.contract import AttemptRequest
-from dh_grader.store import AttemptStore
-from dh_grader.store.attempts import (
+from dh_grader.store import (
     AttemptGrading,
     AttemptReport,
     NewAttempt,
     Outcome,
     RecordedAttempt,
     Standing,
-    record,
 )
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.attempts import record
 from dh_grader.store.database import in_transaction
 from dh_grader.store.regrades import RegradedAttempt, Regrading
 

@@ -15,7 +15,7 @@ from collections import Counter
 from pathlib import Path
 
 from dh_grader.catalogue import load_catalogue, shipped_folder
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.tables import attempts, earlier_reports, regrade_queue
 from rich.console import Console
 from sqlalchemy import func, select

@@ -16,7 +16,7 @@ from typing import Any
 
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.attempts import record
 from dh_grader.store.database import in_transaction, open_database
 from dh_grader.store.tables import attempts

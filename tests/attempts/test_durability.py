@@ -21,7 +21,7 @@ import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.server import serve
 from dh_grader.settings import Settings
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import open_database
 from dh_grader.store.tables import attempts
 from pydantic import SecretStr

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore
-from dh_grader.store.attempts import AttemptFilter
-from dh_grader.store.database import StoreDownError
+from dh_grader.store import AttemptFilter, StoreDownError
+from dh_grader.store.attempt_store import AttemptStore
 from sqlalchemy import event
 
 from tests.attempts.recorded import RIGHT, new_attempt, record_once

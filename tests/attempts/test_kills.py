@@ -15,7 +15,8 @@ from typing import Any, Final
 
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore, database
+from dh_grader.store import database
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.attempts import record
 from dh_grader.store.database import before, in_transaction, open_database, unfinished
 from dh_grader.store.learner_data import override

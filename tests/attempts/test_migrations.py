@@ -16,8 +16,9 @@ from typing import Any
 
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore, database
-from dh_grader.store.database import DatabaseFile, UnusableDatabaseError, open_database
+from dh_grader.store import UnusableDatabaseError, database
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import DatabaseFile, open_database
 from dh_grader.store.tables import attempts, metadata
 from sqlalchemy import Engine, event, inspect, select, text
 

@@ -2,7 +2,7 @@ from datetime import UTC, datetime, timedelta, timezone
 
 import pytest
 from dh_grader.catalogue.schema_fields import AttemptsSpec
-from dh_grader.store.attempts import AttemptRefusedError, Ruling, points_after, ruling
+from dh_grader.store import AttemptRefusedError, Ruling, points_after, ruling
 from pydantic import ValidationError
 
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)

@@ -14,8 +14,9 @@ import pytest
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore
-from dh_grader.store.database import UnusableDatabaseError, open_database
+from dh_grader.store import UnusableDatabaseError
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import open_database
 from sqlalchemy import event
 
 from tests.api.conftest import InProcess

@@ -9,7 +9,7 @@ import httpx
 import pytest
 from dh_grader.api.application import application
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.tables import attempts
 from sqlalchemy import select
 

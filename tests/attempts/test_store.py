@@ -6,9 +6,16 @@ from datetime import UTC, datetime
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
-from dh_grader.store import AttemptStore
-from dh_grader.store.attempts import NewAttempt, Outcome, RecordedAttempt, Standing
-from dh_grader.store.database import StoreDownError, UnusableDatabaseError, open_database
+from dh_grader.store import (
+    NewAttempt,
+    Outcome,
+    RecordedAttempt,
+    Standing,
+    StoreDownError,
+    UnusableDatabaseError,
+)
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import open_database
 from dh_grader.store.tables import metadata
 from sqlalchemy import text
 

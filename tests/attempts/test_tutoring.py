@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 from dh_grader.catalogue import Exercise, FeedbackLevel
-from dh_grader.store import AttemptStore
-from dh_grader.store.database import UnknownAttemptError, UnusablePointsError
+from dh_grader.store import UnknownAttemptError, UnusablePointsError
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.learner_data import LearnerData, forget, override
 from dh_grader.store.regrades import Regrading
 from dh_grader.store.results import history

@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from dh_grader.store import database
-from dh_grader.store.database import UnusableDatabaseError, open_database, unmigrated_database
+from dh_grader.store import UnusableDatabaseError, database
+from dh_grader.store.database import open_database, unmigrated_database
 
 from tests.attempts.databases import KINDS, migrated_database
 from tests.attempts.test_durability import Acknowledged, _port, _serve, assert_recorded_once

@@ -15,8 +15,8 @@ from alembic.config import Config
 from dh_grader.access import Secret
 from dh_grader.access.key_ring import add_key, fits, revoke_key, settle
 from dh_grader.catalogue import Exercise, FeedbackLevel
-from dh_grader.store import AttemptStore, database
-from dh_grader.store.attempts import AttemptFilter, GradesFormat
+from dh_grader.store import AttemptFilter, GradesFormat, database
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.regrades import Regrading
 from dh_grader.store.results import graded_attempts, history, page, written
 from sqlalchemy import create_engine, make_url, text

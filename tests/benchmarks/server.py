@@ -14,8 +14,8 @@ from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from dh_grader import courses as roll
 from dh_grader.contract.courses import NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
 from dh_grader.courses.assignments import add_assignment
 from dh_grader.store.database import in_transaction, open_database
 from sqlalchemy import Connection

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Final
 
 from dh_grader.catalogue import load_catalogue, shipped_folder
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from playwright.sync_api import Page, ViewportSize, expect, sync_playwright
 
 from tests.api.serving import ROOT, announced_port

@@ -8,16 +8,16 @@ from typing import Any
 
 import httpx
 import pytest
-from dh_grader import courses as roll
 from dh_grader.access import OPEN_HERE
 from dh_grader.access.key_ring import KeyRing
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from dh_grader.courses import issue_links
+from dh_grader.courses import roll
 from dh_grader.courses.assignments import add_assignment
-from dh_grader.store import AttemptStore
+from dh_grader.courses.roll import issue_links
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 from sqlalchemy import Connection
 

@@ -23,7 +23,7 @@ from dh_grader.contract.courses import (
     RevokeLinksRequest,
     SendAgainRequest,
 )
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 
 from tests.api.serving import served

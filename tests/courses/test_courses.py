@@ -12,7 +12,6 @@ from typing import Any
 
 import httpx
 import pytest
-from dh_grader import courses as roll
 from dh_grader.access import Scope, Secret, new_key_text
 from dh_grader.access.key_ring import add_key, settle
 from dh_grader.api.http import ARRIVED
@@ -25,7 +24,7 @@ from dh_grader.contract.courses import (
     NewCourse,
     NewLearner,
 )
-from dh_grader.courses import CourseError, issue_links, learner_view, revoke_links
+from dh_grader.courses import CourseError, learner_view, roll
 from dh_grader.courses.assignments import (
     add_assignment,
     assignments_of,
@@ -35,6 +34,7 @@ from dh_grader.courses.assignments import (
     terms_of,
 )
 from dh_grader.courses.gradebook import gradebook, handed_in, missing, written_gradebook
+from dh_grader.courses.roll import issue_links, revoke_links
 from dh_grader.server import installed_app
 from dh_grader.settings import Settings
 from dh_grader.store.database import in_transaction, open_database

@@ -10,13 +10,12 @@ from typing import Any
 
 import httpx
 import pytest
-from dh_grader import courses as roll
 from dh_grader.access import OPEN_HERE
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.contract.courses import AssignmentChange, NewAssignment, NewLearner
-from dh_grader.courses import CourseError
+from dh_grader.courses import CourseError, roll
 from dh_grader.courses.assignments import (
     add_assignment,
     assigned,
@@ -27,7 +26,7 @@ from dh_grader.courses.assignments import (
     terms_of,
 )
 from dh_grader.kinematics import COLUMNS
-from dh_grader.store.attempts import AttemptFilter, GradesFormat
+from dh_grader.store import AttemptFilter, GradesFormat
 from dh_grader.store.learner_data import everything_of, forget
 from dh_grader.store.regrades import Regrading
 from dh_grader.store.results import exercise_statistics, graded_attempts, written

@@ -6,12 +6,12 @@ from functools import partial
 from typing import Any
 
 import pytest
-from dh_grader import courses as roll
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.cli import program
 from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from dh_grader.courses import issue_links
+from dh_grader.courses import roll
 from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
 from dh_grader.store.regrades import Regrading
 from dh_grader.store.tables import assignments, attempts
 from sqlalchemy import select, update

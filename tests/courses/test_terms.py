@@ -14,7 +14,7 @@ from dh_grader.catalogue.schema_fields import AttemptsSpec
 from dh_grader.contract.courses import CourseAssignment, Extension
 from dh_grader.courses import with_own_dates
 from dh_grader.courses.assignments import LearnerTerms, extend, extended, terms_of
-from dh_grader.store.attempts import AttemptRefusedError, ruling
+from dh_grader.store import AttemptRefusedError, ruling
 from dh_grader.store.tables import assignments
 from sqlalchemy import select, update
 

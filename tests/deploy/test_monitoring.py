@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import yaml
 from dh_grader.api.permissions import RIGHTS
-from dh_grader.server.watching import Metrics
+from dh_grader.server.metrics import Metrics
 from prometheus_client.metrics import MetricWrapperBase
 
 FOLDER = Path(__file__).parents[2] / "deploy" / "monitoring"

@@ -5,7 +5,7 @@ from typing import Any
 import jwt
 import pytest
 from dh_grader.contract.courses import NewLearner
-from dh_grader.courses import add_learners
+from dh_grader.courses.roll import add_learners
 from dh_grader.lti import roster as roster_members
 from dh_grader.store.tables import contexts, course_learners
 from sqlalchemy import select

@@ -39,7 +39,7 @@ from dh_grader.variants.robots import CatalogueWithPractice
 
 if TYPE_CHECKING:
     from dh_grader.lti.outbox import BackgroundSending
-    from dh_grader.store import AttemptStore
+    from dh_grader.store.attempt_store import AttemptStore
 
 
 # The outermost middleware, which every request and response passes.

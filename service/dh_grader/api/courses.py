@@ -94,7 +94,7 @@ from dh_grader.contract.courses import (
 )
 from dh_grader.courses import CourseError, links_need_a_secret, unknown_learner
 from dh_grader.solutions import ModelSolution
-from dh_grader.store.attempts import AttemptRefusedError, ruling
+from dh_grader.store import AttemptRefusedError, ruling
 from dh_grader.submissions.bodies import GradeRequest
 from dh_grader.translations import say
 
@@ -102,8 +102,8 @@ if TYPE_CHECKING:
     from sqlalchemy import Connection, Row
 
     from dh_grader.courses.assignments import LearnerTerms
-    from dh_grader.store import AttemptStore
-    from dh_grader.store.attempts import Standing
+    from dh_grader.store import Standing
+    from dh_grader.store.attempt_store import AttemptStore
 
 
 def scores_routes(store: "AttemptStore | None") -> APIRouter:
@@ -171,7 +171,7 @@ def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     )
     async def list_courses(request: Request) -> Response:
         """List all courses, or, with a key of a course, this one; for tutors."""
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
 
         only = access.caller(request).course
         return private(CourseList(courses=await read(store, lambda it: roll.all_courses(it, only))))
@@ -185,7 +185,7 @@ def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     )
     async def create_course(request: Request) -> Response:
         """Create a course; for tutors of all courses."""
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
 
         body = await read_body(NewCourse, request)
         now = datetime.now(UTC)
@@ -202,7 +202,7 @@ def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     )
     async def show_course(course_id: CourseId) -> Response:
         """Show a course; for tutors of the course."""
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
 
         return private(await read(store, lambda it: roll.course(it, course_id)))
 
@@ -215,7 +215,7 @@ def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     )
     async def change_course(request: Request, course_id: CourseId) -> Response:
         """Change the title or the time zone of a course; for tutors of the course."""
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
 
         body = await read_body(CourseChange, request)
         return private(await write(store, lambda it: roll.change_course(it, course_id, body)))
@@ -243,7 +243,7 @@ def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
 
         A learner who is there already gets the new name and e-mail address. Nobody is removed.
         """
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
 
         new = _new_learners(await read_body(LearnersRequest, request))
 
@@ -258,7 +258,7 @@ def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
 
 
 def _learners(course_id: str, connection: "Connection") -> LearnerList:
-    from dh_grader import courses as roll
+    from dh_grader.courses import roll
 
     return LearnerList(learners=roll.learners(connection, course_id, datetime.now(UTC)))
 
@@ -413,7 +413,7 @@ def links_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
         The part after `#` is a key: the learner's page sends it in the header
         `Authorization: Bearer`, and browsers never send it otherwise.
         """
-        from dh_grader.courses import issue_links
+        from dh_grader.courses.roll import issue_links
 
         body = await read_body(LinksRequest, request)
         secret = None if access.keys is None else access.keys.secret
@@ -437,7 +437,7 @@ def links_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     )
     async def end_links(request: Request, course_id: CourseId) -> Response:
         """End the personal links of learners, within seconds; for tutors of the course."""
-        from dh_grader.courses import revoke_links
+        from dh_grader.courses.roll import revoke_links
 
         body = await read_body(RevokeLinksRequest, request)
         now = datetime.now(UTC)

@@ -77,7 +77,7 @@ from dh_grader.hints import (
 from dh_grader.kinematics import Convention
 from dh_grader.slices import working_time
 from dh_grader.solutions import ModelSolution, solve
-from dh_grader.store.database import StoreDownError
+from dh_grader.store import StoreDownError
 from dh_grader.submissions.bodies import ExerciseSubmission, GradeManyRequest, GradeRequest
 from dh_grader.translations import Language, say
 from dh_grader.typeset import statement_html
@@ -91,7 +91,7 @@ from dh_grader.variants.robots import (
 )
 
 if TYPE_CHECKING:
-    from dh_grader.store import AttemptStore
+    from dh_grader.store.attempt_store import AttemptStore
 
 
 # The route that makes tokens for learners.

@@ -20,11 +20,11 @@ from dh_grader.api.permissions import Access, access_problem
 from dh_grader.api.recording import ask, read
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import CourseName
-from dh_grader.store.database import StoreDownError
+from dh_grader.store import StoreDownError
 from dh_grader.translations import say
 
 if TYPE_CHECKING:
-    from dh_grader.store import AttemptStore
+    from dh_grader.store.attempt_store import AttemptStore
 
 
 class PracticeGate:

@@ -62,12 +62,13 @@ from dh_grader.contract.courses import CourseName
 from dh_grader.courses import CourseError, CourseFault
 from dh_grader.regex import regex
 from dh_grader.slices import working_time
-from dh_grader.store.attempts import (
+from dh_grader.store import (
     MOST_ON_A_PAGE,
     AttemptFilter,
     AttemptGrading,
     AttemptRefusedError,
     AttemptReport,
+    BadCursorError,
     GradesFormat,
     ListedAttempt,
     NewAttempt,
@@ -75,22 +76,19 @@ from dh_grader.store.attempts import (
     RecordedAttempt,
     Ruling,
     Standing,
-    points_after,
-    ruling,
-    shown_report,
-)
-from dh_grader.store.database import (
-    BadCursorError,
     StoreDownError,
     UnknownAttemptError,
     UnusablePointsError,
+    points_after,
+    ruling,
+    shown_report,
 )
 from dh_grader.translations import Language, paragraph, say, told
 
 if TYPE_CHECKING:
     from sqlalchemy import Connection, Row
 
-    from dh_grader.store import AttemptStore
+    from dh_grader.store.attempt_store import AttemptStore
     from dh_grader.store.regrades import RegradedAttempt, Regrading
     from dh_grader.store.results import AttemptHistory
 

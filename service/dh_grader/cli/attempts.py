@@ -21,12 +21,15 @@ from dh_grader.cli.options import installed, installed_exercise
 from dh_grader.cli.terminal import complain, give_up, progress, spoken, stdout, tell
 from dh_grader.formats.texts import number, visible, whole_percent
 from dh_grader.settings import load_settings
-from dh_grader.store.attempts import AttemptFilter, GradesFormat
-from dh_grader.store.database import (
-    InUseError,
+from dh_grader.store import (
+    AttemptFilter,
+    GradesFormat,
     UnknownAttemptError,
     UnusableDatabaseError,
     UnusablePointsError,
+)
+from dh_grader.store.database import (
+    InUseError,
     before,
     compared,
     copy_of,

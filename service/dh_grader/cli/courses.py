@@ -12,7 +12,6 @@ from pydantic_core import ErrorDetails
 from rich.text import Text
 from sqlalchemy import Connection
 
-from dh_grader import courses
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.cli.attempts import database, encodable
 from dh_grader.cli.exercises import warn_of_unread
@@ -43,15 +42,14 @@ from dh_grader.courses import (
     CourseError,
     assignments,
     decoded,
-    issue_links,
     read_class_list,
-    revoke_links,
+    roll,
     told_apart,
     with_own_dates,
-    written_links,
 )
 from dh_grader.courses import assignments as deletion
 from dh_grader.courses.gradebook import gradebook, gradebook_workbook, missing, written_gradebook
+from dh_grader.courses.roll import issue_links, revoke_links, written_links
 from dh_grader.formats.texts import number, percent, visible
 from dh_grader.settings import load_settings
 from dh_grader.store.database import in_transaction
@@ -523,22 +521,22 @@ def new(
 ) -> None:
     """Create a course. Its id has small letters, digits and hyphens."""
     body = checked(NewCourse, id=course, title=title, zone=zone)
-    changed(lambda it: courses.add_course(it, body, datetime.now(UTC)), create=True)
+    changed(lambda it: roll.add_course(it, body, datetime.now(UTC)), create=True)
     tell(say("The course {course} is there.", course=course))
 
 
 @courses_commands.command("list")
 def list_courses() -> None:
     """List the courses."""
-    for each in changed(courses.all_courses):
+    for each in changed(roll.all_courses):
         stdout().print(f"{each.id}  {visible(each.title)}  {_counts(each)}", soft_wrap=True)
 
 
 @courses_commands.command("show")
 def show(course: CourseIdArgument) -> None:
     """Show a course, its assignments and its learners."""
-    found = changed(lambda it: courses.course(it, course))
-    learners = changed(lambda it: courses.learners(it, course, datetime.now(UTC)))
+    found = changed(lambda it: roll.course(it, course))
+    learners = changed(lambda it: roll.learners(it, course, datetime.now(UTC)))
     screen = stdout()
     screen.print(f"{visible(found.title)}, {found.zone}: {_counts(found)}", soft_wrap=True)
     for assignment in found.assignments:
@@ -562,7 +560,7 @@ def courses_change(
 ) -> None:
     """Change the title or the time zone of a course."""
     body = checked(CourseChange, title=title, zone=zone)
-    changed(lambda it: courses.change_course(it, course, body))
+    changed(lambda it: roll.change_course(it, course, body))
     tell(say("Changed."))
 
 
@@ -582,7 +580,7 @@ def courses_delete(
 @_learners.command("list")
 def list_learners(course: CourseIdArgument) -> None:
     """List the learners of a course, by name: id, name, e-mail address, and link."""
-    _print_learners(changed(lambda it: courses.learners(it, course, datetime.now(UTC))))
+    _print_learners(changed(lambda it: roll.learners(it, course, datetime.now(UTC))))
 
 
 def _print_learners(found: Iterable[CourseLearner]) -> None:
@@ -634,7 +632,7 @@ def import_learners(
         give_up(say("{file}: cannot be read: {reason}", file=str(file), reason=str(error)))
     except CourseError as error:
         give_up(joined(": ", [str(file), str(error.args[0])]))
-    count = changed(lambda it: courses.add_learners(it, course, listed))
+    count = changed(lambda it: roll.add_learners(it, course, listed))
     imported = say_count(
         "{count} learner, {added} of them new.",
         "{count} learners, {added} of them new.",

@@ -11,7 +11,6 @@ import typer
 from sqlalchemy import Connection, select
 from sqlalchemy.exc import SQLAlchemyError
 
-from dh_grader import courses as courses_courses
 from dh_grader.access import WRONG_SECRET, Key, Scope, new_key_text
 from dh_grader.access.key_ring import add_key, all_keys, fits, revoke_key, settle
 from dh_grader.api.permissions import is_loopback
@@ -19,11 +18,11 @@ from dh_grader.catalogue import CatalogueError, load_catalogue
 from dh_grader.cli.attempts import database, encodable
 from dh_grader.cli.options import installed_exercise
 from dh_grader.cli.terminal import complain, give_up, spoken, stdout, tell, tell_verdict
-from dh_grader.courses import CourseError, zone_named
+from dh_grader.courses import CourseError, roll, zone_named
 from dh_grader.formats.texts import visible
 from dh_grader.settings import Settings, SettingsError, load_settings
+from dh_grader.store import UnusableDatabaseError
 from dh_grader.store.database import (
-    UnusableDatabaseError,
     before,
     file_of,
     in_transaction,
@@ -375,7 +374,7 @@ def create(
         if not settle(connection, secret, now):
             return None
         if course is not None:
-            courses_courses.course(connection, course)
+            roll.course(connection, course)
         return add_key(connection, name[:200], digest, scopes, bound, now, until, course)
 
     with database(create=True) as engine:

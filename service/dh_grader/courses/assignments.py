@@ -25,7 +25,6 @@ from sqlalchemy import (
     update,
 )
 
-from dh_grader import courses
 from dh_grader.catalogue import Exercise, FeedbackLevel, least
 from dh_grader.catalogue.schema_fields import AttemptsSpec
 from dh_grader.contract.courses import (
@@ -46,12 +45,14 @@ from dh_grader.courses import (
     local,
     moment,
     own_dates,
-    people,
+    roll,
     unknown_assignment,
     unknown_course,
     unknown_learner,
 )
-from dh_grader.store.attempts import insert_or_ignore, points_after
+from dh_grader.courses.roll import people
+from dh_grader.store import points_after
+from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import Priority, queue_scores
 from dh_grader.store.learner_data import delete_attempts
 from dh_grader.store.tables import (
@@ -196,7 +197,7 @@ def assignments_of(connection: Connection, course: str) -> list[CourseAssignment
 
 
 def _zone(connection: Connection, course: str) -> ZoneInfo:
-    return ZoneInfo(courses.course(connection, course).zone)
+    return ZoneInfo(roll.course(connection, course).zone)
 
 
 def assignment_row(connection: Connection, course: str, assignment: str) -> Row[Any]:
@@ -478,7 +479,7 @@ def delete_course(
     connection: Connection, course: str, wanted: DeletionRequest, now: datetime
 ) -> DeletedData:
     """Delete a course with its assignments, and end its keys and links. Raises CourseError."""
-    courses.course(connection, course)
+    roll.course(connection, course)
     mine = _assignments(connection, course, true())
     ending = (keys.c.course == course) & keys.c.revoked_at.is_(None)
     enrolled = course_learners.c.course == course

@@ -8,7 +8,6 @@ from zoneinfo import ZoneInfo
 
 from sqlalchemy import JSON, ColumnElement, Connection, func, or_, select, text, true, type_coerce
 
-from dh_grader import courses
 from dh_grader.contract.courses import (
     CourseAssignment,
     Extension,
@@ -18,8 +17,9 @@ from dh_grader.contract.courses import (
     GradebookRow,
     MissingLearner,
 )
-from dh_grader.courses import own_dates, people
+from dh_grader.courses import own_dates, roll
 from dh_grader.courses.assignments import assignment_of, assignments_of
+from dh_grader.courses.roll import people
 from dh_grader.formats import texts
 from dh_grader.formats.texts import visible
 from dh_grader.store.tables import assignments, attempts
@@ -192,7 +192,7 @@ def gradebook_workbook(connection: Connection, course: str, assignment: str | No
 
     The first sheet has the points; the second has the numbers and times of attempts.
     """
-    zone = ZoneInfo(courses.course(connection, course).zone)
+    zone = ZoneInfo(roll.course(connection, course).zone)
     book = gradebook(connection, course, assignment)
     return _written(book, _hand_ins(connection, course, assignment), zone)
 

@@ -14,7 +14,8 @@ from dh_grader.catalogue import Exercise, in_language
 from dh_grader.contract.courses import OwnAssignment, OwnAttempt, OwnCourse, OwnCourses, OwnExercise
 from dh_grader.courses import local
 from dh_grader.courses.assignments import LearnerTerms, learner_terms, own_variant
-from dh_grader.store.attempts import ListedAttempt, hints_of, points_after
+from dh_grader.store import ListedAttempt, points_after
+from dh_grader.store.attempts import hints_of
 from dh_grader.store.results import LISTED
 from dh_grader.store.tables import attempts, course_learners, courses
 from dh_grader.translations import ENGLISH, Language

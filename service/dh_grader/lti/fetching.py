@@ -11,16 +11,15 @@ import socket
 import ssl
 import threading
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from contextlib import contextmanager
-from contextvars import copy_context
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from functools import cache, lru_cache
 from http import HTTPStatus
 from ipaddress import IPv4Address, IPv4Network, IPv6Address, IPv6Network, ip_address
 from time import monotonic
-from typing import Any, Final, NamedTuple, TypeVar
+from typing import Any, Final, NamedTuple
 from urllib.parse import urljoin
 
 import httpcore
@@ -40,45 +39,10 @@ from sqlalchemy import Connection, Row, delete, insert, select
 
 from dh_grader import VERSION
 from dh_grader.access import Secret
+from dh_grader.lti import PlatformThreads
 from dh_grader.lti.registrations import LOCAL_HOSTS, LtiError, Registration, origin_of, unusable
 from dh_grader.store.tables import own_keys
 from dh_grader.translations import say
-
-# Threads that wait for platforms, so that no other work waits with them.
-
-
-R = TypeVar("R")
-
-_MOST: Final = 32
-# Of one platform: a slow one leaves threads for the others.
-_MOST_EACH: Final = 4
-
-
-class PlatformThreads:
-    """A few threads in which this process asks platforms, apart from the threads of other work."""
-
-    def __init__(self) -> None:
-        # No thread starts before it is needed.
-        self._pool = ThreadPoolExecutor(_MOST, "lti-platform")
-        self._turns: dict[str, asyncio.Semaphore] = {}
-
-    async def run(self, platform: str, work: Callable[[], R]) -> R:
-        """Return the result of ``work``, which asks this platform, from one of the threads.
-
-        Work for the same platform may have to wait.
-        """
-        turns = self._turns.setdefault(platform, asyncio.Semaphore(_MOST_EACH))
-        await turns.acquire()
-        loop = asyncio.get_running_loop()
-        result = loop.run_in_executor(self._pool, copy_context().run, work)
-        # A caller that is cancelled leaves a thread at work: its turn ends with the work.
-        result.add_done_callback(lambda _: turns.release())
-        return await asyncio.shield(result)
-
-    def close(self) -> None:
-        """End the threads after their current work."""
-        self._pool.shutdown(wait=False, cancel_futures=True)
-
 
 # The keys with which this service signs messages to platforms, and their rotation.
 

@@ -19,12 +19,11 @@ from cryptography.hazmat.primitives.asymmetric.rsa import RSAPublicKey
 from pydantic import BaseModel, ConfigDict, ValidationError
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
-from dh_grader import courses
 from dh_grader.access import Scope, Secret, new_key_text
 from dh_grader.access.key_ring import add_key, keys_at, settle
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import CourseAssignment, NewAssignment, NewCourse
-from dh_grader.courses import CourseError
+from dh_grader.courses import CourseError, roll
 from dh_grader.courses.assignments import add_assignment, assignment_of, pin_choices
 from dh_grader.lti.grade_services import ensure_line_item, try_refused_again
 from dh_grader.lti.registrations import (
@@ -582,7 +581,7 @@ def enter(
         context=context.number,
         link=link.number,
         course=context.course,
-        course_title=courses.course(connection, context.course).title,
+        course_title=roll.course(connection, context.course).title,
         key_id=context.key,
         learner=learner,
         link_title=link.title,
@@ -635,7 +634,7 @@ def context_of(connection: Connection, message: LaunchMessage, now: datetime) ->
             is None
         ):
             new = NewCourse(id=course, title=title, zone=message.registration.zone)
-            courses.add_course(connection, new, now)
+            roll.add_course(connection, new, now)
         values = {
             "registration": message.registration.id,
             "deployment": message.deployment,

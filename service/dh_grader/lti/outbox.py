@@ -28,10 +28,9 @@ from sqlalchemy import (
 )
 from sqlalchemy.exc import SQLAlchemyError
 
-from dh_grader import courses
 from dh_grader.access import Secret
 from dh_grader.contract.courses import PlatformScore, SendAgainRequest
-from dh_grader.courses import place_of
+from dh_grader.courses import place_of, roll
 from dh_grader.courses.assignments import assignment_of
 from dh_grader.courses.gradebook import SHARE
 from dh_grader.lti.grade_services import (
@@ -208,7 +207,7 @@ def send_again(connection: Connection, course: str, wanted: SendAgainRequest, no
 
 
 def _check(connection: Connection, course: str, wanted: SendAgainRequest) -> None:
-    courses.course(connection, course)
+    roll.course(connection, course)
     if wanted.assignment is not None:
         assignment_of(connection, course, wanted.assignment)
 

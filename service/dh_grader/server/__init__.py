@@ -26,12 +26,12 @@ from dh_grader.server.processes import Server, SharedPort, Supervisor
 from dh_grader.server.turns import FairAdmission
 from dh_grader.server.watching import log_config, set_up_access_log, shared_metrics_folder
 from dh_grader.settings import Settings, SettingsError
-from dh_grader.store.database import UnusableDatabaseError
+from dh_grader.store import UnusableDatabaseError
 from dh_grader.translations import joined, say
 from dh_grader.web import Tutoring, web_routes
 
 if TYPE_CHECKING:
-    from dh_grader.store import AttemptStore
+    from dh_grader.store.attempt_store import AttemptStore
 
 _start_log = logging.getLogger("uvicorn.error")
 
@@ -132,7 +132,7 @@ def installed_app(
     store = None
     if settings.database is not None:
         # Imported only here, because it imports the database drivers.
-        from dh_grader.store import AttemptStore
+        from dh_grader.store.attempt_store import AttemptStore
 
         try:
             store = AttemptStore.open(settings.database.get_secret_value())
@@ -143,7 +143,7 @@ def installed_app(
     metrics = None
     if settings.metrics != "off":
         # Imported only here, because it imports the Prometheus client.
-        from dh_grader.server.watching import Metrics
+        from dh_grader.server.metrics import Metrics
 
         metrics = Metrics(is_public=settings.metrics == "all")
         if store is not None:

@@ -1,285 +1,412 @@
-"""The store of attempts that the HTTP routes use."""
+"""What is recorded of an attempt, what counts, and what may go wrong.
 
-import asyncio
-import tempfile
-from collections.abc import Awaitable, Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor, wait
-from contextlib import AbstractContextManager, nullcontext
-from datetime import UTC, datetime
-from math import inf
-from time import monotonic
-from typing import IO, Final, TypeVar
+Nothing here loads a database driver, so that a service without a database does without.
+"""
 
-from sqlalchemy import Connection, Engine
-from sqlalchemy.exc import SQLAlchemyError
+import hashlib
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+from datetime import datetime
+from enum import StrEnum
+from functools import cached_property
+from typing import Any, Final
 
-from dh_grader.contract import ExerciseStatistics
-from dh_grader.store.attempts import (
-    AttemptAfter,
-    AttemptFilter,
-    GradesFormat,
-    ListedAttempt,
-    RecordedAttempt,
-    Standing,
-    fail_if_read_only,
-    record_next,
-    rehearse,
-    standing,
-)
-from dh_grader.store.database import (
-    AttemptWriter,
-    LogCutter,
-    StoreDownError,
-    UnusableDatabaseError,
-    open_database,
-    overwrite_deleted,
-    reason,
-    safe_url,
-)
-from dh_grader.store.learner_data import LearnerData, data_of, forget, override
-from dh_grader.store.results import (
-    AttemptHistory,
-    Counting,
-    exercise_statistics,
-    graded_attempts,
-    history,
-    page,
-    written,
-)
-from dh_grader.translations import say
+from pydantic import ValidationError
 
-R = TypeVar("R")
-
-# How long a successful check counts, unless a job fails meanwhile (seconds).
-_CHECKED: Final = 1.0
-# The most queries of tutors at once; others wait.
-_READERS: Final = 2
-# The time limit of a tutor's query, including its wait for others (seconds): longer than the
-# limit of a statement in PostgreSQL.
-_READ_TIMEOUT: Final = 70.0
-# Seconds until a paused export looks whether the store has been closed.
-_LONGEST_WAIT: Final = 0.5
-# Larger exports are buffered on the disk (bytes).
-_IN_MEMORY: Final = 1024 * 1024
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.formats.documents import read_report, rendered
+from dh_grader.formats.graded import with_texts
+from dh_grader.grading import GradedAnswers, Report, graded_answers
+from dh_grader.grading.report import PartReport
+from dh_grader.submissions.bodies import GradeRequest
+from dh_grader.translations import Language, Sentence, say, say_count, told
 
 
-class AttemptStore:
-    """The recorded attempts of one database.
+class AttemptRefusedError(Exception):
+    """The attempt is refused. The message is for the learner; ``name`` identifies the reason."""
 
-    Every method raises StoreDownError if the database fails; nothing is written then.
+    def __init__(self, name: str, message: str) -> None:
+        self.name = name
+        super().__init__(message)
+
+
+@dataclass(frozen=True, slots=True)
+class Ruling:
+    """An accepted attempt: its number (1, 2, …), and the factor ``worth`` for its points.
+
+    The factor is 1 for an attempt in time, and less for a late attempt.
     """
 
-    def __init__(self, engine: Engine) -> None:
-        self.engine = engine
-        self._writer: AttemptWriter | None = None
-        self._readers: ThreadPoolExecutor | None = None
-        # The beginning of the last check that succeeded.
-        self._checked_at = -inf
-        # Returns a context for the operation of this name, for example to measure it.
-        self.measure: Callable[[str], AbstractContextManager[None]] = lambda _: nullcontext()
+    ordinal: int
+    is_late: bool
+    worth: float
 
-    @classmethod
-    def open(cls, url: str) -> "AttemptStore":
-        """Open the store at a URL or in an SQLite file. Raises UnusableDatabaseError."""
-        engine = open_database(url)
-        try:
-            with engine.begin() as connection:
-                fail_if_read_only(connection)
-        except SQLAlchemyError as error:
-            problem = say(
-                "{url}: attempts cannot be recorded there: {reason}",
-                url=safe_url(engine),
-                reason=reason(error),
-            )
-            raise UnusableDatabaseError(problem) from error
-        finally:
-            # Child processes that start later must not inherit a connection.
-            engine.dispose()
-        return cls(engine)
 
-    def start(self) -> None:
-        """Start the threads that write and read.
+def ruling(rules: AttemptsSpec, counted: int, now: datetime) -> Ruling:
+    """Return the number and the factor of a learner's next attempt.
 
-        Call this method in the process that serves requests.
-        """
-        self._writer = AttemptWriter(self.engine, LogCutter(self.engine).next)
-        self._readers = ThreadPoolExecutor(_READERS, "attempts-read")
-
-    def close(self) -> None:
-        """Flush pending attempts, stop the threads and close all connections."""
-        if self._writer is not None:
-            self._writer.close()
-            self._writer = None
-        readers, self._readers = self._readers, None
-        if readers is not None:
-            readers.shutdown()
-        self.engine.dispose()
-
-    async def standing(
-        self,
-        exercise: str,
-        learner: str,
-        owner: str,
-        idempotency_key: str | None,
-        assignment: int | None = None,
-    ) -> Standing:
-        """Return a summary of a learner's earlier attempts at an exercise."""
-        with self.measure("standing"):
-            return await self._running.run(
-                lambda connection: standing(
-                    connection, exercise, learner, owner, idempotency_key, assignment
-                )
-            )
-
-    async def record(
-        self, before: Standing, attempt_after: AttemptAfter
-    ) -> RecordedAttempt | Standing:
-        """Call ``attempt_after`` with the learner's earlier attempts, and write its result.
-
-        ``attempt_after`` must be quick, because other jobs wait for it. See ``record_next``.
-        """
-        with self.measure("record"):
-            return await self._running.run(
-                lambda connection: record_next(connection, before, attempt_after)
-            )
-
-    async def check(self) -> None:
-        """Raise StoreDownError unless attempts can be recorded.
-
-        A check writes to the disk, but not more often than once in a second.
-        """
-        writer, now = self._running, monotonic()
-        if writer.failed_at < self._checked_at and now - self._checked_at < _CHECKED:
-            return
-        with self.measure("check"):
-            await writer.run(rehearse)
-        self._checked_at = now
-
-    async def page(
-        self, wanted: AttemptFilter, cursor: str | None, most: int
-    ) -> tuple[list[ListedAttempt], str | None]:
-        """Return at most ``most`` attempts, the newest first, and the cursor of the next page.
-
-        Raises BadCursorError.
-        """
-        return await self.read(lambda connection: page(connection, wanted, cursor, most))
-
-    async def history(self, attempt_id: str) -> AttemptHistory | None:
-        """Return an attempt with its answers, reports and overrides; None if the id is unknown."""
-        return await self.read(lambda connection: history(connection, attempt_id))
-
-    async def statistics(self, wanted: AttemptFilter) -> ExerciseStatistics:
-        """Return the statistics of an exercise from the wanted attempts."""
-        return await self.read(lambda connection: exercise_statistics(connection, wanted))
-
-    async def export(
-        self,
-        wanted: AttemptFilter,
-        form: GradesFormat,
-        title: str,
-        counting: Callable[[str], Counting],
-        give_way: Callable[[], Awaitable[None]],
-    ) -> IO[bytes]:
-        """Return a file with the attempts in a format. The caller closes the file.
-
-        ``give_way`` is awaited after each page of attempts.
-        """
-        # Python runs one thread at a time. An export without pauses would hold up the thread of the
-        # event loop for milliseconds, whenever that has waited for a socket.
-        loop = asyncio.get_running_loop()
-
-        def pause() -> None:
-            turn = asyncio.run_coroutine_threadsafe(_awaited(give_way), loop)
-            while not turn.done() and self._readers is not None:
-                wait([turn], _LONGEST_WAIT)
-            if not turn.done():
-                turn.cancel()
-                raise StoreDownError("the store has been closed")
-            turn.result()
-
-        return await self.read(
-            lambda connection: _file_of(
-                written(graded_attempts(connection, wanted, counting, pause), form, title)
-            )
+    ``counted`` is the number of attempts that the learner has used. Raises AttemptRefusedError.
+    """
+    if rules.opens is not None and now < rules.opens:
+        opens = say("This exercise opens on {moment}.", moment=_formatted(rules.opens))
+        raise AttemptRefusedError("not-open", opens)
+    is_late = rules.due is not None and now > rules.due
+    end = rules.closes or rules.due
+    if end is not None and now > end:
+        closed = say("This exercise was closed on {moment}.", moment=_formatted(end))
+        raise AttemptRefusedError("closed", closed)
+    if rules.limit is not None and counted >= rules.limit:
+        used = say_count(
+            "No attempt is left: the attempt is used up.",
+            "No attempt is left: the {count} attempts are used up.",
+            count=rules.limit,
         )
+        raise AttemptRefusedError("no-attempts-left", used)
+    return Ruling(counted + 1, is_late, rules.late_worth if is_late else 1.0)
 
-    async def override(
-        self, attempt_id: str, points: float | None, reason_given: str, author: str
-    ) -> ListedAttempt:
-        """Override the points of an attempt's report; ``points=None`` withdraws the override.
 
-        Raises UnknownAttemptError, UnusablePointsError.
-        """
-        now = datetime.now(UTC)
+def points_after(points: float, max_points: float, hint_price: float, worth: float) -> float:
+    """Return the points after deductions for hints and for lateness."""
+    return round(max(0.0, points - hint_points(hint_price, max_points)) * worth, 6)
 
-        def work(connection: Connection) -> ListedAttempt:
-            override(connection, attempt_id, points, reason_given, author, now)
-            found = history(connection, attempt_id)
-            assert found is not None
-            return found.attempt
 
-        with self.measure("override"):
-            return await self._running.run(work)
+def _formatted(moment: datetime) -> str:
+    return moment.strftime("%Y-%m-%d at %H:%M %Z").rstrip()
 
-    async def data_of(self, learner: str) -> LearnerData:
-        """Count the records of a learner."""
-        return await self.read(lambda connection: data_of(connection, learner))
 
-    async def forget(self, learner: str) -> tuple[LearnerData, bool | None]:
-        """Delete a learner's records; return their counts, and True if no trace stays on disk.
+# Recorded reports: JSON in English, with the sentences that can be translated.
+#
+# A recorded report begins with ``sentences``, a list of templates with their values. The rest is
+# the
+# report as it was sent.
 
-        The second value is None for PostgreSQL, which overwrites deleted rows by itself.
-        """
-        with self.measure("forget"):
-            deleted = await self._running.run(lambda connection: forget(connection, learner))
-            try:
-                erased = await asyncio.to_thread(overwrite_deleted, self.engine)
-            except SQLAlchemyError:
-                # The rows are deleted, but not yet overwritten.
-                erased = False
-        return deleted, erased
 
-    async def write(self, work: Callable[[Connection], R]) -> R:
-        """Return the result of ``work`` after its commit; see ``AttemptWriter.run``."""
-        with self.measure("write"):
-            return await self._running.run(work)
+_START: Final = '{"sentences":'
+_BRACES: Final = frozenset("{}")
+_DECODER: Final = json.JSONDecoder()
 
-    async def read(self, work: Callable[[Connection], R]) -> R:
-        """Run ``work``, which only reads, in a thread for reading; return its result."""
-        assert self._readers is not None, "the store has not been started"
-        loop = asyncio.get_running_loop()
-        with self.measure("read"):
-            found = loop.run_in_executor(self._readers, self._run_read, work)
-            try:
-                return await asyncio.wait_for(found, _READ_TIMEOUT)
-            except TimeoutError as error:
-                raise StoreDownError(
-                    f"the database has not answered for {_READ_TIMEOUT:g} s"
-                ) from error
 
-    def _run_read(self, work: Callable[[Connection], R]) -> R:
-        try:
-            with self.engine.connect() as connection:
-                return work(connection)
-        except SQLAlchemyError as error:
-            raise StoreDownError(reason(error)) from error
+def recorded_report(report: Report) -> str:
+    """Return a report as JSON for the database, with its translatable sentences."""
+    text = rendered(report).decode()
+    found: dict[str, Sentence] = {}
+
+    def collect(text: str) -> str:
+        if isinstance(text, Sentence):
+            found[text] = text
+        return text
+
+    with_texts(report, collect)
+    if not found:
+        return text
+    kept = [_written(each) for each in found.values() if each.values or _BRACES & set(each)]
+    listed = json.dumps(kept, ensure_ascii=False, separators=(",", ":"))
+    return f"{_START}{listed},{text[1:]}"
+
+
+def shown_report(recorded: str, language: Language) -> str:
+    """Return a recorded report as JSON in a language."""
+    sentences, text = _divided(recorded)
+    translation = language.translation
+    if translation is None or sentences is None:
+        return text
+    known = _known(sentences)
+    try:
+        report = read_report(text.encode())
+    except ValidationError:
+        # A report of another version may have another shape.
+        return text
+    return rendered(with_texts(report, lambda each: told(known(each), translation))).decode()
+
+
+def sentence_in(report: Mapping[str, Any], text: str) -> str:
+    """Find the sentence that has this English text in a recorded report."""
+    sentences = report.get("sentences")
+    return text if sentences is None else _known(sentences)(text)
+
+
+def _divided(recorded: str) -> tuple[list[Any] | None, str]:
+    if not recorded.startswith(_START):
+        return None, recorded
+    sentences, end = _DECODER.raw_decode(recorded, len(_START))
+    return sentences, "{" + recorded[end + 1 :]
+
+
+def _known(sentences: list[Any]) -> Callable[[str], str]:
+    known = {str(each): each for each in map(_read, sentences)}
+
+    def sentence(text: str) -> str:
+        if text in known or not text or _BRACES & set(text):
+            return known.get(text, text)
+        return Sentence(text)
+
+    return sentence
+
+
+def _written(sentence: Sentence) -> list[Any]:
+    values = {
+        name: _written(value) if isinstance(value, Sentence) else value
+        for name, value in sentence.values.items()
+    }
+    return [sentence.template, values, *filter(None, [sentence.plural])]
+
+
+def _read(written: list[Any]) -> Sentence:
+    template, values, *plural = written
+    read = {
+        name: _read(value) if isinstance(value, list) else value for name, value in values.items()
+    }
+    return Sentence(template, read, *plural)
+
+
+# The outcome of a report: verdicts and message codes, without the answers.
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The verdicts and message codes of one report, as JSON in ``content``."""
+
+    exercise: str
+    content: str
+
+    @cached_property
+    def digest(self) -> str:
+        """The SHA-256 of the content; equal outcomes have equal digests."""
+        return hashlib.sha256(self.content.encode()).hexdigest()
+
+
+def outcome_of(report: Report) -> Outcome:
+    """Return the verdicts and message codes of a report.
+
+    The feedback level of the report must be higher than ``score``.
+    """
+    content = {part.part: _part(part) for part in report.parts}
+    return Outcome(report.exercise.partition("~")[0], json.dumps(content, separators=(",", ":")))
+
+
+def _part(part: PartReport) -> dict[str, object]:
+    cells = {
+        f"{row.label}/{cell.label}": str(cell.verdict) for row in part.rows for cell in row.cells
+    }
+    messages = [
+        *part.feedback,
+        *(message for row in part.rows for message in row.feedback),
+        *(message for row in part.rows for cell in row.cells for message in cell.feedback),
+    ]
+    codes = sorted({message.code for message in messages if message.severity != "info"})
+    return {"verdict": str(part.verdict), "cells": cells, "codes": codes}
+
+
+# Grade an attempt: the report for the learner, and the outcome for statistics.
+
+
+@dataclass(frozen=True, slots=True)
+class AttemptReport:
+    """A report, its JSON, and its outcome (verdicts and message codes) for statistics."""
+
+    report: Report
+    text: str
+    outcome: Outcome
+
+
+class AttemptGrading:
+    """Grades the answers of one request, and makes reports at different feedback levels."""
+
+    def __init__(self, exercise: Exercise, body: GradeRequest) -> None:
+        self._exercise = exercise
+        self._body = body
+        self._graded: dict[FeedbackLevel, GradedAnswers] = {}
+        self._reports: dict[FeedbackLevel, AttemptReport] = {}
+
+    def has(self, most: FeedbackLevel) -> bool:
+        """True if ``at(most)`` can return the report without grading again."""
+        return _grading_level(self._level(most)) in self._graded
+
+    def at(self, most: FeedbackLevel) -> AttemptReport:
+        """Return the report at the requested feedback level, or at ``most`` if that is lower."""
+        level = self._level(most)
+        if level not in self._reports:
+            self._reports[level] = self._report(most, level)
+        return self._reports[level]
+
+    def _report(self, most: FeedbackLevel, level: FeedbackLevel) -> AttemptReport:
+        # The outcome needs rows, which the report at level ``score`` does not have.
+        enough = _grading_level(level)
+        if enough not in self._graded:
+            submission = replace(self._body.submission(most), feedback=enough)
+            self._graded[enough] = graded_answers(self._exercise, submission)
+        graded = self._graded[enough]
+        report = graded.report(enough)
+        outcome = outcome_of(report)
+        shown = report if level is enough else graded.report(level)
+        return AttemptReport(shown, recorded_report(shown), outcome)
+
+    def _level(self, most: FeedbackLevel) -> FeedbackLevel:
+        return self._body.submission(most).feedback
+
+
+def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
+    return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS
+
+
+# Data classes for new, recorded and listed attempts, and for filters of attempts.
+#
+# This module loads no database driver.
+
+
+MOST_ON_A_PAGE: Final = 100
+
+
+def hint_points(price: float, max_points: float) -> float:
+    """Return the points that hints cost, at most ``max_points``.
+
+    ``price`` is the price of the hints as a fraction of ``max_points``.
+    """
+    return round(min(price, 1.0) * max_points, 6)
+
+
+class GradesFormat(StrEnum):
+    """The formats of exported attempts: all attempts, or a gradebook of those that count."""
+
+    CSV = "csv"
+    JSONL = "jsonl"
+    CANVAS = "canvas"
+    MOODLE = "moodle"
 
     @property
-    def _running(self) -> AttemptWriter:
-        assert self._writer is not None, "the store has not been started"
-        return self._writer
+    def is_gradebook(self) -> bool:
+        """True if the format is a gradebook, which has the points of one exercise only."""
+        return self in (GradesFormat.CANVAS, GradesFormat.MOODLE)
 
 
-async def _awaited(give_way: Callable[[], Awaitable[None]]) -> None:
-    await give_way()
+@dataclass(frozen=True, slots=True)
+class NewAttempt:
+    """An attempt to be recorded; ``submission`` and ``report`` are JSON."""
+
+    exercise: str
+    learner: str
+    # The attempt's number among the learner's counted attempts at the exercise; None if it does not
+    # count.
+    ordinal: int | None
+    at: datetime
+    is_late: bool
+    worth: float
+    submission: str
+    answers_digest: str
+    report: str
+    version: str
+    grader: str
+    points: float
+    max_points: float
+    # The client that sent the attempt; idempotency keys are unique for each owner.
+    owner: str
+    idempotency_key: str | None
+    request_digest: str
+    # The number of an assignment of a course.
+    assignment: int | None = field(default=None, kw_only=True)
+    # The seed of a variant of the exercise.
+    variant: str | None = field(default=None, kw_only=True)
+    # The price of all hints that the learner has taken, as a share of the maximum points.
+    hint_price: float = field(default=0.0, kw_only=True)
 
 
-def _file_of(lines: Iterable[bytes]) -> IO[bytes]:
-    file = tempfile.SpooledTemporaryFile(_IN_MEMORY)  # noqa: SIM115 - the caller closes it
-    try:
-        file.writelines(lines)
-    except BaseException:
-        file.close()
-        raise
-    file.seek(0)
-    return file
+@dataclass(frozen=True, slots=True)
+class RecordedAttempt(NewAttempt):
+    """An attempt in the database."""
+
+    number: int
+    id: str
+
+    @property
+    def hint_points(self) -> float | None:
+        """The points lost by hints taken before the attempt, or None."""
+        return hint_points(self.hint_price, self.max_points) or None
+
+
+@dataclass(frozen=True, slots=True)
+class Standing:
+    """A summary of a learner's attempts at an exercise, read just before a new attempt."""
+
+    # The attempts that count towards the limit: those in the assignment or, without an assignment,
+    # those outside of all assignments.
+    counted: int
+    # The attempt that was already recorded under the same idempotency key.
+    earlier: RecordedAttempt | None
+    # The highest ``ordinal`` of all attempts.
+    last: int = 0
+    # The price of all hints taken so far, as a share of the points.
+    hint_price: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class AttemptFilter:
+    """Conditions that select attempts; None means no condition."""
+
+    # The id of an exercise, which selects all its variants, or the id of one variant.
+    exercise: str | None = None
+    learner: str | None = None
+    # Inclusive; ``until`` is exclusive.
+    since: datetime | None = None
+    until: datetime | None = None
+    counted: bool | None = None
+    course: str | None = None
+    # The id of an assignment of ``course``.
+    assignment: str | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ListedAttempt:
+    """An attempt without its answers and its report; ``awarded`` are points given by a tutor."""
+
+    number: int
+    id: str
+    exercise: str
+    learner: str
+    ordinal: int | None
+    at: datetime
+    is_late: bool
+    points: float
+    max_points: float
+    awarded: float | None
+    version: str
+    grader: str
+    variant: str | None = None
+    hint_price: float = 0.0
+
+    @property
+    def hint_points(self) -> float | None:
+        """The points lost by hints taken before the attempt, or None."""
+        return hint_points(self.hint_price, self.max_points) or None
+
+    @property
+    def earned(self) -> float:
+        """The points that count: points given by a tutor, or else the points of the report."""
+        return self.points if self.awarded is None else self.awarded
+
+
+# The errors that the store of attempts raises.
+
+
+class StoreDownError(Exception):
+    """The database cannot be reached, cannot write, or does not respond.
+
+    Nothing was written, unless only the database's reply to a commit was lost.
+    """
+
+
+class UnusableDatabaseError(Exception):
+    """The database at this URL cannot be used; the message says why."""
+
+
+class UnknownAttemptError(LookupError):
+    """No attempt has this id."""
+
+
+class UnusablePointsError(ValueError):
+    """The number of points is not allowed; the message says why."""
+
+
+class BadCursorError(ValueError):
+    """The text is not a valid cursor."""

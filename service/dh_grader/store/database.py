@@ -42,6 +42,7 @@ from sqlalchemy import (
 from sqlalchemy.dialects import postgresql, sqlite
 from sqlalchemy.exc import ArgumentError, DBAPIError, SQLAlchemyError
 
+from dh_grader.store import StoreDownError, UnusableDatabaseError
 from dh_grader.store.tables import UtcTime, attempts, contexts, learners, line_items, scores
 from dh_grader.translations import Sentence, joined, say
 
@@ -507,32 +508,6 @@ def _identity(path: Path) -> tuple[int, int] | None:
     except OSError:
         return None
     return found.st_dev, found.st_ino
-
-
-# The errors that the store of attempts raises. This module loads no database driver.
-
-
-class StoreDownError(Exception):
-    """The database cannot be reached, cannot write, or does not respond.
-
-    Nothing was written, unless only the database's reply to a commit was lost.
-    """
-
-
-class UnusableDatabaseError(Exception):
-    """The database at this URL cannot be used; the message says why."""
-
-
-class UnknownAttemptError(LookupError):
-    """No attempt has this id."""
-
-
-class UnusablePointsError(ValueError):
-    """The number of points is not allowed; the message says why."""
-
-
-class BadCursorError(ValueError):
-    """The text is not a valid cursor."""
 
 
 R = TypeVar("R")

@@ -23,15 +23,9 @@ from sqlalchemy import (
 )
 from sqlalchemy.exc import IntegrityError
 
-from dh_grader.store import tables
+from dh_grader.store import UnknownAttemptError, UnusablePointsError, shown_report, tables
 from dh_grader.store import tables as lti
-from dh_grader.store.attempts import shown_report
-from dh_grader.store.database import (
-    UnknownAttemptError,
-    UnusablePointsError,
-    forget_scores,
-    queue_scores,
-)
+from dh_grader.store.database import forget_scores, queue_scores
 from dh_grader.store.tables import (
     assignments,
     attempts,

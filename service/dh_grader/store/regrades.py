@@ -30,18 +30,17 @@ from sqlalchemy.exc import SQLAlchemyError
 from dh_grader import VERSION
 from dh_grader.catalogue import Exercise, FeedbackLevel, least
 from dh_grader.regex import regex
-from dh_grader.store.attempts import (
+from dh_grader.store import (
     AttemptFilter,
     AttemptGrading,
+    BadCursorError,
     Outcome,
-    insert_or_ignore,
-    outcome_ids,
+    StoreDownError,
     points_after,
 )
+from dh_grader.store.attempts import insert_or_ignore, outcome_ids
 from dh_grader.store.database import (
-    BadCursorError,
     Priority,
-    StoreDownError,
     in_transaction,
     queue_scores,
     reason,

@@ -41,15 +41,8 @@ from dh_grader.grading import Verdict
 from dh_grader.grading.report import combined
 from dh_grader.regex import regex
 from dh_grader.statistics import Share
-from dh_grader.store.attempts import (
-    AttemptFilter,
-    GradesFormat,
-    ListedAttempt,
-    hint_figures,
-    hints_before,
-    sentence_in,
-)
-from dh_grader.store.database import BadCursorError
+from dh_grader.store import AttemptFilter, BadCursorError, GradesFormat, ListedAttempt, sentence_in
+from dh_grader.store.attempts import hint_figures, hints_before
 from dh_grader.store.tables import (
     UtcTime,
     assignments,

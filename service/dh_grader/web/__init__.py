@@ -20,7 +20,6 @@ from dh_grader.catalogue import exercise_after
 from dh_grader.variants.robots import CatalogueWithPractice
 from dh_grader.web.assets import Asset, Assets, load_assets
 from dh_grader.web.courses import course_routes
-from dh_grader.web.lti_routes import lti_routes
 from dh_grader.web.pages import (
     REFERENCE_HEADERS,
     catalogue_page,
@@ -70,7 +69,11 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     router.include_router(tutor_routes(practised, assets, tutoring))
     router.include_router(attempt_routes(catalogue, assets, tutoring))
     router.include_router(course_routes(catalogue, assets, tutoring))
-    router.include_router(lti_routes(catalogue, assets, tutoring))
+    if tutoring.store is not None:
+        # It loads the database drivers.
+        from dh_grader.web.lti_routes import lti_routes
+
+        router.include_router(lti_routes(catalogue, assets, tutoring))
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:

@@ -59,7 +59,7 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
     @router.post("/{course_id}/roster")
     async def roster(request: Request, course_id: CourseId) -> Response:
         """Read the platform's list of members, and return the page with the changes."""
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
         from dh_grader.lti.roster import RosterError, ask_for_roster, enrol_members, read_roster
 
         shows_names = "names" in await form_fields(request)
@@ -324,7 +324,7 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
     async def courses(request: Request) -> Response:
         """Return the page with all courses that the tutor may see."""
         # A tutor of one course sees only this course.
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
 
         only = access.caller(request).course
         found = await read(store, lambda it: roll.all_courses(it, only))
@@ -384,7 +384,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
     @router.get("/{course_id}/gradebook")
     async def book(request: Request, course_id: CourseId) -> Response:
         """Return the page of the gradebook."""
-        from dh_grader import courses as roll
+        from dh_grader.courses import roll
 
         found = await read(store, lambda it: roll.course(it, course_id))
         return _answer(request, gradebook_page(found, assets, language_of(request)))
@@ -421,7 +421,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
     @router.post("/{course_id}/links.csv")
     async def links(request: Request, course_id: CourseId) -> Response:
         """Return a CSV file with the links of all learners, or with a new link of one learner."""
-        from dh_grader.courses import issue_links, written_links
+        from dh_grader.courses.roll import issue_links, written_links
 
         fields = parse_qs((await request.body()).decode(errors="replace"))
         one = fields.get("learner")
@@ -446,7 +446,7 @@ def _answer(request: Request, content: bytes) -> Response:
 
 def _state(connection: "Connection", course_id: str, language: Language) -> CourseState:
     """Return all data that the page of a course shows. Raises CourseError."""
-    from dh_grader import courses as roll
+    from dh_grader.courses import roll
     from dh_grader.courses.assignments import assignments_of
     from dh_grader.courses.gradebook import handed_in
     from dh_grader.lti.handed_files import missing_reports

@@ -10,17 +10,16 @@ from zoneinfo import ZoneInfo
 from pydantic import ValidationError
 from sqlalchemy import Connection
 
-from dh_grader import courses
 from dh_grader.access import Secret
 from dh_grader.api.http import Catalogue, language_headers, message_of
 from dh_grader.api.recording import write
 from dh_grader.catalogue import Exercise, FeedbackLevel, in_language
 from dh_grader.contract.courses import MOST_EXERCISES, CourseAssignment, NewAssignment
-from dh_grader.courses import CourseError, moment, zone_named
+from dh_grader.courses import CourseError, moment, roll, zone_named
 from dh_grader.courses.assignments import assignments_of
 from dh_grader.formats.documents import page_of
+from dh_grader.lti import PlatformThreads
 from dh_grader.lti.deep_linking import NewLink
-from dh_grader.lti.fetching import PlatformThreads
 from dh_grader.lti.grade_services import ScoreError
 from dh_grader.lti.handed_files import (
     HandedFiles,
@@ -40,7 +39,7 @@ from dh_grader.lti.launch import (
     use_login,
 )
 from dh_grader.lti.registrations import LtiError, LtiRole, Registration
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.translations import Language, joined, say
 from dh_grader.web.assets import Assets
 from dh_grader.web.pages import FORM_HEADERS, kinds_of, page, policy, words_of
@@ -186,7 +185,7 @@ def offer_of(connection: Connection, ticket: LinkingTicket, known: Registration)
     if not ticket.course:
         return Offer(ticket, known, zone_named(known.zone))
     try:
-        course = courses.course(connection, ticket.course)
+        course = roll.course(connection, ticket.course)
         found = assignments_of(connection, ticket.course)
     except CourseError:
         return Offer(ticket, known, zone_named(known.zone))

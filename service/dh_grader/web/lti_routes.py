@@ -16,7 +16,6 @@ from pydantic import BaseModel, Field, ValidationError
 from sqlalchemy import Connection, Row, select
 from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
 
-from dh_grader import courses
 from dh_grader.access import Caller, Scope, Secret
 from dh_grader.api.http import (
     LANGUAGE_FIELD,
@@ -30,11 +29,19 @@ from dh_grader.api.http import (
 from dh_grader.api.permissions import is_same_origin
 from dh_grader.api.recording import read, write
 from dh_grader.contract.courses import CourseName, NewAssignment
-from dh_grader.courses import CourseError
+from dh_grader.courses import CourseError, roll
+from dh_grader.formats.documents import STYLE
 from dh_grader.lti.deep_linking import NewLink, signed_response
-from dh_grader.lti.fetching import PlatformKeys, SigningKey, ensure_key, own_key_list, signing_key
+from dh_grader.lti.fetching import (
+    PlatformKeys,
+    SigningKey,
+    ensure_key,
+    own_key_list,
+    published_keys,
+    signing_key,
+)
 from dh_grader.lti.grade_services import ScoreError
-from dh_grader.lti.handed_files import notice_in, parties_of, queue_files
+from dh_grader.lti.handed_files import missing_counts, notice_in, parties_of, queue_files
 from dh_grader.lti.joining import (
     Invitation,
     accept,
@@ -46,11 +53,17 @@ from dh_grader.lti.joining import (
     release,
 )
 from dh_grader.lti.launch import (
+    REPORT,
     Landing,
     LinkingTicket,
     LtiTicket,
     assign,
+    begin_login,
+    digest,
     key_id_of,
+    login_fields,
+    login_of,
+    message_in,
     new_assignment_id,
     pseudonym,
     ticket_in,
@@ -68,7 +81,7 @@ from dh_grader.lti.registrations import (
     registration,
     unusable,
 )
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.tables import contexts, resource_links
 from dh_grader.translations import ENGLISH, Language, say
 from dh_grader.web.assets import Assets
@@ -307,7 +320,7 @@ def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
             ticket = await asked(request, text)
             context, link = await read(store, lambda it: _rows(it, ticket))
             known = await read(store, lambda it: registration(it, ticket.registration))
-            course = await read(store, lambda it: courses.course(it, context.course))
+            course = await read(store, lambda it: roll.course(it, context.course))
             choice = _choice(fields)
             try:
                 if fields.get("action") != ["save"]:
@@ -583,8 +596,6 @@ def platform_routes(landings: Landings) -> APIRouter:
 
 
 def _shown(connection: "Connection") -> list[_Shown]:
-    from dh_grader.lti.handed_files import missing_counts
-
     missing = missing_counts(connection)
     return [
         _Shown(
@@ -616,12 +627,6 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     keys = tutoring.access.keys
     if tutoring.store is None or keys is None or keys.secret is None:
         return router
-    # Imported only here, because they import the database drivers.
-    from dh_grader.formats.documents import STYLE
-    from dh_grader.lti.fetching import PlatformKeys
-    from dh_grader.lti.launch import REPORT
-    from dh_grader.web.lti_landing import Landings
-
     landings = Landings(
         catalogue,
         assets,
@@ -684,8 +689,6 @@ def lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIR
     @router.get("/jwks.json")
     async def own_keys() -> Response:
         """Return our public keys."""
-        from dh_grader.lti.fetching import published_keys
-
         found = await read(tutoring.store, published_keys)
         return JSONResponse(found, headers={"Cache-Control": "public, max-age=3600"})
 
@@ -708,9 +711,6 @@ class _Launching:
 
     async def begin(self, given: Mapping[str, str]) -> "NewLogin":
         """Store a new login and return it. Raises LtiError."""
-        from dh_grader.lti.launch import begin_login, login_fields
-        from dh_grader.lti.registrations import find_registration
-
         fields = login_fields(given)
         known = await read(
             self._store, lambda it: find_registration(it, fields["iss"], fields.get("client_id"))
@@ -720,9 +720,6 @@ class _Launching:
 
     async def login_of(self, fields: Mapping[str, str]) -> "tuple[Registration, Login]":
         """Return the registration and the login that a message belongs to. Raises LtiError."""
-        from dh_grader.lti.launch import login_of
-        from dh_grader.lti.registrations import LtiError, RegistrationError, registration
-
         now = datetime.now(UTC)
         begun = await read(self._store, lambda it: login_of(it, fields.get("state", ""), now))
         try:
@@ -736,9 +733,6 @@ class _Launching:
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
         """Return the message in a signed token. Raises LtiError if the token is refused."""
         # The reason is noted before.
-        from dh_grader.lti.launch import key_id_of, message_in
-        from dh_grader.lti.registrations import LtiError, note_refusal
-
         now = datetime.now(UTC)
         try:
             key = await self._platform_keys.key(known, key_id_of(token))
@@ -756,8 +750,6 @@ class _Launching:
         Raises LtiError if no page can help.
         """
         # That is, if the page already has its own window and the platform offers no storage.
-        from dh_grader.lti.registrations import LtiError
-
         is_window = request.headers.get("sec-fetch-dest") == "document"
         if is_window and begun.storage_target is None:
             raise LtiError("cookies-blocked")
@@ -781,8 +773,6 @@ class _Launching:
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
         """Return the response of ``work``, or a page about an LtiError."""
-        from dh_grader.lti.registrations import LtiError
-
         try:
             return await work()
         except LtiError as error:
@@ -790,8 +780,6 @@ class _Launching:
 
     async def _refused(self, error: "LtiError", language: Language) -> Response:
         """Return an error page for the student, with the reference number of the log line."""
-        from dh_grader.lti.registrations import all_registrations
-
         context = current_request()
         reference = "" if context is None else context.id
         _lti_routes_log.warning("LTI: refused (%s), reference %s: %s", error.name, reference, error)
@@ -812,8 +800,6 @@ def is_bound(
     # The browser sends its secret in a cookie, or in a form with the value from the platform's
     # storage. The form is accepted only from our own page, because an attacker could begin a login
     # and let another browser post the form.
-    from dh_grader.lti.registrations import LtiError
-
     cookie = request.cookies.get(cookie_name(known, fields["state"]))
     stored = fields.get("browser")
     if cookie is None and stored and not is_same_origin(request):
@@ -829,8 +815,6 @@ def is_bound(
 def cookie_name(known: "Registration", state: str) -> str:
     """Return the name of the cookie of a login."""
     # Several logins may be under way at once.
-    from dh_grader.lti.launch import digest
-
     prefix = "__Host-" if known.address.startswith("https:") else ""
     return f"{prefix}dh-grader-lti-{digest(state)[:12]}"
 

@@ -30,7 +30,7 @@ from dh_grader.api.permissions import Access, is_at_the_machine, require_reach
 from dh_grader.catalogue import CatalogueError, Exercise, FeedbackLevel, Robot, in_language
 from dh_grader.catalogue.load import Drafts
 from dh_grader.formats.texts import own_html
-from dh_grader.lti.fetching import PlatformThreads
+from dh_grader.lti import PlatformThreads
 from dh_grader.regex import regex
 from dh_grader.solutions import solve
 from dh_grader.translations import Language, say, told
@@ -50,7 +50,7 @@ from dh_grader.web.tutor_checks import (
 )
 
 if TYPE_CHECKING:
-    from dh_grader.store import AttemptStore
+    from dh_grader.store.attempt_store import AttemptStore
 
 
 @dataclass(frozen=True, slots=True)

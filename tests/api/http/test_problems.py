@@ -10,7 +10,7 @@ import pytest
 from dh_grader.api.http import ProblemError, message_of
 from dh_grader.api.permissions import ACCESS_PROBLEMS, access_problem
 from dh_grader.catalogue.schema_fields import AttemptsSpec
-from dh_grader.store.attempts import AttemptRefusedError, ruling
+from dh_grader.store import AttemptRefusedError, ruling
 from dh_grader.translations import LANGUAGES, Sentence, SentenceValue, told
 from fastapi import FastAPI
 

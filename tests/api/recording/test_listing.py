@@ -4,14 +4,14 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader import store as graded
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise
 from dh_grader.formats.graded import with_texts
 from dh_grader.grading import Report
-from dh_grader.store import AttemptStore
-from dh_grader.store import attempts as graded
-from dh_grader.store.attempts import recorded_report
+from dh_grader.store import recorded_report
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.learner_data import everything_of
 from dh_grader.store.tables import attempts
 from jsonschema import Draft202012Validator

@@ -13,12 +13,11 @@ import pytest
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise, load_catalogue, shipped_folder
-from dh_grader.store import AttemptStore
+from dh_grader.store import AttemptFilter, GradesFormat, StoreDownError
 from dh_grader.store import regrades as regrade_steps
 from dh_grader.store import regrades as regrading
 from dh_grader.store import results as grades
-from dh_grader.store.attempts import AttemptFilter, GradesFormat
-from dh_grader.store.database import StoreDownError
+from dh_grader.store.attempt_store import AttemptStore
 from sqlalchemy import text
 
 from tests.api.conftest import InProcess

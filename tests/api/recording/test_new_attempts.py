@@ -15,7 +15,7 @@ from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.catalogue.schema_fields import AttemptsSpec
 from dh_grader.contract import Learner
 from dh_grader.grading import GradedAnswers, Submission, graded_answers
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import text
@@ -129,7 +129,7 @@ def gradings(monkeypatch: pytest.MonkeyPatch) -> list[FeedbackLevel]:
         done.append(submission.feedback)
         return graded_answers(exercise, submission)
 
-    monkeypatch.setattr("dh_grader.store.attempts.graded_answers", counted)
+    monkeypatch.setattr("dh_grader.store.graded_answers", counted)
     return done
 
 

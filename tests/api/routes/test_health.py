@@ -12,8 +12,8 @@ import httpx
 import pytest
 from dh_grader.api.application import application
 from dh_grader.catalogue import Exercise
-from dh_grader.store import AttemptStore
-from dh_grader.store.database import StoreDownError
+from dh_grader.store import StoreDownError
+from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 from sqlalchemy import event, text
 
@@ -72,7 +72,7 @@ def test_a_check_of_a_moment_ago_does_not_count_after_an_attempt_waited_in_vain(
     store: AttemptStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Here a success counts for long; normally it counts for a second.
-    monkeypatch.setattr("dh_grader.store._CHECKED", 3600.0)
+    monkeypatch.setattr("dh_grader.store.attempt_store._CHECKED", 3600.0)
     reacts = threading.Event()
 
     async def wait_in_vain() -> None:

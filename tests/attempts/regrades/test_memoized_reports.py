@@ -1,6 +1,6 @@
 import pytest
 from dh_grader.catalogue import FeedbackLevel
-from dh_grader.store.attempts import Outcome
+from dh_grader.store import Outcome
 from dh_grader.store.regrades import MemoizedReports, WrittenReport
 
 HINTS, SCORE = FeedbackLevel.HINTS, FeedbackLevel.SCORE

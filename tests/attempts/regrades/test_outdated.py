@@ -11,8 +11,8 @@ from typing import Any
 
 import pytest
 from dh_grader.catalogue import Exercise, FeedbackLevel
-from dh_grader.store import AttemptStore
 from dh_grader.store import regrades as regrading_module
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction, open_database
 from dh_grader.store.regrades import BATCH, Regrading
 from dh_grader.store.results import history

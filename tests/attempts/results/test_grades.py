@@ -7,8 +7,8 @@ from dataclasses import replace
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.schema_fields import AttemptsSpec
-from dh_grader.store import AttemptStore
-from dh_grader.store.attempts import AttemptFilter, GradesFormat
+from dh_grader.store import AttemptFilter, GradesFormat
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.results import Counting, counting_rules, graded_attempts, written
 from dh_grader.store.tables import attempts
 from sqlalchemy import update

@@ -4,11 +4,10 @@ from datetime import UTC, datetime, timedelta
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import NewAssignment, NewCourse
-from dh_grader.courses import add_course
 from dh_grader.courses.assignments import add_assignment
-from dh_grader.store import AttemptStore
-from dh_grader.store.attempts import AttemptFilter, ListedAttempt
-from dh_grader.store.database import BadCursorError
+from dh_grader.courses.roll import add_course
+from dh_grader.store import AttemptFilter, BadCursorError, ListedAttempt
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.results import earlier_than, history, later_than, page, place_of
 from dh_grader.store.tables import assignments, attempts, earlier_reports, overrides
 from sqlalchemy import ColumnElement, event, insert, select

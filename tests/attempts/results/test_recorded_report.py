@@ -9,7 +9,7 @@ from dh_grader.catalogue import Exercise
 from dh_grader.formats.documents import read_report, rendered
 from dh_grader.formats.graded import report_in
 from dh_grader.grading import Correction, Feedback, Place, Report, Severity, Submission, grade
-from dh_grader.store.attempts import recorded_report, sentence_in, shown_report
+from dh_grader.store import recorded_report, sentence_in, shown_report
 from dh_grader.translations import ENGLISH, Sentence, say, say_count
 
 from tests.translations.german import german

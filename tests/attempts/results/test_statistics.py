@@ -6,8 +6,8 @@ from itertools import count
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.contract import ExerciseStatistics
-from dh_grader.store import AttemptStore
-from dh_grader.store.attempts import AttemptFilter, NewAttempt, Outcome
+from dh_grader.store import AttemptFilter, NewAttempt, Outcome
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.results import exercise_statistics
 from dh_grader.store.tables import hints
 from sqlalchemy import insert

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from dh_grader.catalogue import Exercise, FeedbackLevel
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import (
     LARGE_LOG,
     LogCutter,

@@ -10,7 +10,7 @@ from urllib.request import Request, urlopen
 import pytest
 from dh_grader.access import Scope, Secret, new_key_text
 from dh_grader.access.key_ring import add_key
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 from playwright.sync_api import Page, expect
 

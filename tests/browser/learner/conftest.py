@@ -9,13 +9,13 @@ from http.server import ThreadingHTTPServer
 from typing import Any
 
 import pytest
-from dh_grader import courses as roll
+from dh_grader.courses import roll
 from dh_grader.access import Scope, Secret, new_key_text
 from dh_grader.access.key_ring import add_key
 from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from dh_grader.courses import issue_links
 from dh_grader.courses.assignments import add_assignment
-from dh_grader.store import AttemptStore
+from dh_grader.courses.roll import issue_links
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 from sqlalchemy import Connection
 

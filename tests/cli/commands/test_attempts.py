@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from dh_grader.catalogue import Exercise, shipped_folder
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 
 from tests.attempts.erasure import files_with, reader
 from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded_all

@@ -9,9 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from dh_grader import courses as roll
 from dh_grader.cli import program
 from dh_grader.contract.courses import NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
 from dh_grader.courses.assignments import add_assignment
 from dh_grader.server import installed_app
 from dh_grader.settings import SettingsError, load_settings

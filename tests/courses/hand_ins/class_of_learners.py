@@ -10,11 +10,11 @@ from datetime import UTC, datetime
 from itertools import count
 from typing import Any, Final
 
-from dh_grader import courses as roll
 from dh_grader.access import Secret
 from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from dh_grader.courses import issue_links
+from dh_grader.courses import roll
 from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
 from dh_grader.store.database import in_transaction, open_database
 from sqlalchemy import Connection
 

@@ -14,12 +14,12 @@ from xml.etree import ElementTree
 from zoneinfo import ZoneInfo
 
 import pytest
-from dh_grader import courses as roll
 from dh_grader.access import Scope, new_key_text
 from dh_grader.access.key_ring import add_key
 from dh_grader.catalogue import Exercise
 from dh_grader.cli import program
 from dh_grader.contract.courses import NewLearner
+from dh_grader.courses import roll
 from dh_grader.courses.gradebook import gradebook_workbook
 from typer.testing import CliRunner
 

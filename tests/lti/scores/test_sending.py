@@ -16,7 +16,7 @@ from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise
 from dh_grader.lti.outbox import BackgroundSending
-from dh_grader.store import AttemptStore
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import QUEUED
 
 from tests.access.kept_services import SECRET_TEXT

@@ -1,5 +1,5 @@
 from dh_grader.server.connections import GuardedState, too_busy
-from dh_grader.server.watching import Metrics
+from dh_grader.server.metrics import Metrics
 
 
 def test_a_refusal_is_counted_and_a_page_may_read_it() -> None:
