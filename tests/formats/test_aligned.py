@@ -3,7 +3,7 @@
 import io
 
 import pytest
-from dh_grader.formats.texts import AlignedColumn, AlignedTable
+from dh_grader.formats.terminal import AlignedColumn, AlignedTable
 from rich.console import Console
 from rich.padding import Padding
 from rich.table import Table

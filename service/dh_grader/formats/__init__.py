@@ -1,6 +1,6 @@
 """Report formats for people and programs.
 
-``documents/`` and ``platforms/`` have one file for each format, ``shared/`` helpers of several.
+``terminal``, ``documents`` and ``platforms`` have the formats, the other files what they share.
 """
 
 from collections.abc import Mapping
@@ -22,7 +22,7 @@ _FORMATS: Final[Mapping[str, str]] = {
     "junit": "dh_grader.formats.platforms:JUNIT",
     "markdown": "dh_grader.formats.documents:MARKDOWN",
     "prairielearn": "dh_grader.formats.platforms:PRAIRIELEARN",
-    "text": "dh_grader.formats.documents:TEXT",
+    "text": "dh_grader.formats.terminal:TEXT",
 }
 FORMAT_NAMES: Final[tuple[str, ...]] = tuple(_FORMATS)
 

@@ -10,15 +10,9 @@ from dataclasses import dataclass
 from functools import cache, partial, reduce
 from itertools import chain, count, groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Final, Literal
+from typing import TYPE_CHECKING, Final
 
 from markupsafe import Markup, escape
-from rich.cells import cell_len, set_cell_size
-from rich.console import Console, RenderableType
-from rich.padding import Padding
-from rich.segment import Segment, Segments
-from rich.table import Table
-from rich.text import Text
 
 from dh_grader import typeset as typeset_typeset
 from dh_grader.formats.graded import AnsweredPart, GradedFile, GradedSubmission, is_mostly_unread
@@ -32,7 +26,6 @@ from dh_grader.grading.report import (
     rounded_points,
 )
 from dh_grader.regex import regex
-from dh_grader.statistics import ClassStatistics, CountedSlip
 from dh_grader.translations import (
     ENGLISH,
     Language,
@@ -711,168 +704,3 @@ def _pieces(message: Message) -> Iterator[str]:
     yield sentence(shortened(message.text, LONGEST))
     yield escaped(shortened(message.offers, LONGEST))
     yield escaped(shortened(message.example, LONGEST))
-
-
-# A summary of a class in a few lines: how many passed, and the most frequent mistakes.
-
-
-_SLIPS: Final = 10
-_UNREAD: Final = 5
-_LONGEST: Final = 300
-_NOT_GRADED: Final = say("not graded")
-_PASSED: Final = say("passed")
-_NOT_PASSED: Final = say("not passed")
-
-
-def result_line(submission: GradedSubmission, translation: Translation | None) -> Text:
-    """Return a line about one submission."""
-    name = visible(submission.name)
-    words = [told(each, translation) for each in (_NOT_GRADED, _PASSED, _NOT_PASSED)]
-    width = max(map(cell_len, words))
-    not_graded, passed, not_passed = (set_cell_size(each, width) for each in words)
-    if not submission.is_complete:
-        # The name is at the end, because it may be long.
-        return Text.assemble((not_graded, "magenta"), " " * 23, name)
-    verdict = (passed, "green") if submission.passed else (not_passed, "red")
-    earned = points(submission.points, submission.max_points)
-    return Text.assemble(verdict, f"  {earned:>13}  {percent(submission.score):>7}   ", name)
-
-
-def pass_line(submission: GradedSubmission, translation: Translation | None) -> Text:
-    """Return a line that says whether the submission reaches the pass mark."""
-    passed = submission.passed
-    style, verdict = ("bold green", PASSED) if passed else ("bold red", NOT_PASSED)
-    mark = percent(submission.pass_mark)
-    shown = told(
-        say("{verdict}: the pass mark is {share}.", verdict=verdict, share=mark), translation
-    )
-    line = Text(shown)
-    line.highlight_words([told(verdict, translation)], style)
-    return line
-
-
-class ClassSummary:
-    """Counts submissions one by one, and summarizes them in a few lines."""
-
-    def __init__(self, translation: Translation | None = None) -> None:
-        self._translation = translation
-        self._statistics = ClassStatistics()
-        self._count = 0
-        self._pass_mark = 0.0
-
-    def add(self, submission: GradedSubmission) -> None:
-        """Count a submission."""
-        self._count += 1
-        self._pass_mark = submission.pass_mark
-        if submission.is_complete:
-            self._statistics.scores.add(submission.score, passed=submission.passed)
-        for file in submission.files:
-            if file.report:
-                self._statistics.add(self._count, file.report)
-
-    def lines(self) -> Iterator[Text]:
-        """Yield the lines of the summary."""
-        scores, slips = self._statistics.scores, self._statistics.slips
-        graded = say(
-            "{passed} of {graded} graded passed (pass mark {share})",
-            passed=f"{scores.passed:,}",
-            graded=f"{scores.count:,}",
-            share=percent(self._pass_mark),
-        )
-        if scores.count < self._count:
-            others = f"{self._count - scores.count:,}"
-            graded = say("{graded}, {others} not graded", graded=graded, others=others)
-        submissions = say("{submissions} submissions: ", submissions=f"{self._count:,}")
-        yield Text.assemble((self._told(submissions), "bold"), self._told(graded))
-        if scores.count:
-            mean, median = whole_percent(scores.mean), whole_percent(scores.median)
-            line = say("Mean score {mean}, median {median}", mean=mean, median=median)
-            yield Text(self._told(line))
-        yield from self._listed(say("Commonest slips"), slips.counted()[:_SLIPS])
-        yield from self._listed(
-            say("What could not be read most often"), slips.counted(unreadable=True)[:_UNREAD]
-        )
-
-    def _told(self, text: str) -> str:
-        return told(text, self._translation)
-
-    def _listed(self, heading: str, slips: Sequence[CountedSlip]) -> Iterator[Text]:
-        if slips:
-            yield Text()
-            yield Text(self._told(heading), "bold")
-        for slip in slips:
-            parts = ", ".join(dict.fromkeys(part for _, part in slip.parts))
-            place = say("({name} in {parts})", name=slip.slip_code, parts=visible(parts))
-            sentence = shortened(visible(slip.sentence), _LONGEST)
-            yield Text.assemble(f"{slip.count:>4,}  {sentence} ", (self._told(place), "dim"))
-
-
-# Tables of short texts with aligned columns, for a terminal.
-
-
-_GAP: Final = 2
-
-# A text and its style.
-StyledText = tuple[str, str]
-
-
-@dataclass(frozen=True, slots=True)
-class AlignedColumn:
-    """A column of a table: its heading, and the alignment of its cells."""
-
-    heading: str
-    justify: Literal["left", "center", "right"] = "left"
-
-    def filled(self, text: str, width: int) -> str:
-        """Return the text, padded with blanks."""
-        missing = width - cell_len(text)
-        before = {"left": 0, "center": missing // 2, "right": missing}[self.justify]
-        return " " * before + text + " " * (missing - before)
-
-
-@dataclass(frozen=True, slots=True)
-class AlignedTable:
-    """A table of short texts without lines; each row has a cell for each column."""
-
-    columns: Sequence[AlignedColumn]
-    rows: Sequence[Sequence[StyledText]]
-    heading_style: str = "dim"
-
-    def on(self, console: Console, width: int, indent: int) -> RenderableType:
-        """Return the table to print, with ``indent`` blanks before each line.
-
-        If the table is wider than ``width``, its columns become narrower.
-        """
-        texts = zip(*((text for text, _ in row) for row in self.rows), strict=True)
-        widths = [
-            max(map(cell_len, {column.heading, *cells}))
-            for column, cells in zip(self.columns, texts, strict=True)
-        ]
-        if indent + sum(widths) + _GAP * (len(widths) - 1) > width:
-            return Padding(self._narrowed(), (0, 0, 0, indent), expand=False)
-        # Rich's own tables take ten times as long, because they measure each cell several times.
-        headings = [(column.heading, self.heading_style) for column in self.columns]
-        segments = []
-        for line, gap_style in ((headings, self.heading_style), *((row, "") for row in self.rows)):
-            gap = Segment(" " * _GAP, console.get_style(gap_style))
-            segments.append(Segment(" " * indent))
-            for column, cell_width, (text, style) in zip(self.columns, widths, line, strict=True):
-                filled = column.filled(text, cell_width)
-                segments += (Segment(filled, console.get_style(style)), gap)
-            segments[-1] = Segment.line()
-        return Segments(segments)
-
-    def _narrowed(self) -> Table:
-        table = Table(
-            box=None,
-            pad_edge=False,
-            padding=(0, _GAP, 0, 0),
-            header_style=self.heading_style,
-        )
-        for column in self.columns:
-            table.add_column(
-                column.heading, justify=column.justify, no_wrap=column.justify == "right"
-            )
-        for row in self.rows:
-            table.add_row(*(Text(*cell) for cell in row))
-        return table

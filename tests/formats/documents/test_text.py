@@ -5,7 +5,7 @@
 import io
 
 import pytest
-from dh_grader.formats.documents import write
+from dh_grader.formats.terminal import write
 from dh_grader.formats.texts import points, visible
 from dh_grader.grading import (
     CellReport,
