@@ -188,7 +188,5 @@ def test_others_are_served_between_two_gradings(
 def test_the_readme_s_example_is_the_documented_one() -> None:
     root = Path(__file__).parents[2]
     shown = (root / "docs" / "examples" / "many.json").read_text("utf-8")
-    example = (
-        root / "service" / "dh_grader" / "api" / "examples" / "grade-many-request.json"
-    )
+    example = root / "service" / "dh_grader" / "api" / "examples" / "grade-many-request.json"
     assert shown == example.read_text("utf-8")

@@ -134,8 +134,8 @@ Copyright and licence: see the file LICENSE.
 
 The wheel and the image carry the works below, unchanged but for file names and imports. Each
 licence is in the file that is named, which the wheel and the image carry, too. Packages that the
-program needs are not in the wheel; `python -m dh_grader.cli.licences` lists those that are installed,
-with their licences, and the image has that list in /opt/dh-grader/LICENCES.
+program needs are not in the wheel; `python -m dh_grader.cli.licences` lists those that are
+installed, with their licences, and the image has that list in /opt/dh-grader/LICENCES.
 """
 _IN_TESTS: Final = "In the repository only, for its tests:\n"
 

@@ -45,7 +45,7 @@ PACKAGES: Final[Mapping[str, Package]] = {
         ["tests/access"],
     ),
     "permissions": Package(
-        ["service/dh_grader/api/permissions/*.py"],
+        ["service/dh_grader/api/permissions.py"],
         ["tests/api/permissions", "tests/api/test_scopes.py", "tests/api/test_sign_in.py"],
         ["tests/api/permissions"],
     ),
@@ -59,12 +59,12 @@ PACKAGES: Final[Mapping[str, Package]] = {
         ["tests/courses/test_terms"],
     ),
     "gradebook": Package(
-        ["service/dh_grader/courses/results/*.py"],
+        ["service/dh_grader/courses/gradebook.py"],
         ["tests/courses/results", "tests/courses/test_courses.py"],
         ["tests/courses/results"],
     ),
     "results": Package(
-        ["service/dh_grader/attempts/results/*.py"],
+        ["service/dh_grader/store/results.py"],
         [
             "tests/attempts/results",
             "tests/api/recording/test_listing.py",
@@ -78,16 +78,12 @@ PACKAGES: Final[Mapping[str, Package]] = {
         ["tests/grading/judging/marking/test_fair_points.py"],
     ),
     "marks": Package(
-        [
-            "service/dh_grader/grading/marks.py",
-            "service/dh_grader/grading/marks.py",
-            "service/dh_grader/grading/report.py",
-        ],
+        ["service/dh_grader/grading/marks.py", "service/dh_grader/grading/report.py"],
         ["tests/grading/judging/marking", "tests/grading/test_points.py"],
         ["tests/grading/judging/marking/test_m", "tests/grading/judging/marking/test_w"],
     ),
     "comparison": Package(
-        ["service/dh_grader/grading/numbers.py", "service/dh_grader/grading/numbers.py"],
+        ["service/dh_grader/grading/numbers.py"],
         ["tests/grading/numerics", "tests/grading/test_rounding.py"],
         ["tests/grading/numerics"],
     ),

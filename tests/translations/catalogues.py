@@ -45,8 +45,8 @@ _QUOTED: Final = re.compile(r"`[^`]+`")
 @cache
 def extracted(domain: str) -> Catalog:
     """Return the sentences of a domain (pages, command line or reports) in the source."""
-    # Sentences in `service/dh_grader/web/__init__.py` belong to the domain of pages. Help texts and sentences in
-    # `service/dh_grader/cli/__init__.py` belong to that of the command line, all other sentences to that of reports.
+    # Sentences in `dh_grader/web` belong to the domain of pages. Help texts and sentences in
+    # `dh_grader/cli` belong to that of the command line, all other sentences to that of reports.
     found = Catalog(charset="utf-8", fuzzy=False)
     for file, method in _files(domain):
         with file.open("rb") as content:

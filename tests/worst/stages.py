@@ -9,19 +9,22 @@ from types import FrameType
 _STAGES = (
     ("service/dh_grader/expressions/repairs/", "repairs"),
     ("service/dh_grader/grading/diagnosis/", "diagnosis"),
-    ("service/dh_grader/expressions/printing/", "printing"),
-    ("service/dh_grader/grids/", "grids"),
+    ("service/dh_grader/expressions/printing.py", "printing"),
+    ("service/dh_grader/pasting/", "pasting"),
     ("service/dh_grader/expressions/reader.py", "reading characters"),
     ("service/dh_grader/grading/reading/", "reading answers"),
     ("service/dh_grader/grading/follow_through.py", "follow-through"),
-    ("service/dh_grader/grading/judging/", "judging"),
+    ("service/dh_grader/grading/judging", "judging"),
+    ("service/dh_grader/grading/frames/", "judging"),
+    ("service/dh_grader/grading/marks.py", "judging"),
+    ("service/dh_grader/grading/fair_points.py", "judging"),
     ("service/dh_grader/grading/kinds/", "judging"),
     ("service/dh_grader/formats/", "rendering"),
-    ("service/dh_grader/attempts/", "recording"),
+    ("service/dh_grader/store/", "recording"),
     ("service/dh_grader/submissions/", "body"),
     ("service/dh_grader/api/", "body"),
 )
-_EVALUATION = "service/dh_grader/expressions/evaluation/"
+_EVALUATION = "service/dh_grader/expressions/evaluate.py"
 INTERVAL = 0.001
 
 
