@@ -5,6 +5,7 @@ like ``POST /v1/grade``; only the form of the question and of the answer is diff
 """
 
 import html
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from functools import cache
@@ -14,10 +15,10 @@ from dh_grader.catalogue import Exercise, load_exercise, open_catalogue
 from dh_grader.formats.documents import page_of, rendered
 from dh_grader.formats.graded import GradedFile, GradedSubmission
 from dh_grader.formats.local_grading import GradingTerms, report_of, unknown_part
-from dh_grader.grading import Report
+from dh_grader.grading import FeedbackLevel, Report
 from dh_grader.settings import load_settings
 from dh_grader.submissions.assignment import UnknownPartNameError, of_one
-from dh_grader.submissions.bodies import GradeRequest, find_exercise
+from dh_grader.submissions.bodies import GradeRequest, find_exercise, read_json
 from dh_grader.translations import LANGUAGES, Language, language_named
 
 # Notebooks show a page in a frame, so that its styles do not change the notebook.
@@ -59,24 +60,26 @@ def report_on(
     exercise: str | Path | Exercise,
     answers: Mapping[str, object],
     angle_unit: str,
-    feedback: str,
+    feedback: str | None,
     language: str,
 ) -> ShownReport:
     """Return the report that ``dh_grader.grade`` promises."""
     told_in = language_named(language)
     if told_in is None:
         raise ValueError(f"{language!r} is not a language of reports: {', '.join(LANGUAGES)}")
-    # The model checks the values, as it does for a request.
-    content = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
-    body = GradeRequest.model_validate({**content, "echo": True})
+    # Read as the body of a request, with the same limits. A value that JSON lacks is a TypeError.
+    asked = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback, "echo": True}
+    body = GradeRequest.model_validate(read_json(json.dumps(asked).encode()))
     assignment = of_one(_exercise_of(exercise))
-    terms = GradingTerms(assignment, assignment.pass_mark, language=told_in)
+    # A caller who names a level has the exercise at hand, so that only the default is limited.
+    level = None if body.feedback is None else FeedbackLevel(body.feedback)
+    terms = GradingTerms(assignment, assignment.pass_mark, level, True, language=told_in)
     [assigned], [shown] = assignment.exercises, terms.answered
     if problem := unknown_part(body, assigned):
         raise UnknownPartNameError(problem)
     report = report_of(body, assigned, terms)
-    file = GradedFile("", shown, report)
-    submission = GradedSubmission("", "", (file,), terms.pass_mark)
+    file = GradedFile("", shown, report, names=("dh_grader.grade",))
+    submission = GradedSubmission(shown.id, shown.id, (file,), terms.pass_mark)
     values = {each.name: getattr(report, each.name) for each in fields(Report)}
     return ShownReport(**values, _submission=submission, _language=told_in)
 

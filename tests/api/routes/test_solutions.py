@@ -122,7 +122,7 @@ def test_the_event_loop_runs_while_a_solution_is_computed(
 PROGRAM = r"""
 import sys
 import dh_grader.app, dh_grader.grading, dh_grader.cli
-print(sorted({"sympy", "dh_grader.solutions"} & set(sys.modules)))
+print(sorted({"sympy", "dh_grader.solutions.answers"} & set(sys.modules)))
 """
 
 
