@@ -13,7 +13,7 @@ _STAGES = (
     ("service/dh_grader/pasting/", "pasting"),
     ("service/dh_grader/expressions/reader.py", "reading characters"),
     ("service/dh_grader/grading/reading/", "reading answers"),
-    ("service/dh_grader/grading/follow_through.py", "follow-through"),
+    ("service/dh_grader/grading/marks.py", "follow-through"),
     ("service/dh_grader/grading/judging", "judging"),
     ("service/dh_grader/grading/frames/", "judging"),
     ("service/dh_grader/grading/marks.py", "judging"),

@@ -44,7 +44,6 @@ from dh_grader.grading.diagnosis.upstream import (
     SlipSearch,
     slipped_answers,
 )
-from dh_grader.grading.follow_through import stands_still
 from dh_grader.grading.grading import Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
     ComparedValues,
@@ -63,6 +62,7 @@ from dh_grader.grading.judging import (
     value_places,
     value_rows,
 )
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import Mask, diagnosed, number_formula, spelled
 from dh_grader.grading.numbers import Match, Samples
 from dh_grader.grading.reading.lists import HOMOGENEOUS as LISTS_HOMOGENEOUS

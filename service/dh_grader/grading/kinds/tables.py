@@ -30,7 +30,6 @@ from dh_grader.grading.diagnosis.table_readings import (
     search_work,
 )
 from dh_grader.grading.diagnosis.whole_tables import explained
-from dh_grader.grading.follow_through import stands_still
 from dh_grader.grading.frames.nearest import single_repairs
 from dh_grader.grading.frames.roles import roles_in
 from dh_grader.grading.frames.rows import Rereadable
@@ -55,6 +54,7 @@ from dh_grader.grading.judging_table import (
     table_content,
     with_zeros,
 )
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import (
     WrongCell,
     all_records,
