@@ -17,7 +17,7 @@ _STAGES = (
     ("service/dh_grader/grading/judging", "judging"),
     ("service/dh_grader/grading/frames/", "judging"),
     ("service/dh_grader/grading/marks.py", "judging"),
-    ("service/dh_grader/grading/fair_points.py", "judging"),
+    ("service/dh_grader/grading/judging_table.py", "judging"),
     ("service/dh_grader/grading/kinds/", "judging"),
     ("service/dh_grader/formats/", "rendering"),
     ("service/dh_grader/store/", "recording"),

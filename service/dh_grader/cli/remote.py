@@ -21,7 +21,7 @@ from dh_grader.grading import Report, Submission
 from dh_grader.grading.report import rounded_points
 from dh_grader.regex import regex
 from dh_grader.settings import Settings
-from dh_grader.submissions.assignment import (
+from dh_grader.submissions import (
     AssignedExercise,
     Assignment,
     ExerciseOutline,

@@ -15,7 +15,7 @@ import numpy as np
 from dh_grader.catalogue import PartSpec
 from dh_grader.catalogue.schema_fields import Marking
 from dh_grader.expressions import Kind
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
+from dh_grader.grading.judging import Content, Grading, Judged, StudentChain
 from dh_grader.grading.numbers import (
     HALF,
     MOVES,

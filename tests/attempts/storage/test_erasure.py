@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from dh_grader.catalogue import Exercise, FeedbackLevel
-from dh_grader.store import AttemptStore
+from dh_grader.store import AttemptStore, forget, override
 from dh_grader.store.database import (
     LARGE_LOG,
     LogCutter,
@@ -20,7 +20,6 @@ from dh_grader.store.database import (
     open_database,
     overwrite_deleted,
 )
-from dh_grader.store.learner_data import forget, override
 from dh_grader.store.regrades import Regrading
 from sqlalchemy import Engine
 

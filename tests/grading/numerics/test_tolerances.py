@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.grading.grading import Grading, StudentChain
+from dh_grader.grading.judging import Grading, StudentChain
 from dh_grader.grading.kinds.motions import nearest_triple
 from dh_grader.grading.marks import can_carry, stands_still
 from dh_grader.grading.misconception import multiples, number_formula

@@ -44,10 +44,12 @@ from dh_grader.grading.diagnosis.upstream import (
     SlipSearch,
     slipped_answers,
 )
-from dh_grader.grading.grading import Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
     ComparedValues,
     ExpectedMatrix,
+    Grading,
+    Judged,
+    StudentChain,
     as_entries,
     asked_pose,
     entry_rows,

@@ -28,10 +28,13 @@ from dh_grader.grading.diagnosis.screws_and_placements import (
 from dh_grader.grading.diagnosis.upstream import explain_links, slipped_link
 from dh_grader.grading.frames.roles import nearest_with_tool_row
 from dh_grader.grading.frames.rows import FrameFreedom, Role
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
     ComparedValues,
+    Content,
     ExpectedMatrix,
+    Grading,
+    Judged,
+    StudentChain,
     asked_pose,
     entry_rows,
     formula_values,

@@ -33,9 +33,12 @@ from dh_grader.grading.diagnosis.whole_tables import explained
 from dh_grader.grading.frames.nearest import single_repairs
 from dh_grader.grading.frames.roles import roles_in
 from dh_grader.grading.frames.rows import Rereadable
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
+    Content,
+    Grading,
+    Judged,
     Slips,
+    StudentChain,
     cell_report,
     given_values,
     is_right_throughout,
