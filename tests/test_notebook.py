@@ -18,7 +18,7 @@ import numpy as np
 import pytest
 from dh_grader.api.application import application
 from dh_grader.catalogue import CatalogueError, Exercise, shipped_folder
-from dh_grader.submissions.assignment import UnknownPartNameError
+from dh_grader.submissions import UnknownPartNameError
 from dh_grader.submissions.bodies import UnknownExerciseError
 
 from tests.api.conftest import InProcess

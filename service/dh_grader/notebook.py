@@ -17,7 +17,7 @@ from dh_grader.formats.graded import GradedFile, GradedSubmission
 from dh_grader.formats.local_grading import GradingTerms, report_of, unknown_part
 from dh_grader.grading import FeedbackLevel, Report
 from dh_grader.settings import load_settings
-from dh_grader.submissions.assignment import UnknownPartNameError, of_one
+from dh_grader.submissions import UnknownPartNameError, of_one
 from dh_grader.submissions.bodies import GradeRequest, find_exercise, read_json
 from dh_grader.translations import LANGUAGES, Language, language_named
 

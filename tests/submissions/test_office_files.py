@@ -14,7 +14,7 @@ from typing import Any, Final
 import openpyxl
 import pytest
 from dh_grader.formats.local_grading import GradingTerms, graded
-from dh_grader.submissions.assignment import of_one
+from dh_grader.submissions import of_one
 from dh_grader.submissions.documents import (
     OFFICE_ENDINGS,
     Excerpt,

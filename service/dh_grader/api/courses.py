@@ -474,7 +474,7 @@ def handing_in_routes(
 
         The titles of exercises are in the reader's language.
         """
-        from dh_grader.courses.learner_view import own_view
+        from dh_grader.courses.gradebook import own_view
 
         caller = access.caller(request)
         learner, now = _learner(caller, None), datetime.now(UTC)
@@ -552,7 +552,7 @@ def handing_in_routes(
     ) -> Response:
         """Show a learner the model solution, once the assignment allows it."""
         from dh_grader.courses.assignments import assigned
-        from dh_grader.courses.learner_view import has_full_marks
+        from dh_grader.courses.gradebook import has_full_marks
 
         learner = _learner(access.caller(request), None)
         named = exercise_or_404(catalogue, exercise_id)
@@ -691,7 +691,7 @@ def gradebook_routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIR
         course_id: CourseId, learner: Annotated[Learner, Path(description="The id of a learner.")]
     ) -> Response:
         """Show a course as one of its learners sees it; for tutors of the course."""
-        from dh_grader.courses.learner_view import own_view
+        from dh_grader.courses.gradebook import own_view
 
         now = datetime.now(UTC)
         view = await read(store, lambda it: own_view(it, learner, course_id, catalogue, now))

@@ -46,7 +46,7 @@ class PracticeGate:
         learner = caller.learner
         if self._store is None or learner is None:
             return
-        from dh_grader.courses.learner_view import has_priced_hints
+        from dh_grader.courses.gradebook import has_priced_hints
 
         now, alike = datetime.now(UTC), self._alike(exercise.plain_id)
         priced = await ask(
@@ -70,7 +70,7 @@ class PracticeGate:
         learner = caller.learner
         if self._store is None or learner is None:
             return
-        from dh_grader.courses.learner_view import hides_solution
+        from dh_grader.courses.gradebook import hides_solution
 
         now, alike = datetime.now(UTC), self._alike(exercise)
         hidden = await ask(
@@ -92,7 +92,7 @@ class PracticeGate:
         learner = caller.learner
         if self._store is None or learner is None:
             return None
-        from dh_grader.courses.learner_view import closed_practice
+        from dh_grader.courses.gradebook import closed_practice
 
         now, alike = datetime.now(UTC), self._alike(exercise)
         try:

@@ -16,8 +16,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
-from dh_grader.catalogue.compile import compile_exercise
-from dh_grader.catalogue.exercise import Exercise
+from dh_grader.catalogue.exercise import Exercise, compile_exercise
 from dh_grader.catalogue.files import (
     CatalogueError,
     Fault,

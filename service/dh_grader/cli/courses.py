@@ -53,8 +53,8 @@ from dh_grader.courses.roll import issue_links, revoke_links, written_links
 from dh_grader.formats.texts import number, percent, visible
 from dh_grader.settings import load_settings
 from dh_grader.store.database import in_transaction
+from dh_grader.submissions import AssignedExercise, Assignment, load_assignment
 from dh_grader.submissions.answers import ExerciseAnswers, answers_in, of_file
-from dh_grader.submissions.assignment import AssignedExercise, Assignment, load_assignment
 from dh_grader.submissions.bodies import field_error, find_exercise
 from dh_grader.submissions.files import HandedIn, all_handed_in
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count, template

@@ -66,8 +66,7 @@ from dh_grader.formats.worksheets import (
 )
 from dh_grader.grading import FeedbackLevel
 from dh_grader.settings import Settings, load_settings
-from dh_grader.submissions.answers import of_file
-from dh_grader.submissions.assignment import (
+from dh_grader.submissions import (
     Assignment,
     SetExercise,
     UnknownPartNameError,
@@ -75,6 +74,7 @@ from dh_grader.submissions.assignment import (
     of_one,
     with_seeds,
 )
+from dh_grader.submissions.answers import of_file
 from dh_grader.submissions.files import HandedIn, UnusableClassError, all_handed_in
 from dh_grader.translations import Language, joined, say, say_count
 from dh_grader.variants import NoVariantError

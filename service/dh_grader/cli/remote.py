@@ -12,7 +12,10 @@ from dh_grader.formats.graded import GradedSubmission
 from dh_grader.formats.local_grading import GradingTerms
 from dh_grader.formats.texts import visible
 from dh_grader.settings import Settings
-from dh_grader.submissions.assignment import Assignment, SetExercise
+from dh_grader.submissions import (
+    Assignment,
+    SetExercise,
+)
 from dh_grader.submissions.files import HandedIn
 from dh_grader.translations import say
 

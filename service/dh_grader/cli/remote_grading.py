@@ -17,7 +17,7 @@ from dh_grader.formats.local_grading import GradingTerms, graded, unknown_part
 from dh_grader.grading import Report, Submission
 from dh_grader.grading.report import rounded_points
 from dh_grader.regex import regex
-from dh_grader.submissions.assignment import AssignedExercise, ExerciseOutline, PartOutline
+from dh_grader.submissions import AssignedExercise, ExerciseOutline, PartOutline
 from dh_grader.submissions.bodies import GradeRequest, UnknownExerciseError
 from dh_grader.submissions.files import HandedIn
 from dh_grader.translations import say

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dh_grader.catalogue import Exercise, Joint, Variable
-from dh_grader.catalogue.compile import DEFAULT_RANGES
+from dh_grader.catalogue.exercise import DEFAULT_RANGES
 from dh_grader.catalogue.kinds import FRAME_CELLS, FramesSpec, frame_labels
 from dh_grader.catalogue.robot import at_home
 from dh_grader.expressions import (

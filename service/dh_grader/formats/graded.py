@@ -21,7 +21,7 @@ from dh_grader.grading import (
 )
 from dh_grader.grading.report import rounded_points
 from dh_grader.regex import regex
-from dh_grader.submissions.assignment import SetExercise
+from dh_grader.submissions import SetExercise
 from dh_grader.translations import ENGLISH, Language, told
 
 if TYPE_CHECKING:

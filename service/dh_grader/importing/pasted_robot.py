@@ -16,8 +16,15 @@ from dh_grader.grading.reading.entries import Entry, Reader, stated_units
 from dh_grader.grading.reading.headers import ANGLE_UNITS, METRES, read_header
 from dh_grader.grading.reading.pasted_table import PastedTable, entries_of, read_pasted_table
 from dh_grader.grading.report import WorkBudget
-from dh_grader.importing.exercise_text import HomeRobot, sum_text
-from dh_grader.importing.snapping import Snaps, angle_text, decimals_of, exact_text, is_multiple
+from dh_grader.importing.exercise_text import (
+    HomeRobot,
+    Snaps,
+    angle_text,
+    decimals_of,
+    exact_text,
+    is_multiple,
+    sum_text,
+)
 from dh_grader.kinematics import ALPHA, COLUMNS, THETA, A, Convention, D, Numbers, Row, Table
 from dh_grader.pasting import GridError
 from dh_grader.regex import regex

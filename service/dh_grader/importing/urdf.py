@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from dh_grader.importing.snapping import Snaps
+from dh_grader.importing.exercise_text import Snaps
 from dh_grader.kinematics import (
     ALPHA,
     COLUMNS,

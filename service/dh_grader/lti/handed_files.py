@@ -57,7 +57,7 @@ from dh_grader.regex import regex
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import in_transaction
 from dh_grader.store.tables import contexts, course_learners, handed_files
-from dh_grader.submissions.assignment import PASS_MARK, Assignment, assigned
+from dh_grader.submissions import PASS_MARK, Assignment, assigned
 from dh_grader.submissions.files import PASTED_ENDINGS, HandedFile, HandedIn, most_bytes
 from dh_grader.translations import ENGLISH, Language, language_named, say
 from dh_grader.translations import told as translations_told

@@ -12,16 +12,14 @@ from typing import Final
 
 from dh_grader.pasting import latex
 from dh_grader.pasting.around import (
-    without_docstrings,
-    without_fence,
-    without_pictures,
-    without_titles,
-)
-from dh_grader.pasting.given_values import (
     ASSIGNMENT,
     check_script,
     without_definitions,
+    without_docstrings,
+    without_fence,
     without_given_values,
+    without_pictures,
+    without_titles,
     without_tuples,
 )
 from dh_grader.pasting.latex import FORMAT as LATEX

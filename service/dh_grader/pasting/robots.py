@@ -13,7 +13,7 @@ from typing import Final
 
 from dh_grader.expressions.errors import Note
 from dh_grader.pasting import matrices
-from dh_grader.pasting.given_values import GivenValue, given_numbers_note
+from dh_grader.pasting.around import GivenValue, given_numbers_note
 from dh_grader.pasting.program import (
     RobotTable,
     arguments,

@@ -24,7 +24,6 @@ from sqlalchemy import (
 from sqlalchemy.exc import IntegrityError
 
 from dh_grader.store import UnknownAttemptError, UnusablePointsError, shown_report, tables
-from dh_grader.store import tables as lti
 from dh_grader.store.database import forget_scores, queue_scores
 from dh_grader.store.tables import (
     assignments,
@@ -136,20 +135,23 @@ _JSON: Final = {"submission", "exercises", "content"}
 
 # The learner's id at learning platforms, and the points that these got or wait for.
 _AT_PLATFORMS: Final = (
-    select(lti.registrations.c.name, lti.registrations.c.issuer)
-    .add_columns(lti.learners.c.sub, lti.learners.c.launched_at)
-    .join_from(lti.learners, lti.registrations)
-    .where(lti.learners.c.learner == bindparam("learner"))
+    select(tables.registrations.c.name, tables.registrations.c.issuer)
+    .add_columns(tables.learners.c.sub, tables.learners.c.launched_at)
+    .join_from(tables.learners, tables.registrations)
+    .where(tables.learners.c.learner == bindparam("learner"))
 )
 _SCORES: Final = (
     select(assignments.c.course, assignments.c.id.label("in_assignment"))
     .add_columns(
-        *(lti.scores.c[name] for name in ("sub", "points", "max_points", "submitted_at", "state")),
-        *(lti.scores.c[name] for name in ("sent_at", "sent_points", "refusal")),
+        *(
+            tables.scores.c[name]
+            for name in ("sub", "points", "max_points", "submitted_at", "state")
+        ),
+        *(tables.scores.c[name] for name in ("sent_at", "sent_points", "refusal")),
     )
-    .join_from(lti.scores, lti.line_items)
-    .join(assignments, assignments.c.number == lti.line_items.c.assignment)
-    .where(lti.scores.c.learner == bindparam("learner"))
+    .join_from(tables.scores, tables.line_items)
+    .join(assignments, assignments.c.number == tables.line_items.c.assignment)
+    .where(tables.scores.c.learner == bindparam("learner"))
 )
 
 
@@ -192,7 +194,7 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
         "attempts": [attempt(row) for row in recorded],
         "platforms": [_known(row) for row in connection.execute(_AT_PLATFORMS, which)],
         "scores": [_known(row) for row in connection.execute(_SCORES, which)],
-        "handed_files": rows(lti.handed_files, lti.handed_files.c.learner == learner),
+        "handed_files": rows(tables.handed_files, tables.handed_files.c.learner == learner),
     }
 
 

@@ -18,7 +18,7 @@ from pydantic import ValidationError
 from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.files import alternatives
 from dh_grader.grading.reading.entries import length_unit_of
-from dh_grader.submissions.assignment import AssignedExercise, Assignment
+from dh_grader.submissions import AssignedExercise, Assignment
 from dh_grader.submissions.bodies import GradeRequest, nearest
 from dh_grader.submissions.documents import (
     Excerpt,

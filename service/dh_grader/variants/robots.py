@@ -10,11 +10,16 @@ from typing import Final
 import numpy as np
 
 from dh_grader.catalogue import Exercise, ExerciseLevel
-from dh_grader.catalogue.compile import compile_exercise
+from dh_grader.catalogue.exercise import compile_exercise
 from dh_grader.catalogue.schema import ExerciseSpec
 from dh_grader.grading import FeedbackLevel, Submission, grade
-from dh_grader.importing.exercise_text import HomeRobot, home_statement, lettered, rows_in
-from dh_grader.importing.snapping import number_text
+from dh_grader.importing.exercise_text import (
+    HomeRobot,
+    home_statement,
+    lettered,
+    number_text,
+    rows_in,
+)
 from dh_grader.kinematics import A, Convention, D
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, say, template

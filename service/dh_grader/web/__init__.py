@@ -18,14 +18,16 @@ from dh_grader.api.http import (
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import exercise_after
 from dh_grader.variants.robots import CatalogueWithPractice
-from dh_grader.web.assets import Asset, Assets, load_assets
 from dh_grader.web.courses import course_routes
 from dh_grader.web.pages import (
     REFERENCE_HEADERS,
+    Asset,
+    Assets,
     catalogue_page,
     exercise_page,
     help_routes,
     learner_page,
+    load_assets,
     page_answer,
     play_page,
     practice_page,

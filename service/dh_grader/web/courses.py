@@ -40,8 +40,7 @@ from dh_grader.courses import (
     with_own_dates,
 )
 from dh_grader.translations import Language, say, told
-from dh_grader.web.assets import Assets
-from dh_grader.web.pages import FORM_HEADERS, NO_STORE, form_fields, page, page_answer
+from dh_grader.web.pages import FORM_HEADERS, NO_STORE, Assets, form_fields, page, page_answer
 from dh_grader.web.tutor import Tutoring
 
 if TYPE_CHECKING:
@@ -396,7 +395,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
         """Return the page of a learner."""
         # The id is in the query, because it may have a slash.
         from dh_grader.courses.assignments import learner_variants
-        from dh_grader.courses.learner_view import own_view
+        from dh_grader.courses.gradebook import own_view
         from dh_grader.lti.handed_files import missing_reports
         from dh_grader.lti.outbox import scores_of
 

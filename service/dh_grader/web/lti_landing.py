@@ -30,7 +30,6 @@ from dh_grader.lti.outbox import utc_now
 from dh_grader.lti.registrations import LtiRole
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.translations import Language
-from dh_grader.web.assets import Assets
 from dh_grader.web.lti_pages import (
     Choice,
     Offer,
@@ -42,6 +41,7 @@ from dh_grader.web.lti_pages import (
     picker_page,
     tutor_page,
 )
+from dh_grader.web.pages import Assets
 
 # The lifetime of the token in a page. The page keeps it in memory; a reload needs a new launch.
 TOKEN_LIFETIME: Final = timedelta(hours=12)

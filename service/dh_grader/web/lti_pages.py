@@ -41,8 +41,7 @@ from dh_grader.lti.launch import (
 from dh_grader.lti.registrations import LtiError, LtiRole, Registration
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.translations import Language, joined, say
-from dh_grader.web.assets import Assets
-from dh_grader.web.pages import FORM_HEADERS, kinds_of, page, policy, words_of
+from dh_grader.web.pages import FORM_HEADERS, Assets, kinds_of, page, policy, words_of
 
 if TYPE_CHECKING:
     from dh_grader.lti.launch import Landing, NewLogin

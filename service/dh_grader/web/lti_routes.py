@@ -84,7 +84,6 @@ from dh_grader.lti.registrations import (
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.tables import contexts, resource_links
 from dh_grader.translations import ENGLISH, Language, say
-from dh_grader.web.assets import Assets
 from dh_grader.web.lti_landing import Landings
 from dh_grader.web.lti_pages import (
     Choice,
@@ -107,6 +106,7 @@ from dh_grader.web.pages import (
     FORM_HEADERS,
     NO_STORE,
     SESSION,
+    Assets,
     form_fields,
     page,
     page_answer,

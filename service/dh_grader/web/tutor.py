@@ -35,8 +35,15 @@ from dh_grader.regex import regex
 from dh_grader.solutions import solve
 from dh_grader.translations import Language, say, told
 from dh_grader.typeset import formula_html
-from dh_grader.web.assets import Assets
-from dh_grader.web.pages import FORM_HEADERS, NO_STORE, PRIVATE_HEADERS, page, page_answer, policy
+from dh_grader.web.pages import (
+    FORM_HEADERS,
+    NO_STORE,
+    PRIVATE_HEADERS,
+    Assets,
+    page,
+    page_answer,
+    policy,
+)
 from dh_grader.web.tutor_checks import (
     Checking,
     CheckRequest,

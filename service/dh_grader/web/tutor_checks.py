@@ -49,8 +49,8 @@ from dh_grader.importing import (
     imported_urdf,
 )
 from dh_grader.kinematics import Convention
+from dh_grader.submissions import PASS_MARK, Assignment, UnknownPartNameError, of_one
 from dh_grader.submissions.answers import of_file
-from dh_grader.submissions.assignment import PASS_MARK, Assignment, UnknownPartNameError, of_one
 from dh_grader.submissions.bodies import MAX_BODY_SIZE
 from dh_grader.submissions.files import (
     MAX_FILES,

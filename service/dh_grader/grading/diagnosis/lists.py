@@ -19,8 +19,7 @@ from dh_grader.grading.diagnosis.upstream import (
     SlippedAnswers,
     SlipSearch,
 )
-from dh_grader.grading.grading import Grading
-from dh_grader.grading.judging import ComparedValues
+from dh_grader.grading.judging import ComparedValues, Grading
 from dh_grader.grading.misconception import (
     UNEXPLAINED,
     UNIT_FACTORS,

@@ -8,7 +8,7 @@ from itertools import combinations
 import numpy as np
 
 from dh_grader.catalogue import Exercise, Joint, ReferenceTable
-from dh_grader.grading.diagnosis.rows_and_columns import (
+from dh_grader.grading.diagnosis.whole_tables import (
     ANGLE_LEFT_OUT,
     DISTANCE_LEFT_OUT,
     HALF_TURN,

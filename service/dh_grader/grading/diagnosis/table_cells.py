@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from dh_grader.catalogue import Joint
 from dh_grader.expressions.printing import PLAIN, spelling_for
 from dh_grader.grading.diagnosis.formulas import quantity_of
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.judging_table import Judgement, column_scales
 from dh_grader.grading.misconception import (
     UNEXPLAINED,

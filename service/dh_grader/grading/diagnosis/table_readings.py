@@ -17,7 +17,6 @@ from dh_grader.expressions import Expression, Symbol, Vocabulary
 from dh_grader.expressions.printing import Spelling
 from dh_grader.grading.diagnosis.formulas import quantity_of
 from dh_grader.grading.diagnosis.whole_tables import exchanged_columns
-from dh_grader.grading.fair_points import FairPoints
 from dh_grader.grading.frames.roles import rows_of_mechanism, usual_rows
 from dh_grader.grading.frames.rows import (
     OWN_FRAME_CHOICE,
@@ -27,9 +26,10 @@ from dh_grader.grading.frames.rows import (
     reference_values,
     written_table,
 )
-from dh_grader.grading.grading import Grading, Judged
+from dh_grader.grading.judging import Grading, Judged
 from dh_grader.grading.judging_table import (
     EXTRA_ROW,
+    FairPoints,
     column_scales,
     extra_row,
     row_too_many,

@@ -21,7 +21,16 @@ from dh_grader.catalogue.part import PosePartSpec
 from dh_grader.catalogue.robot import at_home
 from dh_grader.expressions.evaluate import SymbolValues
 from dh_grader.grading.diagnosis.formulas import WrongEntry
-from dh_grader.grading.diagnosis.rows_and_columns import (
+from dh_grader.grading.diagnosis.slips_of_the_table import (
+    axis_direction,
+    home_slip,
+    joint_slips,
+    length_slips,
+    lengths_of,
+    row_slips,
+    table_slips,
+)
+from dh_grader.grading.diagnosis.whole_tables import (
     HOME_POSITION,
     Change,
     Names,
@@ -32,18 +41,8 @@ from dh_grader.grading.diagnosis.rows_and_columns import (
     changed_values,
     slips_of_rows,
 )
-from dh_grader.grading.diagnosis.slips_of_the_table import (
-    axis_direction,
-    home_slip,
-    joint_slips,
-    length_slips,
-    lengths_of,
-    row_slips,
-    table_slips,
-)
 from dh_grader.grading.frames.rows import reference_values, variable_column
-from dh_grader.grading.grading import Grading
-from dh_grader.grading.judging import as_entries
+from dh_grader.grading.judging import Grading, as_entries
 from dh_grader.grading.misconception import (
     UNEXPLAINED,
     Explained,

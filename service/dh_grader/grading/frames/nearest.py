@@ -33,7 +33,7 @@ from dh_grader.grading.frames.rows import (
     variables_of,
     written_table,
 )
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.marks import BESIDES
 from dh_grader.grading.misconception import hypotheses_of, multiples
 from dh_grader.grading.numbers import (

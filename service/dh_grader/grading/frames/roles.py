@@ -30,7 +30,7 @@ from dh_grader.grading.frames.rows import (
     tool_pose,
     with_exact_angles,
 )
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.numbers import (
     EXACT_VALUE,
     HALF,

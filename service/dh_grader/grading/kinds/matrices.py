@@ -44,11 +44,12 @@ from dh_grader.grading.diagnosis.upstream import (
     SlipSearch,
     slipped_answers,
 )
-from dh_grader.grading.follow_through import stands_still
-from dh_grader.grading.grading import Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
     ComparedValues,
     ExpectedMatrix,
+    Grading,
+    Judged,
+    StudentChain,
     as_entries,
     asked_pose,
     entry_rows,
@@ -63,6 +64,7 @@ from dh_grader.grading.judging import (
     value_places,
     value_rows,
 )
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import Mask, diagnosed, number_formula, spelled
 from dh_grader.grading.numbers import Match, Samples
 from dh_grader.grading.reading.lists import HOMOGENEOUS as LISTS_HOMOGENEOUS

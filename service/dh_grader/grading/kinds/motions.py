@@ -26,13 +26,15 @@ from dh_grader.grading.diagnosis.screws_and_placements import (
     explain_screws,
 )
 from dh_grader.grading.diagnosis.upstream import explain_links, slipped_link
-from dh_grader.grading.follow_through import stands_still
 from dh_grader.grading.frames.roles import nearest_with_tool_row
 from dh_grader.grading.frames.rows import FrameFreedom, Role
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
     ComparedValues,
+    Content,
     ExpectedMatrix,
+    Grading,
+    Judged,
+    StudentChain,
     asked_pose,
     entry_rows,
     formula_values,
@@ -44,6 +46,7 @@ from dh_grader.grading.judging import (
     value_rows,
 )
 from dh_grader.grading.kinds.matrices import matrix_rows
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import Explained, value_formula
 from dh_grader.grading.numbers import (
     EXACT_VALUE,

@@ -30,13 +30,15 @@ from dh_grader.grading.diagnosis.table_readings import (
     search_work,
 )
 from dh_grader.grading.diagnosis.whole_tables import explained
-from dh_grader.grading.follow_through import stands_still
 from dh_grader.grading.frames.nearest import single_repairs
 from dh_grader.grading.frames.roles import roles_in
 from dh_grader.grading.frames.rows import Rereadable
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
+    Content,
+    Grading,
+    Judged,
     Slips,
+    StudentChain,
     cell_report,
     given_values,
     is_right_throughout,
@@ -55,6 +57,7 @@ from dh_grader.grading.judging_table import (
     table_content,
     with_zeros,
 )
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import (
     WrongCell,
     all_records,

@@ -16,6 +16,7 @@ from dh_grader.grading.reading.entries import (
     MISSING,
     UNREADABLE,
     Entry,
+    FoundAnswer,
     Reader,
     entry_values,
     from_grid_error,
@@ -28,10 +29,10 @@ from dh_grader.grading.reading.entries import (
     place_of,
     placed,
     quoted,
+    read_once,
     refuse_other_lengths,
     unreadable,
 )
-from dh_grader.grading.reading.several_answers import FoundAnswer, read_once
 from dh_grader.grading.report import (
     Finding,
     UnreadableAnswerError,

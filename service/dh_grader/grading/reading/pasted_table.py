@@ -18,6 +18,7 @@ from dh_grader.grading.reading.entries import (
     CONVERTS_LENGTHS,
     Arrangement,
     Entry,
+    FoundAnswer,
     Reader,
     comments,
     comments_and_captions,
@@ -27,6 +28,7 @@ from dh_grader.grading.reading.entries import (
     place_of,
     placed,
     quoted,
+    read_once,
     refuse_corrections,
     side_by_side,
     units_in,
@@ -47,7 +49,6 @@ from dh_grader.grading.reading.headers import (
     is_wordy,
     read_header,
 )
-from dh_grader.grading.reading.several_answers import FoundAnswer, read_once
 from dh_grader.grading.reading.table_cells import arranged_row, first_number, row_entries
 from dh_grader.grading.report import Finding, Verdict, reading_error, reading_note
 from dh_grader.kinematics import COLUMNS, THETA, CellIndex, D
