@@ -40,8 +40,9 @@ from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, N
 from dh_grader.courses import issue_links
 from dh_grader.courses.assignments import add_assignment
 from dh_grader.grading import Report, Submission, grade
-from dh_grader.store import AttemptStore, override
+from dh_grader.store import AttemptStore
 from dh_grader.store.database import in_transaction
+from dh_grader.store.results import override
 from dh_grader.store.tables import (
     assignments,
     attempts,

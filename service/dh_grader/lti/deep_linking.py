@@ -10,10 +10,10 @@ import jwt
 from sqlalchemy import Connection, update
 
 from dh_grader.access import Secret, settle
+from dh_grader.lti import LtiError, LtiRole, Registration, unusable
 from dh_grader.lti.fetching import ensure_key, signing_key
 from dh_grader.lti.handed_files import KIND
 from dh_grader.lti.launch import LTI, LaunchMessage, LinkingTicket, check_deployment, known_context
-from dh_grader.lti.registrations import LtiError, LtiRole, Registration, unusable
 from dh_grader.store import tables
 
 LINKING: Final = "https://purl.imsglobal.org/spec/lti-dl/claim/"

@@ -40,7 +40,7 @@ from sqlalchemy import Connection, Row, delete, insert, select
 
 from dh_grader import VERSION
 from dh_grader.access import Secret
-from dh_grader.lti.registrations import LOCAL_HOSTS, LtiError, Registration, origin_of, unusable
+from dh_grader.lti import LOCAL_HOSTS, LtiError, Registration, origin_of, unusable
 from dh_grader.store.tables import own_keys
 from dh_grader.translations import say
 

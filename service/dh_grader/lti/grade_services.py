@@ -17,6 +17,7 @@ import jwt
 from sqlalchemy import Connection, Engine, select, update
 
 from dh_grader.access import Secret
+from dh_grader.lti import LtiError, Registration, origin_of, short_value, unusable
 from dh_grader.lti.fetching import (
     FetchError,
     SigningKey,
@@ -26,7 +27,6 @@ from dh_grader.lti.fetching import (
     ensure_key,
     signing_key,
 )
-from dh_grader.lti.registrations import LtiError, Registration, origin_of, short_value, unusable
 from dh_grader.regex import regex
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import in_transaction, queue_scores

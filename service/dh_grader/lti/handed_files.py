@@ -25,6 +25,14 @@ from dh_grader.catalogue.schema_fields import least
 from dh_grader.formats.graded import GradedSubmission
 from dh_grader.formats.local_grading import GradingTerms, graded
 from dh_grader.formats.texts import points, points_in_words
+from dh_grader.lti import (
+    NOTICES_PATH,
+    LtiError,
+    Registration,
+    deployments_of,
+    registration,
+    unusable,
+)
 from dh_grader.lti.fetching import TIMEOUT, FetchError, TooLargeError, answer, content
 from dh_grader.lti.grade_services import (
     AccessTokens,
@@ -45,14 +53,6 @@ from dh_grader.lti.launch import (
     signed_claims,
 )
 from dh_grader.lti.outbox import utc_now
-from dh_grader.lti.registrations import (
-    NOTICES_PATH,
-    LtiError,
-    Registration,
-    deployments_of,
-    registration,
-    unusable,
-)
 from dh_grader.regex import regex
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import in_transaction

@@ -15,11 +15,7 @@ from sqlalchemy import Connection, insert, select, update
 
 from dh_grader.courses import CourseError, zone_named
 from dh_grader.formats.texts import visible
-from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, usable_keys
-from dh_grader.lti.grade_services import SEND, ScoreError, fetched_token
-from dh_grader.lti.handed_files import NOTICES, READ, REPORT
-from dh_grader.lti.launch import DEEP_LINKING, digest
-from dh_grader.lti.registrations import (
+from dh_grader.lti import (
     KEYS_PATH,
     LAUNCH_PATH,
     LOCAL_HOSTS,
@@ -33,6 +29,10 @@ from dh_grader.lti.registrations import (
     registration,
     unusable,
 )
+from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, usable_keys
+from dh_grader.lti.grade_services import SEND, ScoreError, fetched_token
+from dh_grader.lti.handed_files import NOTICES, READ, REPORT
+from dh_grader.lti.launch import DEEP_LINKING, digest
 from dh_grader.store.tables import invitations, registrations
 from dh_grader.translations import joined, say
 

@@ -25,8 +25,7 @@ from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import CourseAssignment, NewAssignment, NewCourse
 from dh_grader.courses import CourseError
 from dh_grader.courses.assignments import add_assignment, assignment_of, pin_choices
-from dh_grader.lti.grade_services import ensure_line_item, try_refused_again
-from dh_grader.lti.registrations import (
+from dh_grader.lti import (
     LtiError,
     LtiRole,
     Registration,
@@ -35,6 +34,7 @@ from dh_grader.lti.registrations import (
     role_of,
     same_place,
 )
+from dh_grader.lti.grade_services import ensure_line_item, try_refused_again
 from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.tables import assignments, course_learners, launches

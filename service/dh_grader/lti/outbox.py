@@ -34,6 +34,7 @@ from dh_grader.contract.courses import PlatformScore, SendAgainRequest
 from dh_grader.courses import place_of
 from dh_grader.courses.assignments import assignment_of
 from dh_grader.courses.gradebook import SHARE
+from dh_grader.lti import Registration, registration
 from dh_grader.lti.grade_services import (
     AccessTokens,
     Column,
@@ -46,7 +47,6 @@ from dh_grader.lti.grade_services import (
     available_key,
     told,
 )
-from dh_grader.lti.registrations import Registration, registration
 from dh_grader.store.database import FORGOTTEN, QUEUED, Priority, in_transaction
 from dh_grader.store.tables import (
     assignments,

@@ -14,10 +14,7 @@ from sqlalchemy import Connection, Row, bindparam, delete, select, update
 from dh_grader.access import Secret
 from dh_grader.contract.courses import MOST_LEARNERS
 from dh_grader.formats.texts import visible
-from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, ensure_key, signing_key
-from dh_grader.lti.grade_services import ScoreError, fetched_token
-from dh_grader.lti.launch import pseudonym, pseudonymous_name
-from dh_grader.lti.registrations import (
+from dh_grader.lti import (
     LtiError,
     LtiRole,
     Registration,
@@ -26,6 +23,9 @@ from dh_grader.lti.registrations import (
     role_of,
     unusable,
 )
+from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, ensure_key, signing_key
+from dh_grader.lti.grade_services import ScoreError, fetched_token
+from dh_grader.lti.launch import pseudonym, pseudonymous_name
 from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.tables import course_learners

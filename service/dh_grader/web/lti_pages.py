@@ -19,6 +19,7 @@ from dh_grader.contract.courses import MOST_EXERCISES, CourseAssignment, NewAssi
 from dh_grader.courses import CourseError, moment, zone_named
 from dh_grader.courses.assignments import assignments_of
 from dh_grader.formats.documents import page_of
+from dh_grader.lti import LtiError, LtiRole, Registration
 from dh_grader.lti.deep_linking import NewLink
 from dh_grader.lti.fetching import PlatformThreads
 from dh_grader.lti.grade_services import ScoreError
@@ -39,7 +40,6 @@ from dh_grader.lti.launch import (
     pseudonym,
     use_login,
 )
-from dh_grader.lti.registrations import LtiError, LtiRole, Registration
 from dh_grader.store import AttemptStore
 from dh_grader.translations import Language, joined, say
 from dh_grader.web.pages import FORM_HEADERS, Assets, kinds_of, page, policy, words_of

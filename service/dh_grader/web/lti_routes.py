@@ -31,6 +31,19 @@ from dh_grader.api.permissions import is_same_origin
 from dh_grader.api.recording import read, write
 from dh_grader.contract.courses import CourseName, NewAssignment
 from dh_grader.courses import CourseError
+from dh_grader.lti import (
+    LtiError,
+    LtiRole,
+    Registration,
+    RegistrationError,
+    all_registrations,
+    deployments_of,
+    find_registration,
+    note_refusal,
+    origin_of,
+    registration,
+    unusable,
+)
 from dh_grader.lti.deep_linking import NewLink, signed_response
 from dh_grader.lti.fetching import PlatformKeys, SigningKey, ensure_key, own_key_list, signing_key
 from dh_grader.lti.grade_services import ScoreError
@@ -54,19 +67,6 @@ from dh_grader.lti.launch import (
     new_assignment_id,
     pseudonym,
     ticket_in,
-)
-from dh_grader.lti.registrations import (
-    LtiError,
-    LtiRole,
-    Registration,
-    RegistrationError,
-    all_registrations,
-    deployments_of,
-    find_registration,
-    note_refusal,
-    origin_of,
-    registration,
-    unusable,
 )
 from dh_grader.store import AttemptStore
 from dh_grader.store.tables import contexts, resource_links
@@ -708,8 +708,8 @@ class _Launching:
 
     async def begin(self, given: Mapping[str, str]) -> "NewLogin":
         """Store a new login and return it. Raises LtiError."""
+        from dh_grader.lti import find_registration
         from dh_grader.lti.launch import begin_login, login_fields
-        from dh_grader.lti.registrations import find_registration
 
         fields = login_fields(given)
         known = await read(
@@ -720,8 +720,8 @@ class _Launching:
 
     async def login_of(self, fields: Mapping[str, str]) -> "tuple[Registration, Login]":
         """Return the registration and the login that a message belongs to. Raises LtiError."""
+        from dh_grader.lti import LtiError, RegistrationError, registration
         from dh_grader.lti.launch import login_of
-        from dh_grader.lti.registrations import LtiError, RegistrationError, registration
 
         now = datetime.now(UTC)
         begun = await read(self._store, lambda it: login_of(it, fields.get("state", ""), now))
@@ -736,8 +736,8 @@ class _Launching:
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
         """Return the message in a signed token. Raises LtiError if the token is refused."""
         # The reason is noted before.
+        from dh_grader.lti import LtiError, note_refusal
         from dh_grader.lti.launch import key_id_of, message_in
-        from dh_grader.lti.registrations import LtiError, note_refusal
 
         now = datetime.now(UTC)
         try:
@@ -756,7 +756,7 @@ class _Launching:
         Raises LtiError if no page can help.
         """
         # That is, if the page already has its own window and the platform offers no storage.
-        from dh_grader.lti.registrations import LtiError
+        from dh_grader.lti import LtiError
 
         is_window = request.headers.get("sec-fetch-dest") == "document"
         if is_window and begun.storage_target is None:
@@ -781,7 +781,7 @@ class _Launching:
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
         """Return the response of ``work``, or a page about an LtiError."""
-        from dh_grader.lti.registrations import LtiError
+        from dh_grader.lti import LtiError
 
         try:
             return await work()
@@ -790,7 +790,7 @@ class _Launching:
 
     async def _refused(self, error: "LtiError", language: Language) -> Response:
         """Return an error page for the student, with the reference number of the log line."""
-        from dh_grader.lti.registrations import all_registrations
+        from dh_grader.lti import all_registrations
 
         context = current_request()
         reference = "" if context is None else context.id
@@ -812,7 +812,7 @@ def is_bound(
     # The browser sends its secret in a cookie, or in a form with the value from the platform's
     # storage. The form is accepted only from our own page, because an attacker could begin a login
     # and let another browser post the form.
-    from dh_grader.lti.registrations import LtiError
+    from dh_grader.lti import LtiError
 
     cookie = request.cookies.get(cookie_name(known, fields["state"]))
     stored = fields.get("browser")

@@ -12,7 +12,7 @@ from typing import Any
 
 import pytest
 from dh_grader.catalogue import Exercise, FeedbackLevel
-from dh_grader.store import AttemptStore, forget, override
+from dh_grader.store import AttemptStore
 from dh_grader.store.database import (
     LARGE_LOG,
     LogCutter,
@@ -21,6 +21,7 @@ from dh_grader.store.database import (
     overwrite_deleted,
 )
 from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import forget, override
 from sqlalchemy import Engine
 
 from tests.attempts.erasure import files_with, reader
