@@ -28,7 +28,7 @@ from dh_grader.catalogue.robot import TRIALS, Reference, trial_values
 from dh_grader.catalogue.schema import ExpectSpec
 from dh_grader.expressions import LIMITS, AngleUnit, Expression
 from dh_grader.expressions.parser import in_degrees
-from dh_grader.expressions.tree import Node, Number, Unit, children
+from dh_grader.expressions.vocabulary import Node, Number, Unit, children
 from dh_grader.grading import FeedbackLevel, PartReport, Submission, Verdict, grade
 from dh_grader.grading.kinds.tables import slip_of
 from dh_grader.grading.misconception import Example, all_records

@@ -849,7 +849,7 @@ class GraderClient(_Methods):
         key: str | None = None,
         *,
         timeout: float = 60.0,
-        retries: Retries = Retries(),  # noqa: B008 -- frozen
+        retries: Retries = Retries(),
         transport: httpx.BaseTransport | None = None,
         language: str | None = None,
     ) -> None:
@@ -919,7 +919,7 @@ class AsyncGraderClient(_Methods):
         key: str | None = None,
         *,
         timeout: float = 60.0,
-        retries: Retries = Retries(),  # noqa: B008 -- frozen
+        retries: Retries = Retries(),
         transport: httpx.AsyncBaseTransport | None = None,
         language: str | None = None,
     ) -> None:

@@ -22,8 +22,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from dh_grader.expressions import Expression, ExpressionError, Symbol, Vocabulary, characters, read
 from dh_grader.expressions.printing import row, scripted, to_text
-from dh_grader.expressions.tree import Binary, Node
-from dh_grader.expressions.vocabulary import RESERVED
+from dh_grader.expressions.vocabulary import RESERVED, Binary, Node
 from dh_grader.pasting import GridError, read_grid
 from dh_grader.regex import regex
 

@@ -45,7 +45,7 @@ from dh_grader.courses.roll import issue_links, revoke_links
 from dh_grader.server import installed_app
 from dh_grader.settings import Settings
 from dh_grader.store.database import in_transaction, open_database
-from dh_grader.store.learner_data import forget
+from dh_grader.store.results import forget
 from dh_grader.translations import ENGLISH
 from dh_grader.web.courses import CourseState, assignment_page
 from dh_grader.web.pages import load_assets

@@ -85,7 +85,7 @@ from dh_grader.figures.table_figure import (
     table_frames,
     table_to_draw,
 )
-from dh_grader.grading.reading.preview import CellPreview, preview_entries, preview_pasted
+from dh_grader.grading.reading import CellPreview, preview_entries, preview_pasted
 from dh_grader.grading.report import Finding, UnreadableAnswerError, WorkBudget
 from dh_grader.kinematics import Matrices, Numbers
 from dh_grader.slices import checkpoint

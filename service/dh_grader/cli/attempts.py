@@ -44,21 +44,19 @@ from dh_grader.store.database import (
     unfit,
     unmigrated_database,
 )
-from dh_grader.store.learner_data import (
+from dh_grader.store.regrades import BATCH, RegradedAttempt, Regrading
+from dh_grader.store.results import (
     LearnerData,
+    counting_rules,
     data_of,
     delete_older,
     everything_of,
+    exercise_statistics,
     forget,
+    graded_attempts,
     is_older,
     months_before,
     override,
-)
-from dh_grader.store.regrades import BATCH, RegradedAttempt, Regrading
-from dh_grader.store.results import (
-    counting_rules,
-    exercise_statistics,
-    graded_attempts,
     page,
     written,
 )

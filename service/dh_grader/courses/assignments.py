@@ -54,7 +54,7 @@ from dh_grader.courses.roll import people
 from dh_grader.store import points_after
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import Priority, queue_scores
-from dh_grader.store.learner_data import delete_attempts
+from dh_grader.store.results import delete_attempts
 from dh_grader.store.tables import (
     assignments,
     attempts,

@@ -22,7 +22,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,

@@ -8,14 +8,20 @@ from typing import Final
 
 from dh_grader.expressions.characters import CLOSE, MARKER, OPEN
 from dh_grader.expressions.errors import Note, Span, UnreadableError
-from dh_grader.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode
 from dh_grader.expressions.vocabulary import (
     IN_DEGREES,
     MODULES,
     TRIGONOMETRIC,
     UNIT_FUNCTIONS,
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
     Operand,
+    Pi,
     Symbol,
+    SymbolNode,
 )
 from dh_grader.expressions.words import (
     END,

@@ -33,7 +33,12 @@ from typing import Final, NamedTuple
 from dh_grader.expressions import characters
 from dh_grader.expressions.errors import LIMITS, Note, Span, UnreadableError, shortened
 from dh_grader.expressions.lexer import on_call, on_product, on_shorthand, on_sum
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
+    ARITY,
+    BUILT,
+    INVERSE,
+    OF_DEGREES,
+    TRIGONOMETRIC,
     Binary,
     Call,
     Negation,
@@ -41,19 +46,12 @@ from dh_grader.expressions.tree import (
     Number,
     Operator,
     Pi,
+    Symbol,
     SymbolNode,
     Unit,
     UnitName,
-    children,
-)
-from dh_grader.expressions.vocabulary import (
-    ARITY,
-    BUILT,
-    INVERSE,
-    OF_DEGREES,
-    TRIGONOMETRIC,
-    Symbol,
     Vocabulary,
+    children,
 )
 from dh_grader.expressions.words import END, Token, split
 from dh_grader.regex import regex

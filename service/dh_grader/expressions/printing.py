@@ -11,7 +11,7 @@ from html import escape
 from typing import Final, NamedTuple
 
 from dh_grader.expressions import characters
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,
@@ -19,11 +19,13 @@ from dh_grader.expressions.tree import (
     Number,
     Operator,
     Pi,
+    Symbol,
     SymbolNode,
     Unit,
+    Vocabulary,
     children,
+    normal_form,
 )
-from dh_grader.expressions.vocabulary import Symbol, Vocabulary, normal_form
 from dh_grader.regex import regex
 
 _LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")

@@ -28,17 +28,19 @@ from dh_grader.expressions.parser import (
 )
 from dh_grader.expressions.printing import TypedFormula, to_latex, to_mathml, to_text
 from dh_grader.expressions.repairs import Failure, explain
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
+    Kind,
     Negation,
     Node,
     Number,
+    Symbol,
     SymbolNode,
     Unit,
+    Vocabulary,
     children,
 )
-from dh_grader.expressions.vocabulary import Kind, Symbol, Vocabulary
 from dh_grader.expressions.words import END, Token
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint

@@ -15,7 +15,6 @@ from dh_grader.expressions import characters
 from dh_grader.expressions import vocabulary as functions
 from dh_grader.expressions.characters import BREAKS, CLOSE, OPEN, Characters
 from dh_grader.expressions.errors import LIMITS, Note, Span, UnreadableError, quoted
-from dh_grader.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
 from dh_grader.expressions.vocabulary import (
     CAPITALS,
     CONSTANTS,
@@ -23,9 +22,15 @@ from dh_grader.expressions.vocabulary import (
     OF_DEGREES,
     PI_CAPITALS,
     RESERVED,
+    Binary,
+    Call,
+    Node,
+    Number,
     Operand,
+    Pi,
     PieceKind,
     Symbol,
+    SymbolNode,
     Vocabulary,
 )
 from dh_grader.regex import regex

@@ -26,8 +26,8 @@ from dh_grader.formats.worksheets import is_worksheet
 from dh_grader.grading import Place, Verdict
 from dh_grader.regex import regex
 from dh_grader.statistics import ClassStatistics, CountedSlip, ScoreBin, Share, columns
-from dh_grader.submissions.documents import UNREADABLE_ARCHIVE
 from dh_grader.submissions.files import MAX_START, ClassEntry
+from dh_grader.submissions.office_files import UNREADABLE_ARCHIVE
 from dh_grader.translations import Language, say, say_count
 
 # Recognise what this program has written, and the worksheets of platforms, by their contents.

@@ -8,7 +8,7 @@ from typing import Final
 from dh_grader import VERSION
 from dh_grader.catalogue import Exercise, FeedbackLevel, PartSpec
 from dh_grader.expressions import AngleUnit
-from dh_grader.grading.frames.rows import OWN_FRAME_CHOICE
+from dh_grader.grading.frames import OWN_FRAME_CHOICE
 from dh_grader.grading.judging import Grading, Judged, StudentChain
 from dh_grader.grading.kinds import KINDS
 from dh_grader.grading.marks import (

@@ -14,7 +14,7 @@ from dh_grader.catalogue.part import PosePartSpec
 from dh_grader.catalogue.robot import Robot, at_home
 from dh_grader.expressions import Expression, Kind, Vocabulary
 from dh_grader.expressions.printing import Habits, Spelling, habits_of, spelling_of
-from dh_grader.grading.frames.rows import tool_pose
+from dh_grader.grading.frames import tool_pose
 from dh_grader.grading.misconception import number_formula
 from dh_grader.grading.numbers import (
     SAME_CONTENT,

@@ -14,6 +14,15 @@ from numpy.typing import NDArray
 from dh_grader.catalogue import Exercise, Joint, ReferenceTable
 from dh_grader.catalogue.kinds import DhTableSpec
 from dh_grader.expressions import Expression
+from dh_grader.grading.frames import (
+    FrameFreedom,
+    Role,
+    freedom_of,
+    joint_variables,
+    pair_in_order,
+    reference_values,
+    remarks_on,
+)
 from dh_grader.grading.frames.nearest import (
     NearestTable,
     frames_from_reference,
@@ -27,15 +36,6 @@ from dh_grader.grading.frames.roles import (
     roles_in,
     usual_rows,
     without_idle_rows,
-)
-from dh_grader.grading.frames.rows import (
-    FrameFreedom,
-    Role,
-    freedom_of,
-    joint_variables,
-    pair_in_order,
-    reference_values,
-    remarks_on,
 )
 from dh_grader.grading.judging import Content, Grading, Judged, KnownCells, known_cells, of_rows
 from dh_grader.grading.marks import least_lost, steps_lost

@@ -32,7 +32,7 @@ from numpy.typing import ArrayLike, NDArray
 from dh_grader.catalogue import Exercise, Joint
 from dh_grader.expressions import Expression
 from dh_grader.expressions.printing import PLAIN, Spelling, to_latex, to_text
-from dh_grader.expressions.tree import Binary, Negation, Node, Number, Pi, SymbolNode, Unit
+from dh_grader.expressions.vocabulary import Binary, Negation, Node, Number, Pi, SymbolNode, Unit
 from dh_grader.grading.numbers import (
     CONSTANT,
     HALF,

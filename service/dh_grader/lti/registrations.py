@@ -1,4 +1,4 @@
-"""Database functions for the registrations of platforms."""
+"""Registered platforms (learning management systems), roles, and what is wrong with them."""
 
 import re
 import secrets

@@ -31,6 +31,7 @@ from dh_grader.pasting.matrices import (
     MATLAB_ROWS,
     WORD,
     identity,
+    list_lines,
 )
 from dh_grader.pasting.named_columns import (
     describes_columns,
@@ -42,7 +43,6 @@ from dh_grader.pasting.program import (
     MAKERS,
     TAIL,
     RobotTable,
-    lines_of,
     session_outputs,
     with_own_symbols,
     without_function,
@@ -403,4 +403,4 @@ def _is_matrix(group: SourceText) -> bool:
     maker = group.text[: len(group.text) - len(content.text) - 2].strip().rpartition(".")[2]
     if maker:
         return maker in MAKERS
-    return len(split(content, ";")) > 1 or lines_of(content) is not None
+    return len(split(content, ";")) > 1 or list_lines(content) is not None

@@ -219,7 +219,7 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
 
 def _delete_old(store: "AttemptStore", months: int) -> None:
     from dh_grader.store.database import in_transaction
-    from dh_grader.store.learner_data import delete_older, months_before
+    from dh_grader.store.results import delete_older, months_before
 
     before = months_before(datetime.now(UTC), months)
     count = in_transaction(store.engine, lambda connection: delete_older(connection, before))

@@ -15,7 +15,7 @@ from dh_grader.catalogue.robot import FormulaRow
 from dh_grader.catalogue.schema_fields import FrameName
 from dh_grader.expressions import Expression, ExpressionError, Symbol, Vocabulary, read
 from dh_grader.expressions.printing import to_text
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,

@@ -27,7 +27,7 @@ from dh_grader.catalogue.kinds import (
 from dh_grader.catalogue.robot import EXACT, ROW_QUANTITIES, TRIALS, FormulaRow, trial_values
 from dh_grader.expressions import Expression, Kind, read
 from dh_grader.expressions.printing import to_latex, to_text
-from dh_grader.expressions.tree import Node
+from dh_grader.expressions.vocabulary import Node
 from dh_grader.grading.kinds.tables import slip_of
 from dh_grader.kinematics import COLUMNS, Convention, dh1_residual, dh2_residual
 from dh_grader.solutions.algebra import (

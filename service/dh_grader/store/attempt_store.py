@@ -38,13 +38,16 @@ from dh_grader.store.database import (
     reason,
     safe_url,
 )
-from dh_grader.store.learner_data import LearnerData, data_of, forget, override
 from dh_grader.store.results import (
     AttemptHistory,
     Counting,
+    LearnerData,
+    data_of,
     exercise_statistics,
+    forget,
     graded_attempts,
     history,
+    override,
     page,
     written,
 )

@@ -18,7 +18,7 @@ from dh_grader.lti.fetching import published_keys
 from dh_grader.lti.handed_files import FileReporting, missing_counts, missing_reports
 from dh_grader.lti.outbox import BackgroundSending
 from dh_grader.lti.registrations import registration, remove_registration
-from dh_grader.store.learner_data import forget
+from dh_grader.store.results import forget
 from dh_grader.store.tables import contexts, handed_files
 from dh_grader.translations import ENGLISH
 from sqlalchemy import select

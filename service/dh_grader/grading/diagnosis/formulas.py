@@ -12,7 +12,7 @@ import numpy as np
 from dh_grader.expressions import Kind, Symbol
 from dh_grader.expressions.evaluate import Known, compile_tree, known_values, value_at
 from dh_grader.expressions.printing import to_text
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,

@@ -8,7 +8,7 @@ from itertools import chain, combinations, permutations, product
 import numpy as np
 
 from dh_grader.expressions.printing import PLAIN
-from dh_grader.expressions.tree import Call, Node
+from dh_grader.expressions.vocabulary import Call, Node
 from dh_grader.grading.diagnosis.formulas import WrongEntry, nodes
 from dh_grader.grading.diagnosis.matrices import ENTRY_WORK, diagnose
 from dh_grader.grading.diagnosis.motions import Chain, GivenMotion, named, other_poses

@@ -8,7 +8,7 @@ import numpy as np
 
 from dh_grader.expressions import Symbol
 from dh_grader.expressions.parser import in_degrees
-from dh_grader.expressions.tree import Node, Number, Unit, children
+from dh_grader.expressions.vocabulary import Node, Number, Unit, children
 from dh_grader.grading.diagnosis import formulas as rewriting
 from dh_grader.grading.diagnosis.formulas import Rewritten, WrongEntry
 from dh_grader.grading.diagnosis.motions import (

@@ -17,8 +17,7 @@ from dh_grader.expressions import Expression, Symbol, Vocabulary
 from dh_grader.expressions.printing import Spelling
 from dh_grader.grading.diagnosis.formulas import quantity_of
 from dh_grader.grading.diagnosis.whole_tables import exchanged_columns
-from dh_grader.grading.frames.roles import rows_of_mechanism, usual_rows
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.frames import (
     OWN_FRAME_CHOICE,
     FrameFreedom,
     Role,
@@ -26,6 +25,7 @@ from dh_grader.grading.frames.rows import (
     reference_values,
     written_table,
 )
+from dh_grader.grading.frames.roles import rows_of_mechanism, usual_rows
 from dh_grader.grading.judging import Grading, Judged
 from dh_grader.grading.judging_table import (
     EXTRA_ROW,

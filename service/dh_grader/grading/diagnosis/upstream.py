@@ -41,7 +41,7 @@ from dh_grader.grading.diagnosis.whole_tables import (
     changed_values,
     slips_of_rows,
 )
-from dh_grader.grading.frames.rows import reference_values, variable_column
+from dh_grader.grading.frames import reference_values, variable_column
 from dh_grader.grading.judging import Grading, as_entries
 from dh_grader.grading.misconception import (
     UNEXPLAINED,

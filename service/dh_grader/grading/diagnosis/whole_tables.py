@@ -15,8 +15,7 @@ from dh_grader.catalogue import Joint
 from dh_grader.catalogue.kinds import DhTableSpec
 from dh_grader.expressions import Symbol
 from dh_grader.expressions.evaluate import SymbolValues
-from dh_grader.grading.frames.nearest import frames_from_reference, in_convention
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.frames import (
     RepairedTable,
     Rereadable,
     Role,
@@ -26,6 +25,7 @@ from dh_grader.grading.frames.rows import (
     valid_tables,
     written_table,
 )
+from dh_grader.grading.frames.nearest import frames_from_reference, in_convention
 from dh_grader.grading.judging import Grading
 from dh_grader.grading.judging_table import Judgement, departures_of, judged_by_intended
 from dh_grader.grading.misconception import (

@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.frames import (
     FrameFreedom,
     Mechanism,
     Rereadable,

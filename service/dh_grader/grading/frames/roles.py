@@ -13,8 +13,7 @@ from numpy.typing import NDArray
 
 from dh_grader.catalogue import Joint
 from dh_grader.catalogue.kinds import DhTableSpec
-from dh_grader.grading.frames.nearest import NearestTable, frames_from_reference, nearest_for_roles
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.frames import (
     FrameFreedom,
     Role,
     freedom_of,
@@ -30,6 +29,7 @@ from dh_grader.grading.frames.rows import (
     tool_pose,
     with_exact_angles,
 )
+from dh_grader.grading.frames.nearest import NearestTable, frames_from_reference, nearest_for_roles
 from dh_grader.grading.judging import Grading
 from dh_grader.grading.numbers import (
     EXACT_VALUE,

@@ -26,8 +26,8 @@ from dh_grader.grading.diagnosis.screws_and_placements import (
     explain_screws,
 )
 from dh_grader.grading.diagnosis.upstream import explain_links, slipped_link
+from dh_grader.grading.frames import FrameFreedom, Role
 from dh_grader.grading.frames.roles import nearest_with_tool_row
-from dh_grader.grading.frames.rows import FrameFreedom, Role
 from dh_grader.grading.judging import (
     ComparedValues,
     Content,

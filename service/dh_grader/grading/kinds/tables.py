@@ -30,9 +30,9 @@ from dh_grader.grading.diagnosis.table_readings import (
     search_work,
 )
 from dh_grader.grading.diagnosis.whole_tables import explained
+from dh_grader.grading.frames import Rereadable
 from dh_grader.grading.frames.nearest import single_repairs
 from dh_grader.grading.frames.roles import roles_in
-from dh_grader.grading.frames.rows import Rereadable
 from dh_grader.grading.judging import (
     Content,
     Grading,

@@ -11,7 +11,7 @@ import numpy as np
 
 from dh_grader.expressions import Expression
 from dh_grader.expressions.errors import Span
-from dh_grader.expressions.tree import Binary, Node, Number
+from dh_grader.expressions.vocabulary import Binary, Node, Number
 from dh_grader.grading.numbers import EXACT_VALUE, SAME_FACTOR
 from dh_grader.grading.reading import headers as column_headers
 from dh_grader.grading.reading.entries import (
