@@ -36,44 +36,41 @@ PACKAGES: Final = (
 )  # fmt: skip
 # The same inside of grading. Why an answer is wrong is diagnosis; judging only finds that it is.
 GRADING: Final = (
-    "numbers", "report", "misconception", "reading", "grading", "marks", "follow_through",
-    "frames", "judging", "judging_table", "fair_points", "diagnosis", "kinds", "grade",
+    "report", "numbers", "misconception", "reading", "frames", "judging", "marks",
+    "frames.nearest", "frames.roles", "judging_table", "diagnosis", "kinds", "grade",
 )  # fmt: skip
 
 # Ceilings, which may only fall: a change that lowers a number lowers it here, too. Only a new
 # feature may raise the number of lines, by what its commit states.
-LINES: Final = 94_400
-FILES: Final = 206  # the goal is 175
+LINES: Final = 94_560
+FILES: Final = 202  # the goal is 175
 PARAMETERS_IN_GRADING: Final = 20  # functions of grading with more than five; the goal is none
 EXAMPLES_IN_RECORDS: Final = 345  # test data beside the misconceptions; the goal is none
 
 LONGEST, SHORTEST = 1000, 120
-TOO_LONG: Final = {
-    "submissions/documents.py": 1319,
-    "pasting/program.py": 1068,
-    "submissions/files.py": 1031,
-}
+TOO_LONG: Final = {"grading/diagnosis/whole_tables.py": 1006}
 # Files that are no face (`__init__.py`) and yet shorter, each with its reason.
 SHORT: Final = {
     "__main__.py": "an entry point",
     "app.py": "an entry point",
     "bundles/templates/prairielearn/server.py": "is copied into bundles",
-    "server/alive.py": "an entry point: the health check of the image",
-    "store/migrations/env.py": "an entry point of Alembic",
-    "web/check_process.py": "an entry point: a process of its own",
-    "cli/licences.py": "is imported by one command only, which prints texts of many packages",
-    "expressions/tree.py": "the vocabulary that the reader and the printers share",
+    "cli/licences.py": "an entry point: the licences of the packages in the image",
+    "cli/options.py": "loads the catalogue, without which the help and the version do",
     "notebook.py": "the face of the package for programs",
     "regex.py": "is below every package",
+    "server/alive.py": "an entry point: the health check of the image",
     "slices.py": "is below every package",
+    "solutions/solution.py": "is read without SymPy, by the client and the HTTP interface",
+    "store/migrations/env.py": "an entry point of Alembic",
+    "web/check_process.py": "an entry point: a process of its own",
 }
 # Databases exist at each of these revisions, so their files stay as they are.
 MIGRATIONS: Final = "store/migrations/versions"
 # A folder is made for five files or more. These have fewer, with their number.
 SMALL_FOLDERS: Final = {
-    "access": 1, "bundles/templates/prairielearn": 1, "contract": 3, "courses": 4,
-    "grading/frames": 4, "kinematics": 4, "solutions": 2, "store/migrations": 2,
-    "translations": 2, "variants": 3,
+    "access": 3, "bundles": 1, "bundles/templates/prairielearn": 1, "contract": 3, "courses": 4,
+    "grading/frames": 3, "importing": 4, "kinematics": 4, "store/migrations": 1,
+    "translations": 2, "variants": 4,
 }  # fmt: skip
 
 # What may be imported inside functions, because it takes long to load and most runs do without.
@@ -81,8 +78,14 @@ LAZY: Final = {
     "alembic": "migrations only",
     "dh_grader.bundles": "one command",
     "dh_grader.cli.remote_grading": "loads the client",
+    "dh_grader.courses.assignments": "drivers of databases",
+    "dh_grader.courses.gradebook": "drivers of databases",
+    "dh_grader.courses.roll": "drivers of databases",
     "dh_grader.client": "loads httpx, for runs with --server only",
+    "dh_grader.notebook": "the face of the package imports the grader at the first call",
     "dh_grader.solutions": "SymPy takes half a second; nothing that grades needs it",
+    "dh_grader.lti": "drivers of databases, and httpx",
+    "dh_grader.server.metrics": "loads prometheus_client",
     "dh_grader.store": "drivers of databases; a service without a database has none",
     "jinja2": "pages and reports in HTML",
     "latex2mathml": "statements of exercises",
@@ -96,23 +99,20 @@ LAZY: Final = {
     "striprtf": "hand-ins in .rtf",
     "sympy": "model solutions",
     "xlrd": "hand-ins in .xls",
+    "dh_grader.web.lti_landing": "drivers of databases",
+    "dh_grader.web.lti_routes": "drivers of databases",
     "xlsxwriter": "the gradebook as a workbook",
 }
 # The other imports inside functions, by file. The numbers may only fall.
 LATE: Final = {
-    "__init__.py": 1,
-    "api/application.py": 3,
-    "api/courses.py": 32,
-    "api/grading_gates.py": 4,
+    "api/courses.py": 12,
     "api/recording.py": 1,
     "cli/__init__.py": 7,
     "cli/attempts.py": 1,
     "cli/operate.py": 1,
-    "cli/remote.py": 2,
-    "server/__init__.py": 3,
+    "server/__init__.py": 2,
     "web/check_process.py": 1,
-    "web/courses.py": 17,
-    "web/lti_routes.py": 17,
+    "web/courses.py": 4,
     "web/tutor.py": 5,
     "web/tutor_checks.py": 4,
 }
@@ -181,15 +181,17 @@ def imports() -> Mapping[str, frozenset[str]]:
     } | {PACKAGE: frozenset()}
 
 
+HOUSES: Final = {PACKAGE: PACKAGES, f"{PACKAGE}.grading": GRADING}
+
+
 def room(module: str, house: str) -> str:
-    return module.removeprefix(f"{house}.").partition(".")[0]
+    """Return the package or file of a module, or the module itself if the order lists it."""
+    within = module.removeprefix(f"{house}.")
+    return within if within in HOUSES[house] else within.partition(".")[0]
 
 
 def rooms(house: str) -> set[str]:
     return {room(module, house) for module in trees() if module.startswith(f"{house}.")}
-
-
-HOUSES: Final = {PACKAGE: PACKAGES, f"{PACKAGE}.grading": GRADING}
 
 
 @pytest.mark.parametrize("house", HOUSES)

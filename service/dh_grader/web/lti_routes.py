@@ -711,8 +711,6 @@ class _Launching:
 
     async def begin(self, given: Mapping[str, str]) -> "NewLogin":
         """Store a new login and return it. Raises LtiError."""
-        from dh_grader.lti.registrations import find_registration
-
         fields = login_fields(given)
         known = await read(
             self._store, lambda it: find_registration(it, fields["iss"], fields.get("client_id"))
@@ -722,8 +720,6 @@ class _Launching:
 
     async def login_of(self, fields: Mapping[str, str]) -> "tuple[Registration, Login]":
         """Return the registration and the login that a message belongs to. Raises LtiError."""
-        from dh_grader.lti.registrations import LtiError, RegistrationError, registration
-
         now = datetime.now(UTC)
         begun = await read(self._store, lambda it: login_of(it, fields.get("state", ""), now))
         try:
@@ -737,9 +733,6 @@ class _Launching:
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
         """Return the message in a signed token. Raises LtiError if the token is refused."""
         # The reason is noted before.
-        from dh_grader.lti.launch import key_id_of
-        from dh_grader.lti.registrations import LtiError, note_refusal
-
         now = datetime.now(UTC)
         try:
             key = await self._platform_keys.key(known, key_id_of(token))
@@ -757,8 +750,6 @@ class _Launching:
         Raises LtiError if no page can help.
         """
         # That is, if the page already has its own window and the platform offers no storage.
-        from dh_grader.lti.registrations import LtiError
-
         is_window = request.headers.get("sec-fetch-dest") == "document"
         if is_window and begun.storage_target is None:
             raise LtiError("cookies-blocked")
@@ -782,8 +773,6 @@ class _Launching:
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
         """Return the response of ``work``, or a page about an LtiError."""
-        from dh_grader.lti.registrations import LtiError
-
         try:
             return await work()
         except LtiError as error:
@@ -791,8 +780,6 @@ class _Launching:
 
     async def _refused(self, error: "LtiError", language: Language) -> Response:
         """Return an error page for the student, with the reference number of the log line."""
-        from dh_grader.lti.registrations import all_registrations
-
         context = current_request()
         reference = "" if context is None else context.id
         _lti_routes_log.warning("LTI: refused (%s), reference %s: %s", error.name, reference, error)
@@ -813,8 +800,6 @@ def is_bound(
     # The browser sends its secret in a cookie, or in a form with the value from the platform's
     # storage. The form is accepted only from our own page, because an attacker could begin a login
     # and let another browser post the form.
-    from dh_grader.lti.registrations import LtiError
-
     cookie = request.cookies.get(cookie_name(known, fields["state"]))
     stored = fields.get("browser")
     if cookie is None and stored and not is_same_origin(request):
