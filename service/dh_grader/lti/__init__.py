@@ -1,4 +1,7 @@
-"""Registered platforms (learning management systems), roles, and what is wrong with them."""
+"""LTI 1.3: registered platforms, the roles of their users, and why a launch is refused.
+
+The other files fetch from platforms, check launches and send scores. HTTP is in ``web``.
+"""
 
 import re
 import secrets
@@ -19,9 +22,11 @@ from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.translations import Sentence, joined, say, template
 
-# Convert a user's roles in a launch to one LtiRole.
+# --- Registered platforms (learning management systems), roles, and what is wrong with them
 
 
+# --- Convert a user's roles in a launch to one LtiRole
+#
 # Roles are compared by their full URIs.
 
 
@@ -68,7 +73,7 @@ def role_of(roles: Collection[str], *, has_id: bool) -> LtiRole:
     return LtiRole.GUEST
 
 
-# The reasons why a launch is refused, in words for students and for operators.
+# --- The reasons why a launch is refused, in words for students and for operators
 
 
 # What the student can do.

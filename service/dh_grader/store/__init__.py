@@ -1,4 +1,7 @@
-"""The store of attempts that the HTTP routes use."""
+"""The store of attempts that the HTTP routes use: recorded, listed, regraded, forgotten.
+
+Grading works without it. The rules are in ``attempts.py``, the tables in ``tables.py``.
+"""
 
 import asyncio
 import tempfile
