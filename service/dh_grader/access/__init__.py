@@ -16,7 +16,7 @@ from zlib import crc32
 
 from dh_grader.translations import say
 
-# The caller of a request and its rights.
+# --- The caller of a request and its rights
 
 
 class Scope(StrEnum):
@@ -114,7 +114,7 @@ def _checksum(drawn: str) -> str:
     return "".join(digits)
 
 
-# Find the client of a request by its address, for scheduling and for limits.
+# --- Find the client of a request by its address, for scheduling and for limits
 
 
 def client_key(address: str) -> str:
@@ -132,7 +132,7 @@ def client_key(address: str) -> str:
     return str(ipaddress.IPv6Network((found, 64), strict=False))
 
 
-# The operations that need no API key.
+# --- The operations that need no API key
 
 
 UNTIL_KEYS: Final = "until-keys"
@@ -181,7 +181,7 @@ def open_access(text: str | None) -> OpenAccess:
     return OpenAccess(frozenset(map(Scope, scopes)) | {Scope.GRADE}, False, anywhere=True)
 
 
-# API keys, and the secret of an installation.
+# --- API keys, and the secret of an installation
 
 
 # The least number of characters of a secret; 64 hexadecimal digits are usual.

@@ -35,7 +35,7 @@ from dh_grader.store.database import in_transaction
 from dh_grader.store.tables import key_secrets, keys
 from dh_grader.translations import say
 
-# The API keys of the database, memoized for a few seconds.
+# --- The API keys of the database, memoized for a few seconds
 
 
 R = TypeVar("R")
@@ -210,7 +210,7 @@ class KeyRing:
             raise KeysUnreachableError from error
 
 
-# Look up keys in the database, many in one statement.
+# --- Look up keys in the database, many in one statement
 
 
 # The most keys in one statement.
@@ -284,7 +284,7 @@ class KeyLookups:
             self._waiting.clear()
 
 
-# Database functions for API keys.
+# --- Database functions for API keys
 
 
 def any_key(connection: Connection) -> bool:
@@ -384,7 +384,7 @@ def _key(row: Row[Any]) -> Key:
     return Key(**known)
 
 
-# Tokens of learners: JSON Web Tokens, signed with the secret of the installation.
+# --- Tokens of learners: JSON Web Tokens, signed with the secret of the installation
 #
 # A token names a key and is valid at most as long as the key. Tokens are not stored.
 
@@ -465,7 +465,7 @@ def _unexpected(*claims: str) -> str:
     return f"The token has unexpected claims: {', '.join(claims)}."
 
 
-# Sessions of tutors in a browser.
+# --- Sessions of tutors in a browser
 #
 # A session is a signed text that names a key. Sessions are not stored.
 

@@ -1,4 +1,5 @@
 """The HTTP interface: routes that read requests and send responses.
 
-The rules of what is sent are in the packages below: this one knows only HTTP.
+What an answer means is decided in other packages; this one knows only HTTP. ``application.py``
+puts the routes together, ``http.py`` has what all routes share.
 """

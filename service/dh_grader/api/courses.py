@@ -1,4 +1,7 @@
-"""Routes for tutors: list the scores sent to learning platforms, and send them again."""
+"""The routes of courses: for tutors who run them, and for learners who hand in.
+
+The rules of courses are in ``dh_grader.courses``, those of attempts in ``dh_grader.store``.
+"""
 
 from collections.abc import Collection
 from datetime import UTC, datetime
@@ -106,6 +109,9 @@ if TYPE_CHECKING:
     from dh_grader.store.attempt_store import AttemptStore
 
 
+# --- Routes for tutors: list the scores sent to learning platforms, and send them again
+
+
 def scores_routes(store: "AttemptStore | None") -> APIRouter:
     """Return the routes for scores at learning platforms."""
     router = APIRouter(prefix="/v1/courses/{course_id}/scores", tags=["courses"])
@@ -155,7 +161,7 @@ def scores_routes(store: "AttemptStore | None") -> APIRouter:
     return router
 
 
-# Routes for tutors: courses and their learners.
+# --- Routes for tutors: courses and their learners
 
 
 def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
@@ -277,7 +283,7 @@ def _new_learners(body: LearnersRequest) -> list[NewLearner]:
         raise course_problem(error) from error
 
 
-# The route for hints on recorded attempts.
+# --- The route for hints on recorded attempts
 #
 # A hint has several steps. The service records each step that a learner takes. A step may have a
 # price, which reduces the points of later attempts.
@@ -390,7 +396,7 @@ def _refused(name: str, detail: str) -> ProblemError:
     return ProblemError(HTTPStatus.FORBIDDEN, detail, name, say("The hint is not given"))
 
 
-# Routes for tutors: the personal links with which learners open their courses.
+# --- Routes for tutors: the personal links with which learners open their courses
 
 
 def links_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
@@ -447,7 +453,7 @@ def links_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     return router
 
 
-# The routes for learners: show assignments, hand in answers, and show solutions.
+# --- The routes for learners: show assignments, hand in answers, and show solutions
 
 
 def handing_in_routes(
@@ -617,7 +623,7 @@ def _learner(caller: Caller, named: str | None) -> str:
     return named
 
 
-# Routes for tutors: the gradebook, missing hand-ins, and a course as one learner sees it.
+# --- Routes for tutors: the gradebook, missing hand-ins, and a course as one learner sees it
 
 
 _CSV: Final[dict[str, Any]] = {"schema": {"type": "string"}}
@@ -707,7 +713,7 @@ def _file(course_id: str, ending: str) -> dict[str, str]:
     return {"Cache-Control": "no-store", "Content-Disposition": attachment}
 
 
-# Routes for tutors: delete courses and assignments, and remove learners.
+# --- Routes for tutors: delete courses and assignments, and remove learners
 
 
 def deletion_routes(store: "AttemptStore | None") -> APIRouter:
@@ -778,7 +784,7 @@ def deletion_routes(store: "AttemptStore | None") -> APIRouter:
     return router
 
 
-# Routes for tutors: assignments, and extensions (changed dates for single learners).
+# --- Routes for tutors: assignments, and extensions (changed dates for single learners)
 
 
 def assignments_routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:

@@ -1,4 +1,7 @@
-"""Check whether a learner's assignments allow practice."""
+"""What an assignment allows a learner: practice, a paid hint, a solution, an own variant.
+
+The routes that grade ask here, so they need no database if there are no courses.
+"""
 
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -25,6 +28,9 @@ from dh_grader.translations import say
 
 if TYPE_CHECKING:
     from dh_grader.store.attempt_store import AttemptStore
+
+
+# --- Check whether a learner's assignments allow practice
 
 
 class PracticeGate:
@@ -134,11 +140,10 @@ class PracticeGate:
         }
 
 
-# Find a learner's own variant of an exercise, for requests that name an assignment.
+# --- Find a learner's own variant of an exercise, for requests that name an assignment
 #
 # The query ``?course=…&assignment=…`` names the assignment; the token names the learner.
-
-
+#
 # The response has the id of the exercise, not of the variant.
 
 

@@ -1,4 +1,7 @@
-"""A compiled exercise: its vocabulary, its reference robot, and its parts."""
+"""A compiled exercise (vocabulary, robot, parts), and how it is compiled from a valid file.
+
+The models of the file are in ``schema.py`` and ``kinds.py``.
+"""
 
 import hashlib
 import json
@@ -45,6 +48,9 @@ from dh_grader.catalogue.varying import Vary
 from dh_grader.expressions import Expression, Kind, Symbol, Vocabulary
 from dh_grader.kinematics import COLUMNS, A, Convention, D
 from dh_grader.translations import ENGLISH, Language, Sentence, say, template, told
+
+# --- A compiled exercise: its vocabulary, its reference robot, and its parts
+
 
 _ANY_TIME: Final = AttemptsSpec()
 _UNTRANSLATED: Final = TranslationSpec()
@@ -189,7 +195,7 @@ def _translated_part(
     return part.model_copy(update=sentences | texts.model_dump(exclude_none=True))
 
 
-# --- Compile the validated content of a file into an exercise ---
+# --- Compile the validated content of a file into an exercise
 
 
 DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {

@@ -1,4 +1,4 @@
-"""`dh-grader lti`: the registered platforms, and our keys for signing messages to them."""
+"""`dh-grader lti`: registered platforms, how they join, our keys, and the scores of a course."""
 
 import json
 from collections.abc import Callable
@@ -40,7 +40,10 @@ from dh_grader.store.database import in_transaction
 from dh_grader.submissions.bodies import field_error
 from dh_grader.translations import joined, say
 
-# `dh-grader lti scores`: the scores of a course at its platform.
+# --- `dh-grader lti`: the registered platforms, and our keys for signing messages to them
+
+
+# --- `dh-grader lti scores`: the scores of a course at its platform
 
 
 def scores(
@@ -64,7 +67,7 @@ def scores(
         stdout().print("  ".join(map(visible, line)), soft_wrap=True)
 
 
-# `dh-grader lti invite`, `allow` and `canvas`: how platforms join.
+# --- `dh-grader lti invite`, `allow` and `canvas`: how platforms join
 
 
 Address = Annotated[

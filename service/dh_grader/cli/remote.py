@@ -1,4 +1,7 @@
-"""Use a server that grades instead of this program."""
+"""Let a server grade instead of this program.
+
+The client is loaded late: most runs have no server.
+"""
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager

@@ -22,7 +22,7 @@ from dh_grader.submissions.bodies import GradeRequest, UnknownExerciseError
 from dh_grader.submissions.files import HandedIn
 from dh_grader.translations import say
 
-# The journal of reports from a server, with which an interrupted run can continue.
+# --- The journal of reports from a server, with which an interrupted run can continue
 #
 # Each line is a JSON object with a report, and the digest of its submission and options.
 
@@ -111,7 +111,7 @@ def _places(path: Path) -> list[tuple[str, int]]:
     return found
 
 
-# Let a server grade submissions.
+# --- Let a server grade submissions
 
 
 # This module loads httpx, so import the module late.

@@ -20,7 +20,7 @@ from typer.core import TyperCommand
 
 from dh_grader.translations import ENGLISH, Language, Sentence, language_named, say, template, told
 
-# Handle SIGINT and SIGTERM so that no unfinished files and no processes are left.
+# --- Handle SIGINT and SIGTERM so that no unfinished files and no processes are left
 
 
 # The exit codes of a shell: 128 plus the number of the signal.
@@ -146,7 +146,7 @@ def give_up(message: str | Exception) -> NoReturn:
     raise SystemExit(UNUSABLE)
 
 
-# A progress bar for long runs on a terminal.
+# --- A progress bar for long runs on a terminal
 
 
 # With fewer submissions the bar would vanish before anybody could read it.
@@ -187,7 +187,7 @@ def progress(total: int) -> Iterator[Progress]:
         )
 
 
-# Translate the command line into the language of the user.
+# --- Translate the command line into the language of the user
 #
 # Help texts are English in the source; ``translate_help`` translates them when a command is loaded.
 

@@ -27,7 +27,7 @@ from dh_grader.formats.texts import visible
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# Dates in the time zone of a course.
+# --- Dates in the time zone of a course
 
 
 def zone_named(name: str) -> ZoneInfo:
@@ -91,7 +91,7 @@ def with_own_dates(assignment: CourseAssignment, extension: Extension) -> Extens
     return extension.model_copy(update={"due": due, "closes": closes})
 
 
-# The names of learners in lists for tutors, and their alphabetical order.
+# --- The names of learners in lists for tutors, and their alphabetical order
 
 
 def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, str]:
@@ -117,7 +117,7 @@ def _plain(text: str) -> str:
     return "".join(each for each in letters if not unicodedata.combining(each))
 
 
-# The errors of courses.
+# --- The errors of courses
 
 
 CourseFault = Literal[
@@ -162,7 +162,7 @@ def links_need_a_secret() -> CourseError:
     return CourseError("unusable", message)
 
 
-# Read a class list in CSV, such as an export of Moodle or Canvas.
+# --- Read a class list in CSV, such as an export of Moodle or Canvas
 
 
 # The headings of each field in small letters, the preferred one first, as English, German, Spanish,

@@ -1,4 +1,4 @@
-"""The gradebook of a course, and the learners who have not handed in."""
+"""The results of a course: the gradebook for tutors, and what one learner sees."""
 
 import io
 import json
@@ -56,6 +56,9 @@ from dh_grader.store.attempts import hints_of
 from dh_grader.store.results import LISTED
 from dh_grader.store.tables import assignments, attempts, course_learners, courses
 from dh_grader.translations import ENGLISH, Language
+
+# --- The gradebook of a course, and the learners who have not handed in
+
 
 # The points of an attempt that count, as a share of 1.
 SHARE = func.coalesce(attempts.c.awarded, attempts.c.points) / func.nullif(attempts.c.max_points, 0)
@@ -203,9 +206,8 @@ def _shares(
     )
 
 
-# The gradebook as a workbook (Office Open XML).
-
-
+# --- The gradebook as a workbook (Office Open XML)
+#
 # No text in the workbook becomes a formula.
 
 
@@ -284,7 +286,7 @@ def _head(sheet: Any, titles: list[str], bold: Any) -> None:
     sheet.freeze_panes(1, len(_PEOPLE))
 
 
-# --- What one learner sees of the courses ---
+# --- What one learner sees of the courses
 
 
 _log = logging.getLogger("uvicorn.error")

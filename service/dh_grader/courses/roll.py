@@ -113,7 +113,7 @@ def add_learners(connection: Connection, course_id: str, new: Iterable[NewLearne
     return len(known) - count
 
 
-# Personal links: each contains an API key for one learner.
+# --- Personal links: each contains an API key for one learner
 #
 # The key is computed from the secret of the installation. Only a hash of the key is stored.
 

@@ -1,4 +1,4 @@
-"""The functions and units that an expression may use, and their spellings."""
+"""The names that a formula may use (functions, units, symbols), and the tree that has them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -8,6 +8,9 @@ from typing import Final, Literal
 from dh_grader.expressions import characters
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- The functions and units that an expression may use, and their spellings
+
 
 PieceKind = Literal[
     "symbol", "pi", "constant", "function", "number", "unit", "shorthand", "invalid_shorthand"
@@ -97,7 +100,7 @@ REFUSED: Final = frozenset({
 RESERVED: Final = frozenset({*SPELLINGS, *UNITS, *PI})
 
 
-# The names that an expression may use.
+# --- The names that an expression may use
 
 
 Kind = Literal["angle", "length", "number"]
@@ -232,9 +235,8 @@ class Vocabulary:
         return f"Vocabulary({list(self.symbols)!r})"
 
 
-# --- The syntax tree, whose leaves are these names ---
-
-
+# --- The syntax tree, whose leaves are these names
+#
 # The classes are not frozen, because a frozen dataclass takes four times as long to construct.
 
 

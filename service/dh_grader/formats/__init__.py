@@ -1,6 +1,7 @@
-"""Report formats for people and programs.
+"""Report formats for people and programs: the table of all formats.
 
-``terminal``, ``documents`` and ``platforms`` have the formats, the other files what they share.
+``terminal.py`` has the report for a terminal, ``documents.py`` files to read, ``platforms.py``
+those that a platform takes.
 """
 
 from collections.abc import Mapping

@@ -274,7 +274,7 @@ _TEXT_MARK: Final = regex(
 TEXT: Final = ReportFormat(_text_pieces, _TEXT_MARK, is_stream=True)
 
 
-# A summary of a class in a few lines: how many passed, and the most frequent mistakes.
+# --- A summary of a class in a few lines: how many passed, and the most frequent mistakes
 
 
 _SLIPS: Final = 10
@@ -368,7 +368,7 @@ class ClassSummary:
             yield Text.assemble(f"{slip.count:>4,}  {sentence} ", (self._told(place), "dim"))
 
 
-# Tables of short texts with aligned columns, for a terminal.
+# --- Tables of short texts with aligned columns, for a terminal
 
 
 _GAP: Final = 2

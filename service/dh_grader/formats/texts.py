@@ -1,4 +1,4 @@
-"""Untrusted texts, and numbers, as short text that is safe to print."""
+"""The texts that formats share: safe short texts, CSV, HTML, Markdown, messages, results."""
 
 import base64
 import csv
@@ -117,7 +117,7 @@ def number(value: float) -> str:
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
-# Lines of comma-separated values (RFC 4180, UTF-8) that no spreadsheet reads as formulas.
+# --- Lines of comma-separated values (RFC 4180, UTF-8) that no spreadsheet reads as formulas
 
 
 # Some spreadsheets run a cell with such a beginning as a formula (OWASP, "CSV Injection"). Where a
@@ -146,7 +146,7 @@ def without_formulas(text: str) -> str:
     return _FORMULA.sub("'", visible(text))
 
 
-# HTML from Jinja2 templates, which are named by their path below ``service/``.
+# --- HTML from Jinja2 templates, which are named by their path below ``service/``
 #
 # Only HTML that the service itself made (``own_html``) is not escaped. Each language has its own
 # Jinja2 environment.
@@ -297,7 +297,7 @@ def _filled(text: str, language: Language, values: Mapping[str, object]) -> Mark
     return own_html(text) % {name: _finalize(language, each) for name, each in values.items()}
 
 
-# The messages of a report as text: their places, corrections and counterexamples.
+# --- The messages of a report as text: their places, corrections and counterexamples
 
 
 # The sign of each verdict.
@@ -513,7 +513,7 @@ def _counterexample(values: Mapping[str, float | str]) -> str:
     )
 
 
-# The results of a submission, part by part; platforms show each as a test.
+# --- The results of a submission, part by part; platforms show each as a test
 
 
 # Platforms limit a result: an annotation to 64 KB, a whole result to 1 MB.
@@ -635,7 +635,7 @@ def distinct_names() -> Callable[[str], str]:
     return distinct
 
 
-# Untrusted texts as GitHub's Markdown, which is also safe in similar kinds of Markdown.
+# --- Untrusted texts as GitHub's Markdown, which is also safe in similar kinds of Markdown
 
 
 # A character reference is plain text in every dialect; backslashes escape different characters in

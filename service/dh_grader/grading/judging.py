@@ -1,4 +1,7 @@
-"""Compare a list of lengths, angles and numbers with the expected list."""
+"""The part that is graded, its correct numbers, and the judgement of lists and matrices.
+
+Right or wrong by numbers only: messages are made in ``diagnosis``.
+"""
 
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -41,9 +44,8 @@ from dh_grader.grading.report import (
 )
 from dh_grader.kinematics import Matrices, Numbers, inverse
 
-# --- The part that is graded, and what its kind returns ---
-
-
+# --- The part that is graded, and what its kind returns
+#
 # Each kind is a file in kinds.
 
 
@@ -254,6 +256,9 @@ class AnswerKind:
     judge: Callable[[Any, Any, Grading], Judged]
 
 
+# --- Compare a list of lengths, angles and numbers with the expected list
+
+
 @dataclass(frozen=True, slots=True)
 class ComparedValues:
     """The n values of a list as read, and the expected values, ``(n, SAMPLES)`` each.
@@ -285,7 +290,7 @@ def number_corrections(expected: Numbers, grading: Grading) -> list[Correction |
     return [number_formula(each) if grading.corrects else None for each in expected]
 
 
-# Make report rows from entries and the results of their comparison.
+# --- Make report rows from entries and the results of their comparison
 
 
 _EXACT = int(Match.EXACT)
@@ -383,7 +388,7 @@ def _read(entry: Entry, grading: Grading) -> ReadEntry | None:
     return ReadEntry(entry.expression.text(), entry.expression.latex())
 
 
-# Compare a matrix with the expected matrix, entry by entry.
+# --- Compare a matrix with the expected matrix, entry by entry
 
 
 @dataclass(frozen=True, slots=True)
@@ -411,7 +416,7 @@ class ExpectedMatrix:
         return entry_matches(student.expressions, student.values, self.values, scale, samples)
 
 
-# Compute the correct answer to a part of an exercise in numbers.
+# --- Compute the correct answer to a part of an exercise in numbers
 
 
 def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
@@ -481,11 +486,10 @@ def as_entries(matrices: Matrices) -> Numbers:
     return np.moveaxis(matrices, -3, -1)
 
 
-# Find the content cells of a correct answer: the cells that need knowledge and earn points.
+# --- Find the content cells of a correct answer: the cells that need knowledge and earn points
 #
 # An answer with only zeros and joint variables is called lazy. A content cell is a cell in which
-# the
-# correct answer differs from the lazy one. ``known`` is a mask of the content cells.
+# the correct answer differs from the lazy one. ``known`` is a mask of the content cells.
 
 
 KnownCells = NDArray[np.bool_]

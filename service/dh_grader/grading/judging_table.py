@@ -1,4 +1,7 @@
-"""Replace numbers in a table, or empty cells."""
+"""Judge a submitted table cell by cell, in the convention that fits; bound its points.
+
+Right or wrong by numbers only: messages on single cells are made in ``diagnosis``.
+"""
 
 import math
 from collections.abc import Callable, Sequence
@@ -68,6 +71,8 @@ from dh_grader.grading.report import Finding, Severity, Verdict
 from dh_grader.kinematics import ALPHA, COLUMNS, A, Convention, Matrices, Numbers, Table
 from dh_grader.kinematics.frame_choice import NO_SUCH_CELL, ROW_COSTS, WRONG_CELL, departure
 from dh_grader.translations import Sentence, say, template
+
+# --- Replace numbers in a table, or empty cells
 
 
 def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
@@ -146,11 +151,10 @@ def _filled(
     return replace(answer, rows=rows, values=values)
 
 
-# Judge a submitted table cell by cell.
+# --- Judge a submitted table cell by cell
 #
 # The table is compared with the reference table. If the student chose the frames, it is compared
-# with
-# the nearest table that describes the robot (``own_frames``).
+# with the nearest table that describes the robot (``own_frames``).
 
 
 _ARE_ANGLES: Final = tuple(IS_ANGLE.tolist())
@@ -465,7 +469,7 @@ def _expressions(row: StudentRow | None) -> Sequence[Expression | None]:
     return [None] * len(COLUMNS) if row is None else row.expressions
 
 
-# The content cells of a table: the cells that need knowledge (see ``content``).
+# --- The content cells of a table: the cells that need knowledge (see ``content``)
 
 
 def table_content(
@@ -559,7 +563,7 @@ def _fewest(task: _Task) -> int:
     return int(np.count_nonzero(_differs_from_lazy(nearest.expected, joints, grading)))
 
 
-# Messages on missing rows, extra rows, and rows that are graded under a new row number.
+# --- Messages on missing rows, extra rows, and rows that are graded under a new row number
 
 
 _END_EFFECTOR: Final = template("row {row} with the end effector")
@@ -688,7 +692,7 @@ def extra_row(i: int) -> Finding:
     )
 
 
-# Choose the convention in which a submitted table is judged.
+# --- Choose the convention in which a submitted table is judged
 
 
 _TAKEN = register(
@@ -778,9 +782,8 @@ def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...
     return (_NOT_ASKED_FOR.finding(hint, severity=Severity.WARNING),)
 
 
-# --- Limit the points of a wrong table, so that an empty row never earns more than a wrong row ---
-
-
+# --- Limit the points of a wrong table, so that an empty row never earns more than a wrong row
+#
 # So a wrong table earns at least as much as the same table with one wrong row replaced by numbers
 # that are wrong in all frames, and as the table without the wrong rows after the rows of all joints
 # (there, empty rows are left out). A table with empty cells earns at most as much as the same table

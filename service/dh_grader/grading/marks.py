@@ -1,6 +1,6 @@
-"""The points of a part, from the verdicts on its cells.
+"""The points of a part from the verdicts on its cells, and marks for what follows.
 
-Points are counted in quarters or hundredths of a point. ``docs/marks.md`` explains the rules.
+Here points are rounded. What a message costs is not decided here.
 """
 
 import math
@@ -61,7 +61,12 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import say
 
-# The points of each cell of an answer, in quarters or hundredths of a point.
+# --- The points of a part, from the verdicts on its cells
+#
+# Points are counted in quarters or hundredths of a point. ``docs/marks.md`` explains the rules.
+
+
+# --- The points of each cell of an answer, in quarters or hundredths of a point
 #
 # Such a quarter or hundredth is called a step. ``docs/marks.md`` explains the rules.
 
@@ -536,9 +541,8 @@ def _without_points(verdict: Verdict, rows: Sequence[RowReport]) -> Verdict:
     return combined(of_cells - {Verdict.CORRECT})
 
 
-# --- Marks for what follows from an earlier answer ---
-
-
+# --- Marks for what follows from an earlier answer
+#
 # So if the answer to a part is wrong, it is also judged by the student's earlier answer instead of
 # the reference. The earlier answer must be good enough, so that a trivial table does not earn easy
 # points later.

@@ -1,4 +1,7 @@
-"""Make the text of an exercise file for a robot."""
+"""The text of an exercise file for a robot, and the robot as URDF or as a script.
+
+Rounded numbers become exact: 1.5708 becomes π/2.
+"""
 
 import json
 import math
@@ -35,9 +38,8 @@ from dh_grader.translations import (
     template,
 )
 
-# --- Undo the rounding in robot files and tables: 1.5708 becomes π/2 ---
-
-
+# --- Undo the rounding in robot files and tables: 1.5708 becomes π/2
+#
 # Numbers are snapped before any common normal is computed: two axes that should be parallel and are
 # 0.000004 rad apart have a common normal kilometres away.
 
@@ -128,7 +130,7 @@ def _vector(numbers: Sequence[float] | Numbers) -> str:
     return f"({', '.join(map(exact_text, numbers))})"
 
 
-# Write numbers into statements and tables of exercise files.
+# --- Write numbers into statements and tables of exercise files
 
 
 def number_text(value: float) -> str:
@@ -165,7 +167,7 @@ def angle_text(angle: float) -> str:
     return text if text == "0" else f"{text}deg"
 
 
-# Describe a robot in words: where each joint axis is, and which way it points.
+# --- Describe a robot in words: where each joint axis is, and which way it points
 #
 # The axes and the tool frame can be computed from these words alone.
 
@@ -441,7 +443,7 @@ def sum_text(letters: LetterSum, number: str) -> str:
     return ("-" if sign == "-" else "") + first + "".join(f" {s} {t}" for s, t in others)
 
 
-# Write a robot as a URDF file, or as a script for the Robotics Toolbox for Python.
+# --- Write a robot as a URDF file, or as a script for the Robotics Toolbox for Python
 
 
 _LIMIT = {"R": (-math.pi, math.pi), "P": (-1.0, 1.0)}

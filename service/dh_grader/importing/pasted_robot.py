@@ -1,4 +1,4 @@
-"""Read a pasted DH table as a robot: what the text says, and what its author must be asked."""
+"""A pasted DH table as a robot: what the text says, and what its author must be asked."""
 
 import math
 import re
@@ -30,9 +30,11 @@ from dh_grader.pasting import GridError
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, joined, listed, say
 
-# The rows of an imported DH table, and the robot that they describe.
+# --- Read a pasted DH table as a robot: what the text says, and what its author must be asked
 
 
+# --- The rows of an imported DH table, and the robot that they describe
+#
 # A table is a chain of factors X_0 Z_1 X_1 … Z_n X_n (see ``kinematics.chain``). Z and X are turned
 # over and joined here without solving any equation, so the poses stay the same.
 

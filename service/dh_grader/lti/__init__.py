@@ -1,4 +1,7 @@
-"""LTI 1.3: platforms that launch courses, and the threads in which this service asks them."""
+"""LTI 1.3: platforms that launch courses, and the threads in which this service asks them.
+
+The other files check launches, fetch from platforms and send scores. HTTP is in ``web``.
+"""
 
 import asyncio
 from collections.abc import Callable
@@ -6,7 +9,7 @@ from concurrent.futures import ThreadPoolExecutor
 from contextvars import copy_context
 from typing import Final, TypeVar
 
-# Threads that wait for platforms, so that no other work waits with them.
+# --- Threads that wait for platforms, so that no other work waits with them
 
 
 R = TypeVar("R")

@@ -1,4 +1,4 @@
-"""Fetch data from a platform safely, because the address comes from outside.
+"""Fetch from a platform safely, because the address comes from outside; keys of both sides.
 
 Only HTTPS and public addresses are allowed, and no redirect to another host. Every exchange ends
 after five seconds in all, however slowly the platform sends.
@@ -44,7 +44,7 @@ from dh_grader.lti.registrations import LOCAL_HOSTS, LtiError, Registration, ori
 from dh_grader.store.tables import own_keys
 from dh_grader.translations import say
 
-# The keys with which this service signs messages to platforms, and their rotation.
+# --- The keys with which this service signs messages to platforms, and their rotation
 
 
 # A new key is published for a day before it signs, because platforms memoize our keys.
@@ -472,7 +472,7 @@ def _look_up(host: str, found: "Future[list[str]]") -> None:
         found.set_exception(failure)
 
 
-# The public keys of platforms, memoized in this process.
+# --- The public keys of platforms, memoized in this process
 
 
 # How long keys are used without a look whether they are still there (seconds), and how long at

@@ -1,7 +1,4 @@
-"""The queue of scores to send; each score is leased to one process.
-
-If a process dies, its lease ends, and another process sends the score again.
-"""
+"""Scores on their way to platforms: the queue, the message, and the thread that sends."""
 
 import json
 import logging
@@ -58,7 +55,12 @@ from dh_grader.store.tables import (
 )
 from dh_grader.translations import ENGLISH, Language
 
-# Threads that send what is queued in the database.
+# --- The queue of scores to send; each score is leased to one process
+#
+# If a process dies, its lease ends, and another process sends the score again.
+
+
+# --- Threads that send what is queued in the database
 
 
 _sending_log = logging.getLogger(__name__)
@@ -125,7 +127,7 @@ class BackgroundSending:
             self._wake.wait(seconds)
 
 
-# Database functions: list a course's scores for tutors, and queue scores again.
+# --- Database functions: list a course's scores for tutors, and queue scores again
 
 
 def scores_of(
@@ -224,7 +226,7 @@ def _chosen(course: str, wanted: SendAgainRequest) -> ColumnElement[bool]:
     return and_(chosen)
 
 
-# Compute a learner's score in an assignment, and make the message that sends it to a platform.
+# --- Compute a learner's score in an assignment, and make the message that sends it to a platform
 
 
 _CANVAS: Final = "https://canvas.instructure.com/lti/submission"
@@ -539,9 +541,8 @@ def _is(line_item: int, learner: str) -> Any:
     return (scores.c.line_item == line_item) & (scores.c.learner == learner)
 
 
-# Send queued scores to platforms, one after the other.
-
-
+# --- Send queued scores to platforms, one after the other
+#
 # Several processes may send.
 
 

@@ -1,4 +1,4 @@
-"""Registered platforms (learning management systems), roles, and what is wrong with them."""
+"""Registered platforms, the roles of their users, and why a launch is refused."""
 
 import re
 import secrets
@@ -19,7 +19,7 @@ from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.translations import Sentence, joined, say, template
 
-# Convert a user's roles in a launch to one LtiRole.
+# --- Convert a user's roles in a launch to one LtiRole
 
 
 # Roles are compared by their full URIs.
@@ -68,7 +68,7 @@ def role_of(roles: Collection[str], *, has_id: bool) -> LtiRole:
     return LtiRole.GUEST
 
 
-# The reasons why a launch is refused, in words for students and for operators.
+# --- The reasons why a launch is refused, in words for students and for operators
 
 
 # What the student can do.

@@ -107,7 +107,7 @@ __all__ = [
 ]
 
 
-# All formats of grids, in the order in which they are tried.
+# --- All formats of grids, in the order in which they are tried
 
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
@@ -238,7 +238,7 @@ def _format_of(source: SourceText) -> GridFormat | None:
     return None
 
 
-# Several matrices in one pasted text, each with the name before it.
+# --- Several matrices in one pasted text, each with the name before it
 #
 # The text may be ``A1 = […]`` above ``A2 = […]``, a list of matrices, or LaTeX with several
 # environments.

@@ -1,7 +1,6 @@
-"""Remove sentences and code fences around a pasted table or matrix.
+"""What stands around a pasted table or matrix: sentences, code fences, assignments.
 
-A line with words but without a separator of cells is a sentence. A sentence that names a unit is an
-error, because the unit may apply to the table. So is a sentence that may correct the table.
+A sentence that names a unit or corrects the table is an error, because it may change it.
 """
 
 import re
@@ -17,6 +16,12 @@ from dh_grader.pasting.program import begins_as_matrix, text_around, without_rem
 from dh_grader.pasting.source import GridError, SourceText, joined, split_blanks
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- Remove sentences and code fences around a pasted table or matrix
+#
+# A line with words but without a separator of cells is a sentence. A sentence that names a unit is
+# an error, because the unit may apply to the table. So is a sentence that may correct the table.
+
 
 _QUOTED: Final = regex(r"^[ \t]{0,3}>(?!>)(?=[ \t|]) ?", re.MULTILINE)
 _FENCE: Final = regex(r"[ \t]*(?:```|~~~)[`~]{0,3}[ \t]*[\w+-]{0,20}[ \t]*")
@@ -392,7 +397,7 @@ def _between(source: SourceText, first: SourceText, last: SourceText) -> SourceT
     return source.cut(start, end)
 
 
-# --- Assignments above the matrix of a MATLAB script, such as ``a1 = 0.4`` ---
+# --- Assignments above the matrix of a MATLAB script, such as ``a1 = 0.4``
 
 
 # The value may be a calculation or a call of a function, but not a matrix or a list.

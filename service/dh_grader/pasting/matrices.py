@@ -1,4 +1,4 @@
-"""The identity matrix by its name: ``eye(4)``, ``np.identity(3)``, ``I_4``, or only ``I``."""
+"""Matrices in pasted texts: one reader for each format, from Word to lists of lists."""
 
 import re
 from itertools import pairwise, zip_longest
@@ -35,6 +35,9 @@ from dh_grader.pasting.source import (
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
+# --- The identity matrix by its name: ``eye(4)``, ``np.identity(3)``, ``I_4``, or only ``I``
+
+
 # The format of a matrix whose text does not say its size. It has the most rows that are asked for.
 ANY_SIZE: Final = "identity-of-any-size"
 _LARGEST: Final = 4
@@ -67,11 +70,10 @@ def identity(source: SourceText) -> Grid | None:
     return Grid("identity" if stated else ANY_SIZE, tuple(map(tuple, cells)))
 
 
-# Matrices as Word writes them in one line: ``T=[■(a&b@c&d)]``, also ``■8(…)``, ``\matrix(…)``.
+# --- Matrices as Word writes them in one line: ``T=[■(a&b@c&d)]``, also ``■8(…)``, ``\matrix(…)``
 #
 # The sign @ separates rows and & separates values.
-
-
+#
 # Source: M. Sargent, UnicodeMath, Unicode Technical Note 28.
 
 
@@ -144,7 +146,7 @@ def _check_around(front: SourceText, rest: SourceText) -> None:
 WORD: Final = GridFormat(_word_matches, _word_parse)
 
 
-# Maple's matrices in angle brackets: by rows <<a|b>, <c|d>>, by columns <<a, c>|<b, d>>.
+# --- Maple's matrices in angle brackets: by rows <<a|b>, <c|d>>, by columns <<a, c>|<b, d>>
 
 
 _MAPLE_MATRIX: Final = regex(
@@ -171,7 +173,7 @@ def _maple_parse(source: SourceText) -> Grid:
 MAPLE: Final = GridFormat(lambda text: _maple_found(text) is not None, _maple_parse)
 
 
-# Matrices of Eigen in C++: ``R << 1, 0, 0, 1;``, with or without the declaration of ``R``.
+# --- Matrices of Eigen in C++: ``R << 1, 0, 0, 1;``, with or without the declaration of ``R``
 
 
 _COMMENT: Final = regex(r"//[^\n]*")
@@ -214,11 +216,10 @@ EIGEN: Final = GridFormat(
 )
 
 
-# Matrices drawn over several lines: SymPy's and Octave's ⎡…⎤, Maxima's [ … ], MATLAB's / … \.
+# --- Matrices drawn over several lines: SymPy's and Octave's ⎡…⎤, Maxima's [ … ], MATLAB's / … \
 #
 # A row is one line, followed by an empty line of the drawing. A matrix whose cells take several
-# lines
-# (powers, fractions) is refused.
+# lines (powers, fractions) is refused.
 
 
 _PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
@@ -278,7 +279,7 @@ def _refusal(line: SourceText) -> GridError:
 DRAWN_MATRIX: Final = GridFormat(_drawn_matrix_matches, _drawn_matrix_parse)
 
 
-# Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks.
+# --- Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks
 
 
 def rows_in_matlab(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
@@ -352,7 +353,7 @@ def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceTex
     )
 
 
-# MATLAB rows without brackets: each line ends with a semicolon.
+# --- MATLAB rows without brackets: each line ends with a semicolon
 
 
 def _matlab_rows_matches(text: str) -> bool:
@@ -369,7 +370,7 @@ def _matlab_rows_parse(source: SourceText) -> Grid:
 MATLAB_ROWS: Final = GridFormat(_matlab_rows_matches, _matlab_rows_parse)
 
 
-# Matrices in brackets: MATLAB's, and lists of lists from Python, NumPy, SymPy and JSON.
+# --- Matrices in brackets: MATLAB's, and lists of lists from Python, NumPy, SymPy and JSON
 
 
 # Functions of MATLAB that may enclose a matrix; "" if there is none.
@@ -435,7 +436,7 @@ def _refuse_objects(rows: list[list[SourceText]]) -> None:
 BRACKETED: Final = GridFormat(_bracketed_matches, _bracketed_parse)
 
 
-# Lists of lists from Python, NumPy (also printed arrays), SymPy's Matrix([[…]]), and JSON.
+# --- Lists of lists from Python, NumPy (also printed arrays), SymPy's Matrix([[…]]), and JSON
 
 
 _BETWEEN: Final = " \t\r\n,;"

@@ -1,7 +1,6 @@
-"""Names of a script for symbols with other names: ``t1 = symbols('theta1')``.
+"""The text of programs around an answer: statements, titles, sessions, later uses.
 
-The symbols are those of the exercise, so each name is replaced by its symbol wherever it stands.
-Declarations without another name, such as ``q1, q2 = symbols('q1 q2')``, are left to the readers.
+Programs are never run; they are cut into statements with the place of each character.
 """
 
 import re
@@ -24,6 +23,12 @@ from dh_grader.pasting.source import (
 )
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- Names of a script for symbols with other names: ``t1 = symbols('theta1')``
+#
+# The symbols are those of the exercise, so each name is replaced by its symbol wherever it stands.
+# Declarations without another name, such as ``q1, q2 = symbols('q1 q2')``, are left to the readers.
+
 
 _RENAMED_SYMBOLS_NAME: Final = r"[A-Za-z_θα]\w{0,30}"
 _DECLARES: Final = regex(
@@ -140,7 +145,7 @@ def _uncertain(source: SourceText, declaration: re.Match[str]) -> GridError:
     return GridError("given_value", message, line.whole)
 
 
-# Remove the style of names before values: ``- **T** =``, ``\boxed{T = …}``, ``T matrix``.
+# --- Remove the style of names before values: ``- **T** =``, ``\boxed{T = …}``, ``T matrix``
 
 
 _STYLED_NAMES_NAME: Final = r"\\?[^\W\d]\w{0,11}(?:\{\w{1,6}\})?"
@@ -223,11 +228,10 @@ def _named_matrices(source: SourceText) -> SourceText:
     return joined([*pieces, source.cut(start, len(source.text))], source.at) if pieces else source
 
 
-# Read the outputs of an interpreter session.
+# --- Read the outputs of an interpreter session
 #
 # Prompts and labels of outputs are ``>> A1``, ``Out[3]//MatrixForm=``, ``(%o4)`` and the like.
-
-
+#
 # Inputs that have no output are kept, too.
 
 
@@ -298,7 +302,7 @@ def _without_continuation(statement: SourceText) -> SourceText:
     return joined(statement.split(_CONTINUED), statement.at)
 
 
-# Remove the program text around a matrix: comments, line continuations, assignments, calls.
+# --- Remove the program text around a matrix: comments, line continuations, assignments, calls
 
 
 # Functions that make a matrix of their argument without changing its values.
@@ -645,7 +649,7 @@ def text_around(piece: SourceText) -> GridError:
     return GridError("text_around", message, piece.span(0, len(piece.text)))
 
 
-# Split a script in MATLAB or Python into statements and calls.
+# --- Split a script in MATLAB or Python into statements and calls
 
 
 _ENDS: Final = ";,\n\r\x85\u2028\u2029"
@@ -741,12 +745,11 @@ def excerpt(source: SourceText) -> str:
     return text if len(text) <= _SCRIPT_SHOWN else text[: _SCRIPT_SHOWN - 1] + "…"
 
 
-# Statements of a script that only use its DH table, such as ``T1 = dh(DH(1,:));`` below it.
+# --- Statements of a script that only use its DH table, such as ``T1 = dh(DH(1,:));`` below it
 #
 # Nothing is run. A statement is left out only if it cannot change the table, its units or its
 # order.
-
-
+#
 # The table and its rows may be arguments, but never a part of a calculation. An element, such as
 # DH(1,2), could tell that the columns have another order, and so could the name of a parameter.
 

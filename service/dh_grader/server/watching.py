@@ -14,7 +14,7 @@ from dh_grader.catalogue.files import temporary_place
 from dh_grader.settings import Settings, SettingsError
 from dh_grader.translations import say
 
-# The folder in which processes share their metrics.
+# --- The folder in which processes share their metrics
 
 
 # This module does not import the metrics.
@@ -59,7 +59,7 @@ def _forget(process: int) -> None:
     mark_process_dead(process)  # type: ignore[no-untyped-call]
 
 
-# The format of the log: text, or one JSON object for each line.
+# --- The format of the log: text, or one JSON object for each line
 
 
 _STREAMS: Final = {"default": "ext://sys.stderr", "access": "ext://sys.stdout"}
@@ -138,7 +138,7 @@ class JsonLines(logging.Formatter):
         return json.dumps(line)
 
 
-# Remove query strings, and optionally client addresses, from the access log.
+# --- Remove query strings, and optionally client addresses, from the access log
 
 
 class _AccessLogFilter(logging.Filter):

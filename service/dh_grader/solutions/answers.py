@@ -55,7 +55,7 @@ from dh_grader.solutions.solution import (
 )
 from dh_grader.translations import Sentence, say
 
-# The state while one exercise is solved, and the steps that several answer kinds share.
+# --- The state while one exercise is solved, and the steps that several answer kinds share
 
 
 @dataclass(frozen=True, slots=True)
@@ -106,7 +106,7 @@ class Work:
         }
 
 
-# The model solution of an exercise.
+# --- The model solution of an exercise
 
 
 def solved(exercise: Exercise) -> ModelSolution:
@@ -147,7 +147,7 @@ def _pose(work: Work, labels: Sequence[str]) -> Shown:
     return Shown(shown.text, shown.latex)
 
 
-# The model answer of kind ``vector``: the list in the exercise file.
+# --- The model answer of kind ``vector``: the list in the exercise file
 
 
 def answer_vector(part: VectorSpec, work: Work) -> PrintedAnswer:
@@ -157,7 +157,7 @@ def answer_vector(part: VectorSpec, work: Work) -> PrintedAnswer:
     return listed(given[0])
 
 
-# The model answer of kind ``transform``.
+# --- The model answer of kind ``transform``
 
 
 def answer_transform(part: TransformSpec, work: Work) -> PrintedAnswer:
@@ -166,7 +166,7 @@ def answer_transform(part: TransformSpec, work: Work) -> PrintedAnswer:
     return matrix(given) if given else work.matrix(multiplied(work.pose_motions(part)).matrix())
 
 
-# The model answer of kind ``screw_axes``.
+# --- The model answer of kind ``screw_axes``
 
 
 def answer_screw_axes(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
@@ -196,7 +196,7 @@ def _in_space(exercise: Exercise, algebra: Algebra) -> list[tuple[sympy.Matrix, 
     ]
 
 
-# The model answer of kind ``rotation``.
+# --- The model answer of kind ``rotation``
 
 
 _AXES = {"x": X, "y": Y, "z": Z}
@@ -219,7 +219,7 @@ def _turns(part: RotationSpec, work: Work) -> list[Motion]:
     return motions
 
 
-# The model answer of kind ``position``.
+# --- The model answer of kind ``position``
 
 
 def answer_position(part: PositionSpec, work: Work) -> PrintedAnswer:
@@ -233,7 +233,7 @@ def answer_position(part: PositionSpec, work: Work) -> PrintedAnswer:
     )
 
 
-# The model answer of kind ``matrix``: the matrix in the exercise file.
+# --- The model answer of kind ``matrix``: the matrix in the exercise file
 
 
 def answer_matrix(part: MatrixSpec, work: Work) -> PrintedAnswer:
@@ -243,7 +243,7 @@ def answer_matrix(part: MatrixSpec, work: Work) -> PrintedAnswer:
     return matrix(given)
 
 
-# The model answer of kind ``link_transforms``: the transforms of the reference table's rows.
+# --- The model answer of kind ``link_transforms``: the transforms of the reference table's rows
 
 
 def answer_link_transforms(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
@@ -258,7 +258,7 @@ def answer_link_transforms(part: LinkTransformsSpec, work: Work) -> PrintedAnswe
     )
 
 
-# The model answer of kind ``frames``.
+# --- The model answer of kind ``frames``
 
 
 _BASE = "xyz"
@@ -291,7 +291,7 @@ def _direction(vector: sympy.Matrix, work: Work) -> str | list[Node]:
     return [work.writer.number(each) for each in simple]
 
 
-# The model answer of kind ``find_slip``: the wrong cells, and the table without the slip.
+# --- The model answer of kind ``find_slip``: the wrong cells, and the table without the slip
 
 
 def answer_find_slip(part: FindSlipSpec, work: Work) -> PrintedAnswer:
@@ -305,7 +305,7 @@ def answer_find_slip(part: FindSlipSpec, work: Work) -> PrintedAnswer:
     return marked(marks, printed)
 
 
-# The model answer of kind ``euler_angles``.
+# --- The model answer of kind ``euler_angles``
 
 
 def answer_euler_angles(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
@@ -317,7 +317,7 @@ def answer_euler_angles(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
     return listed(list(map(work.writer.angle, angles)))
 
 
-# The model answer of kind ``dh_table``: the reference table in the requested convention.
+# --- The model answer of kind ``dh_table``: the reference table in the requested convention
 
 
 def answer_dh_table(part: DhTableSpec, work: Work) -> PrintedAnswer:
@@ -330,7 +330,7 @@ def answer_dh_table(part: DhTableSpec, work: Work) -> PrintedAnswer:
     return table_layout(rows, table.labels, convention, named=asked == "either")
 
 
-# The model answer of kind ``dh_row``: the DH row of a transform, or "no row".
+# --- The model answer of kind ``dh_row``: the DH row of a transform, or "no row"
 
 
 _MOST_STEPS = 60
@@ -363,7 +363,7 @@ def _simplified(length: sympy.Expr) -> sympy.Expr:
     return sympy.trigsimp(sympy.expand(length)) if length.count_ops() < _MOST_STEPS else length
 
 
-# The right answer to a part, and the answers that need no knowledge, by the kind of the part.
+# --- The right answer to a part, and the answers that need no knowledge, by the kind of the part
 
 
 # The functions that return the right answer.
@@ -383,7 +383,7 @@ ANSWERS: Final[Mapping[str, Callable[[Any, Work], PrintedAnswer]]] = {
 }
 
 
-# Lay out an answer as JSON, as text to paste, and as LaTeX.
+# --- Lay out an answer as JSON, as text to paste, and as LaTeX
 
 
 # The column headers. In a modified table, a and α have the index i−1.

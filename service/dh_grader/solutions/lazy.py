@@ -24,7 +24,7 @@ from dh_grader.grading.kinds.tables import slip_of
 from dh_grader.kinematics import COLUMNS, Convention
 from dh_grader.learning import as_rows
 
-# Answers that need no knowledge; their points show whether the marking is fair.
+# --- Answers that need no knowledge; their points show whether the marking is fair
 
 
 # In these answers, every joint turns about the z axis or slides along it by its variable; all other

@@ -76,7 +76,7 @@ def _formatted(moment: datetime) -> str:
     return moment.strftime("%Y-%m-%d at %H:%M %Z").rstrip()
 
 
-# Recorded reports: JSON in English, with the sentences that can be translated.
+# --- Recorded reports: JSON in English, with the sentences that can be translated
 #
 # A recorded report begins with ``sentences``, a list of templates with their values. The rest is
 # the
@@ -161,7 +161,7 @@ def _read(written: list[Any]) -> Sentence:
     return Sentence(template, read, *plural)
 
 
-# The outcome of a report: verdicts and message codes, without the answers.
+# --- The outcome of a report: verdicts and message codes, without the answers
 
 
 @dataclass(frozen=True)
@@ -199,7 +199,7 @@ def _part(part: PartReport) -> dict[str, object]:
     return {"verdict": str(part.verdict), "cells": cells, "codes": codes}
 
 
-# Grade an attempt: the report for the learner, and the outcome for statistics.
+# --- Grade an attempt: the report for the learner, and the outcome for statistics
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,7 +251,7 @@ def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
     return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS
 
 
-# Data classes for new, recorded and listed attempts, and for filters of attempts.
+# --- Data classes for new, recorded and listed attempts, and for filters of attempts
 #
 # This module loads no database driver.
 

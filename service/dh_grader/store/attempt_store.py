@@ -1,4 +1,4 @@
-"""The store of attempts that the HTTP routes use."""
+"""The store of attempts that the HTTP routes use: recorded, listed, regraded, forgotten."""
 
 import asyncio
 import tempfile

@@ -1,4 +1,4 @@
-"""Record attempts and hints in the database, each exactly once."""
+"""Record attempts and the hints that learners take in the database, each exactly once."""
 
 import secrets
 from collections import Counter
@@ -31,7 +31,7 @@ from dh_grader.store.database import Priority, queue_score
 from dh_grader.store.tables import assignments, attempts, hints, line_items, outcomes
 from dh_grader.translations import say
 
-# Database functions for the hints that learners take at recorded attempts.
+# --- Database functions for the hints that learners take at recorded attempts
 #
 # A hint explains a message of a report. Its price reduces the points of the learner's later
 # attempts
@@ -207,7 +207,7 @@ def _taken(row: Row[Any]) -> TakenHint:
     )
 
 
-# Record each attempt exactly once, and number the attempts of each learner.
+# --- Record each attempt exactly once, and number the attempts of each learner
 
 
 # Build the statements once: building one takes longer than running it.

@@ -1,4 +1,4 @@
-"""Choose the attempts that count, and export attempts for other programs."""
+"""What is read from recorded attempts: grades, lists, statistics, and one learner's data."""
 
 import json
 from collections import Counter, defaultdict
@@ -77,6 +77,9 @@ from dh_grader.store.tables import (
     regrade_queue,
 )
 from dh_grader.translations import ENGLISH, say
+
+# --- Choose the attempts that count, and export attempts for other programs
+
 
 Counting = Literal["best", "last"]
 
@@ -203,7 +206,7 @@ def _moodle(counted: Iterable[ListedAttempt]) -> Iterator[bytes]:
         yield texts.line((each.learner, each.earned, each.max_points, late))
 
 
-# Read recorded attempts: lists page by page, or one attempt with its history.
+# --- Read recorded attempts: lists page by page, or one attempt with its history
 
 
 _EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
@@ -340,7 +343,7 @@ def place_of(cursor: str) -> TimePlace:
         raise BadCursorError(cursor) from error
 
 
-# The statistics of the attempts at an exercise, counted from verdicts and message codes.
+# --- The statistics of the attempts at an exercise, counted from verdicts and message codes
 
 
 # The most misconceptions and groups in the statistics, and the most learners of a group.
@@ -582,10 +585,10 @@ def _wrong_places(content: Mapping[str, Mapping[str, Any]]) -> Iterable[str]:
                 yield f"{part}/{place}"
 
 
-# --- All that is known of one learner, and what is deleted ---
+# --- All that is known of one learner, and what is deleted
 
 
-# Changes by tutors: they override points, and delete the data of a learner.
+# --- Changes by tutors: they override points, and delete the data of a learner
 
 
 # How often PostgreSQL may report a concurrent write while a learner is being deleted.

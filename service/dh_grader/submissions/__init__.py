@@ -1,4 +1,7 @@
-"""Assignments: exercises for one hand-in, their points, and the names of answer files."""
+"""Assignments: exercises for one hand-in, their points, and the names of answer files.
+
+The other files of this package read what is handed in; grading it is not their matter.
+"""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -16,7 +19,10 @@ from dh_grader.submissions.bodies import UnknownExerciseError, nearest
 from dh_grader.translations import paragraph, say
 from dh_grader.variants import hidden_variant
 
-# The outline of an exercise on a server: the data needed to submit answers to it.
+# --- Assignments: exercises for one hand-in, their points, and the names of answer files
+
+
+# --- The outline of an exercise on a server: the data needed to submit answers to it
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,7 +317,7 @@ def _table_at(location: Any) -> type[BaseModel]:
     return AssignedExerciseSpec if location and location[0] == "exercises" else AssignmentSpec
 
 
-# --- The names of files that learning platforms export, and the students in these names ---
+# --- The names of files that learning platforms export, and the students in these names
 #
 # Moodle (``mod/assign/classes/downloader.php``, earlier ``mod/assign/locallib.php``) names a folder
 # ``Ada Byron_1234_assignsubmission_file``, in older versions with another ``_`` at the end, or puts

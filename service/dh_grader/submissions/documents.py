@@ -1,7 +1,4 @@
-"""Find the table or matrix in a LaTeX, Markdown or MATLAB document.
-
-Such a document may have other words or statements around the answer.
-"""
+"""The table or matrix in a LaTeX, Markdown or MATLAB document, and sentences beside it."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -16,7 +13,12 @@ from dh_grader.pasting import ASSIGNMENT, GridError, read_grid, read_robot
 from dh_grader.pasting.around import UNIT, is_correction, names_unit
 from dh_grader.regex import regex
 
-# Find the sentence beside a table in a document that may change the meaning of the table.
+# --- Find the table or matrix in a LaTeX, Markdown or MATLAB document
+#
+# Such a document may have other words or statements around the answer.
+
+
+# --- Find the sentence beside a table in a document that may change the meaning of the table
 #
 # A document has other lines, cells, paragraphs and comments around the table or matrix, which no
 # reader of tables sees. One of them may say "All angles are in degrees", or "Row 4 is wrong".
@@ -136,7 +138,7 @@ def shortened(sentence: str) -> str:
     return sentence if len(sentence) <= _LONGEST else f"{sentence[:_LONGEST]}…"
 
 
-# Write a formula of Word's equation editor in one line.
+# --- Write a formula of Word's equation editor in one line
 
 
 def local_name(element: ET.Element) -> str:

@@ -1,7 +1,4 @@
-"""Find the submissions in files, folders of a class, and folders of single students.
-
-x
-"""
+"""The submissions in files, folders of a class and folders of students, and their content."""
 
 import datetime
 import errno
@@ -43,11 +40,15 @@ from dh_grader.submissions.office_files import (
 )
 from dh_grader.translations import say
 
-# Read the content of a submitted file: JSON, TOML, or the answer to one part.
+# --- Find the submissions in files, folders of a class, and folders of single students
+#
+# x
+
+
+# --- Read the content of a submitted file: JSON, TOML, or the answer to one part
 #
 # The answer to one part is a pasted text, or an excerpt of a file of an office program, a notebook
-# or
-# a web editor (`office_files.py`).
+# or a web editor (`office_files.py`).
 
 
 # Python reads TOML a hundred times more slowly than JSON, and the memory for a key with many dots
@@ -299,13 +300,11 @@ def _as_json(value: Any) -> Any:
     return value
 
 
-# Find the submissions in files, folders of a class, and folders of single students.
+# --- Find the submissions in files, folders of a class, and folders of single students
 #
 # In the folder of a class, each file and each subfolder is the submission of one student. Files
-# that
-# a learning platform names after the same student belong together. A zip file of a class is read
-# like
-# its folder, and a zip file of a student like a folder of the student's files.
+# that a learning platform names after the same student belong together. A zip file of a class is
+# read like its folder, and a zip file of a student like a folder of the student's files.
 
 
 MAX_SUBMISSIONS_IN_FOLDER: Final = 100_000

@@ -74,7 +74,7 @@ class Excerpt:
 SheetRow = Sequence[str]
 
 
-# --- Archives: a file of an office program is a zip file of XML ---
+# --- Archives: a file of an office program is a zip file of XML
 
 
 def open_archive(data: bytes) -> zipfile.ZipFile:
@@ -186,7 +186,7 @@ def _attribute(element: ET.Element, name: str) -> str:
     return ""
 
 
-# --- Spreadsheets ---
+# --- Spreadsheets
 
 
 def _xlsx(data: bytes) -> Iterator[Excerpt]:
@@ -570,7 +570,7 @@ def _blocks(rows: Sequence[SheetRow]) -> Iterator[list[SheetRow]]:
             yield list(group)
 
 
-# --- Documents ---
+# --- Documents
 
 
 def _docx(data: bytes) -> Iterator[Excerpt]:
@@ -795,7 +795,7 @@ def _outputs(cell: Mapping[str, Any]) -> Iterator[str]:
         yield _joined_lines(text)
 
 
-# --- Web pages ---
+# --- Web pages
 
 _TABLE: Final = regex(r"<(?:table|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
 # What begins a new line on a web page.
@@ -867,7 +867,7 @@ def _web_page(data: bytes) -> Iterator[Excerpt]:
         yield Excerpt(text, level=1 if has_table else 0)
 
 
-# --- The face of this file ---
+# --- The face of this file
 
 
 def decoded(data: bytes) -> str:

@@ -50,7 +50,7 @@ def _keyed(secret: str, learner: str, exercise: str, number: int, seed: str) -> 
     return hmac.new(secret.encode(), message, hashlib.sha256).digest()
 
 
-# Keep the variants of an assignment when an exercise file is corrected.
+# --- Keep the variants of an assignment when an exercise file is corrected
 #
 # The table ``[vary]`` of a file says which numbers its variants may have. An assignment stores a
 # copy
@@ -90,7 +90,7 @@ def _pinned(vary: Vary, exercise: str, choices: str) -> Vary:
         return vary
 
 
-# Make a variant of an exercise. A short text, the seed, determines the variant.
+# --- Make a variant of an exercise. A short text, the seed, determines the variant
 
 
 # A variant takes about 100 kB of memory.

@@ -17,7 +17,7 @@ from dh_grader.regex import regex
 from dh_grader.translations import say
 from dh_grader.variants import built
 
-# Compare variants of an exercise by their robot and by their difficulty.
+# --- Compare variants of an exercise by their robot and by their difficulty
 
 
 # Numbers of a file have a few decimals; what is closer is the same.
@@ -97,7 +97,7 @@ def _home(exercise: Exercise) -> dict[str, Numbers]:
     }
 
 
-# Choose the variants that learners get: checked by a tutor, different, and equally hard.
+# --- Choose the variants that learners get: checked by a tutor, different, and equally hard
 
 
 # Draws for each variant that is wanted; then there are too few different ones.

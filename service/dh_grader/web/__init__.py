@@ -41,7 +41,7 @@ from dh_grader.web.tutor import Tutoring, attempt_routes, tutor_routes
 __all__ = ["Tutoring", "web_routes"]
 
 
-# The routes of the pages and of their static files.
+# --- The routes of the pages and of their static files
 
 
 # Any site may load the element; DH_GRADER_CORS_ORIGINS limits what it may request then.

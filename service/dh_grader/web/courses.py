@@ -1,4 +1,4 @@
-"""The route that reads a course's roster, the platform's list of its members (LTI)."""
+"""The pages on which tutors manage courses, and their routes; the roster of a platform."""
 
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
@@ -50,6 +50,9 @@ if TYPE_CHECKING:
     from dh_grader.lti.roster import RosterChange
 
 
+# --- The route that reads a course's roster, the platform's list of its members (LTI)
+
+
 def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
     """Return the route that reads a roster (a platform's list of members)."""
     router = APIRouter(prefix="/tutor/courses")
@@ -90,9 +93,8 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
     return router
 
 
-# The pages of courses as HTML.
-
-
+# --- The pages of courses as HTML
+#
 # Scripts send their forms to the routes of the service.
 
 
@@ -303,7 +305,7 @@ def _page(
     )
 
 
-# The routes of the pages on which tutors manage their courses.
+# --- The routes of the pages on which tutors manage their courses
 
 
 def course_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:

@@ -1,4 +1,4 @@
-"""The pages that learning platforms open here, and their HTTP headers."""
+"""The pages that learning platforms open here: reports on files, and the choice of links."""
 
 import asyncio
 from collections.abc import Iterable, Mapping, Sequence
@@ -47,7 +47,10 @@ if TYPE_CHECKING:
     from dh_grader.lti.launch import Landing, NewLogin
 
 
-# The page with the report on files that a student has handed in at the learning platform.
+# --- The pages that learning platforms open here, and their HTTP headers
+
+
+# --- The page with the report on files that a student has handed in at the learning platform
 #
 # The files are not stored here. For each view, the service reads them from the platform and grades
 # them again.
@@ -132,7 +135,7 @@ def _id_in(claims: Mapping[str, Any], name: str) -> str:
     return found
 
 
-# Make links on the learning platform from what a tutor has chosen in a form (deep linking).
+# --- Make links on the learning platform from what a tutor has chosen in a form (deep linking)
 
 
 _LONGEST_LINE: Final = 200
@@ -273,7 +276,7 @@ def _date(written: datetime | None, zone: ZoneInfo) -> datetime | None:
         raise NotYetError(message_of(error)) from error
 
 
-# The page on which a tutor chooses exercises, and the form that sends links to the platform.
+# --- The page on which a tutor chooses exercises, and the form that sends links to the platform
 
 
 def picker_page(
@@ -308,7 +311,7 @@ def return_page(address: str, response: str, assets: Assets, language: Language)
     return lti_page("return.html", assets, ["send_form.js"], language=language, **values)
 
 
-_FOLDER = "web/lti/templates"
+_FOLDER = "web/templates/lti"
 
 
 def frame_headers(

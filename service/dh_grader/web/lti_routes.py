@@ -1,7 +1,4 @@
-"""The routes of LTI, by which a learning platform opens the service for its users.
-
-The service has these routes only if it has a database and a secret.
-"""
+"""The routes of LTI: launches, joining, notices, forms of tutors, and the list of platforms."""
 
 import logging
 from collections.abc import Awaitable, Callable, Mapping, Sequence
@@ -119,9 +116,13 @@ if TYPE_CHECKING:
     from dh_grader.lti.launch import LaunchMessage, Login, NewLogin
 
 
-# The routes by which a learning platform registers itself here (dynamic registration).
+# --- The routes of LTI, by which a learning platform opens the service for its users
+#
+# The service has these routes only if it has a database and a secret.
 
 
+# --- The routes by which a learning platform registers itself here (dynamic registration)
+#
 # The platform opens the link that an admin has pasted.
 
 
@@ -212,9 +213,8 @@ async def _registered(
         raise
 
 
-# The route to which platforms send signed notices that a student has handed in a file.
-
-
+# --- The route to which platforms send signed notices that a student has handed in a file
+#
 # Without a login and without a browser.
 
 
@@ -283,11 +283,10 @@ def _note(connection: Connection, refusals: Mapping[str, str]) -> None:
         note_refusal(connection, registration_id, name, now)
 
 
-# The forms on a tutor's first page: choose the exercises of a link, and open the course.
+# --- The forms on a tutor's first page: choose the exercises of a link, and open the course
 #
 # A page in a frame has no cookie, so each form contains a signed ticket.
-
-
+#
 # The forms are accepted from our own pages only. The course opens in a window of its own, in which
 # our cookie is not a third-party cookie.
 
@@ -435,7 +434,7 @@ def _assigned(connection: Connection, link: int, new: NewAssignment, catalogue: 
         raise _NotYetError(message_of(error)) from error
 
 
-# The route of the form on which a tutor searches for exercises, and makes links to them.
+# --- The route of the form on which a tutor searches for exercises, and makes links to them
 
 
 _picker_forms_log = logging.getLogger(__name__)
@@ -523,9 +522,8 @@ def _offer(connection: Connection, ticket: LinkingTicket) -> Offer:
     return offer_of(connection, ticket, known)
 
 
-# The page of the registered learning platforms, with a self-test for each platform.
-
-
+# --- The page of the registered learning platforms, with a self-test for each platform
+#
 # It also shows their last launches and our keys.
 
 

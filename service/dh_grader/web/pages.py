@@ -1,4 +1,7 @@
-"""The pages of students as HTML, which can be read without scripts."""
+"""The pages of students as HTML, which can be read without scripts, and their static files.
+
+Also help, sign-in and the pages of errors. The pages for tutors are in ``tutor.py``.
+"""
 
 import hashlib
 import json
@@ -42,12 +45,11 @@ from dh_grader.translations import ENGLISH, LANGUAGES, Language, say, template, 
 from dh_grader.typeset import matrix, statement_html, typeset
 from dh_grader.variants.robots import practice_id
 
-# --- The static files, which are served under names with a hash of the content ---
+# --- The static files, which are served under names with a hash of the content
 
 
-# Translate the sentences in the pages' scripts: one dictionary for each language.
-
-
+# --- Translate the sentences in the pages' scripts: one dictionary for each language
+#
 # English needs none.
 
 
@@ -227,7 +229,7 @@ def _target(files: Mapping[str, Path], name: str, match: re.Match[str]) -> str:
     return path.name
 
 
-# The HTTP headers of the pages, which limit what a browser may load and run.
+# --- The HTTP headers of the pages, which limit what a browser may load and run
 
 
 def policy(**more: str) -> str:
@@ -272,7 +274,7 @@ PRIVATE_HEADERS: Final = {**PAGE_HEADERS, **NO_STORE}
 FORM_HEADERS: Final = {**PRIVATE_HEADERS, "Referrer-Policy": "same-origin"}
 
 
-# Return an HTML page as a response in the language of its reader.
+# --- Return an HTML page as a response in the language of its reader
 
 
 # The headers of a request that a page depends on. The menu depends on a tutor's session.
@@ -294,7 +296,7 @@ def page_answer(
     return answer
 
 
-# The words by which a search finds an exercise in the catalogue.
+# --- The words by which a search finds an exercise in the catalogue
 
 
 _KIND_NAMES: Final = {
@@ -544,9 +546,8 @@ def _markdown(text: str, exercise: Exercise) -> Markup:
     return own_html(statement_html(text, exercise.symbols))
 
 
-# The help pages and their routes.
-
-
+# --- The help pages and their routes
+#
 # They need no scripts.
 
 
@@ -597,7 +598,7 @@ def help_page(topic: str, assets: Assets, language: Language, *, tutor: bool = F
     )
 
 
-# The page on which tutors sign in with their key, and the routes to sign in and out.
+# --- The page on which tutors sign in with their key, and the routes to sign in and out
 
 
 # A session ends after one working day; using it does not make it longer.
@@ -717,7 +718,7 @@ def set_session_cookie(answer: Response, request: Request, session: str) -> None
             answer.set_cookie(name, session, age, secure=secure, httponly=True, samesite="lax")
 
 
-# The pages that explain an error, with advice, in place of the requested page.
+# --- The pages that explain an error, with advice, in place of the requested page
 
 
 # The advice to readers without a tutor's key, by the names of problems.

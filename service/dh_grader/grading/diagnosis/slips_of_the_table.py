@@ -1,4 +1,7 @@
-"""Slips in the lengths of an answer, such as a wrong sign."""
+"""Slips in lengths, joints and cells of the robot's table that lead to a wrong pose.
+
+``upstream.py`` searches among them; ``whole_tables.py`` has those of rows and columns.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -35,6 +38,9 @@ from dh_grader.grading.numbers import CONSTANT, SAME_MOTION, Samples
 from dh_grader.grading.reading.table import IS_ANGLE
 from dh_grader.kinematics import ALPHA, THETA, A, Convention, D, Numbers, Table
 from dh_grader.translations import Sentence, paragraph, say
+
+# --- Slips in the lengths of an answer, such as a wrong sign
+
 
 # Robots have a handful of lengths. With more, pairs are not tried.
 MAX_LENGTHS = 12
@@ -138,7 +144,7 @@ def _other_length(right: str, written: str) -> Slip:
     return Slip(OTHER_LENGTH, words, symbols=(SymbolChange(right, written),))
 
 
-# Slips in the joint variables of a robot that is given by a table or by screw axes.
+# --- Slips in the joint variables of a robot that is given by a table or by screw axes
 
 
 Axis = Callable[[Joint], Sentence]
@@ -309,9 +315,8 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
     return direction
 
 
-# Slips in the cells of the robot's table that lead to a wrong pose.
-
-
+# --- Slips in the cells of the robot's table that lead to a wrong pose
+#
 # A slip has the same code here as in a submitted table (table_cell).
 
 

@@ -1,4 +1,4 @@
-"""Slips in a whole table.
+"""Slips of a whole table: put into the robot's rows and columns, or undone in an answer.
 
 A slip explains a wrong table if the table describes the robot once the slip is corrected.
 """
@@ -48,12 +48,11 @@ from dh_grader.grading.report import Finding
 from dh_grader.kinematics import ALPHA, COLUMNS, THETA, A, Convention, D, Numbers, Table
 from dh_grader.translations import Sentence, listed, paragraph, say, template
 
-# --- Slips of rows and columns ---
+# --- Slips of rows and columns
 
 
-# A slip: a mistake in the robot's table, joints or lengths, which leads to a wrong answer.
-
-
+# --- A slip: a mistake in the robot's table, joints or lengths, which leads to a wrong answer
+#
 # Many slips are tried at once: a single computation takes the changed inputs of all slips.
 
 
@@ -446,7 +445,7 @@ def _missing_link(link: str, _: Names) -> SlipWords:
     return SlipWords(clause, clause)
 
 
-# The kinds of slips in the robot's table, joints or lengths, likeliest first.
+# --- The kinds of slips in the robot's table, joints or lengths, likeliest first
 
 
 JOINT_VARIABLE_SIGN = register(
@@ -610,6 +609,9 @@ ROW_ORDER = register(
 )
 # Listed only together with exchanged rows. Otherwise ``link_products`` names the missing link.
 MISSING_LINK = register(of=Slip, rank=170, name="missing_link")
+
+
+# --- Slips that explain a wrong table: it describes the robot once they are corrected
 
 
 _OF_LINK = slice(A, ALPHA + 1)
@@ -873,7 +875,7 @@ def _explaining(
                     yield complete
 
 
-# The findings on a wrong table as a whole.
+# --- The findings on a wrong table as a whole
 
 
 _OF_UNIT = frozenset({"degrees_as_radians", "radians_as_degrees"})

@@ -1,4 +1,7 @@
-"""Split a student's table into constants and motion, and find a misread convention or unit."""
+"""Tables in frames of the student's choice: rows, roles, reference, and which are valid.
+
+It says whether a table describes the robot. ``nearest.py`` and ``roles.py`` search near it.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -53,6 +56,8 @@ from dh_grader.kinematics.frame_choice import (
     match_tables,
 )
 from dh_grader.translations import Sentence, paragraph, say, template
+
+# --- Split a student's table into constants and motion, and find a misread convention or unit
 
 
 class Rereadable:
@@ -215,7 +220,7 @@ def _rescaled(table: WrittenTable, factor: float) -> WrittenTable:
     return table.changed(constants)
 
 
-# Remarks on frames that are valid but differ from the reference frames.
+# --- Remarks on frames that are valid but differ from the reference frames
 
 
 OWN_FRAME_CHOICE: Final = "own_frame_choice"
@@ -289,7 +294,7 @@ def _departures(pose: Matrices, frame: int, joint: Joint, length_scale: float) -
     return departures
 
 
-# Pair the rows of a submitted table with joints.
+# --- Pair the rows of a submitted table with joints
 #
 # Each pair of a row and its joint is called a role.
 
@@ -422,7 +427,7 @@ def pair_in_order(scores: Numbers) -> list[tuple[int | None, int | None]]:
     return pairs
 
 
-# Separate a submitted table into constants and joint variables.
+# --- Separate a submitted table into constants and joint variables
 
 
 def row_constants(
@@ -485,12 +490,11 @@ def without_variables(
     return np.where(moves[..., None], np.nan, first), signs
 
 
-# Replace angles that are rounded decimals, such as 1.57 for π/2, by the exact angles.
+# --- Replace angles that are rounded decimals, such as 1.57 for π/2, by the exact angles
 #
 # In a robot whose constant angles are multiples of 15°, a decimal means such a multiple if all its
 # digits agree. So 2.094 means 2π/3, but 2.0951 does not.
-
-
+#
 # A pose computed from rounded angles is not exactly valid, so that the student's frames or missing
 # cells could not be found.
 
@@ -581,7 +585,7 @@ def _turns_in_steps(exercise: Exercise, samples: Samples) -> bool:
     return samples.cached("turns in steps", compute)
 
 
-# Convert the reference table for comparisons with a student's table.
+# --- Convert the reference table for comparisons with a student's table
 
 
 _Cell = TypeVar("_Cell", bound=np.generic)
@@ -693,7 +697,7 @@ def as_table(links: Table, convention: Convention) -> Table:
     return np.concatenate([x[:, :2], links[1:, 2:]], axis=1)
 
 
-# Test which of many tables describe the robot.
+# --- Test which of many tables describe the robot
 
 
 def valid_tables(
@@ -768,9 +772,8 @@ def targets_of(
     return [*targets, Target(tool, mechanism.tool)]
 
 
-# Find the poses that frame 0 may have if the student chose it.
-
-
+# --- Find the poses that frame 0 may have if the student chose it
+#
 # Poses are compared with all joint variables 0. The joint screws and the pose there determine a
 # chain (Lynch and Park, *Modern Robotics*, section 4.1).
 

@@ -73,7 +73,10 @@ from dh_grader.kinematics.placement import (
 )
 from dh_grader.translations import say
 
-# Judge the frames that a student places on the joint axes, with all joint variables 0.
+# --- Answer kind ``frames``: the frames that the student places on the joint axes
+
+
+# --- Judge the frames that a student places on the joint axes, with all joint variables 0
 
 
 # The most sliding joints whose axes are tried both as moved and as drawn: 16 ways.

@@ -1,4 +1,4 @@
-"""Answer kind ``vector``: a list of lengths, angles and numbers."""
+"""Answer kinds ``vector``, ``transform``, ``rotation``, ``position`` and ``matrix``."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -80,6 +80,8 @@ from dh_grader.grading.reading.matrices import StudentMatrix, read_matrix
 from dh_grader.grading.report import Correction, Feedback, Finding, Place, RowReport
 from dh_grader.kinematics import Matrices, Numbers, about, composed, products
 
+# --- Answer kind ``vector``: a list of lengths, angles and numbers
+
 
 def read_vector_answer(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
     """Read the values in a list or a pasted text."""
@@ -123,7 +125,7 @@ def _slip(
     return None if found is None else found.findings[0]
 
 
-# Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector.
+# --- Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector
 
 
 def read_transform_answer(part: TransformSpec, answer: object, grading: Grading) -> StudentMatrix:
@@ -175,7 +177,7 @@ def _chain(answer: StudentMatrix) -> StudentChain | None:
     return StudentChain(products(np.moveaxis(answer.values, -1, 0)[None]), frames_at)
 
 
-# Answer kind ``rotation``: a rotation matrix, of a pose or of several turns about axes.
+# --- Answer kind ``rotation``: a rotation matrix, of a pose or of several turns about axes
 
 
 def read_rotation_answer(part: RotationSpec, answer: object, grading: Grading) -> StudentMatrix:
@@ -227,7 +229,7 @@ def _steps(part: RotationSpec, grading: Grading) -> list[Step]:
     ]
 
 
-# Answer kind ``position``: the coordinates of a point, such as the end effector's.
+# --- Answer kind ``position``: the coordinates of a point, such as the end effector's
 
 
 def read_position_answer(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
@@ -300,7 +302,7 @@ def _slipped(part: PositionSpec, grading: Grading) -> SlippedAnswers | None:
     return answers.of(lambda poses: poses[:, _axes(part), 3])
 
 
-# Answer kind ``matrix``: a matrix with any meaning, entry by entry.
+# --- Answer kind ``matrix``: a matrix with any meaning, entry by entry
 
 
 def read_matrix_answer(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:
@@ -316,7 +318,7 @@ def judge_matrix_answer(part: MatrixSpec, answer: StudentMatrix, grading: Gradin
     return Judged(judged.rows, content, judged.feedback)
 
 
-# The rows of a report on a matrix, for all kinds with matrices.
+# --- The rows of a report on a matrix, for all kinds with matrices
 
 
 # The number of samples of each half that distinguish whole matrices.

@@ -1,4 +1,7 @@
-"""Convert a length with a unit to a number: 135 mm is 0.135 in metres."""
+"""One cell -> an entry with its values; names, units and comments of a pasted text.
+
+``table.py``, ``matrices.py`` and ``lists.py`` read what holds the cells.
+"""
 
 import re
 import unicodedata
@@ -63,6 +66,9 @@ from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 from dh_grader.translations import listed, say
 
+# --- Convert a length with a unit to a number: 135 mm is 0.135 in metres
+
+
 _LENGTH: Final = regex(
     r"(?P<sign>[-−–]?)\s{0,4}(?P<number>\d{1,12}(?:[.,]\d{1,12})?)\s{0,4}[(\[]?(?P<unit>[a-z]{1,12})"
     r"[)\]]?"
@@ -86,11 +92,10 @@ def converted(text: str, unit: str) -> str | None:
     return f"{sign}{number:f}"
 
 
-# Names of joint variables that a robot does not have, such as theta0.
+# --- Names of joint variables that a robot does not have, such as theta0
 #
 # A cell with such a name is wrong, but not unreadable.
-
-
+#
 # Students write them if they count the joints from 0, or revolute and prismatic joints separately.
 # theta3 is absent if joint 3 slides.
 
@@ -127,7 +132,7 @@ def joint_counted(name: str) -> int:
     return int(name.lstrip(_LETTERS))
 
 
-# Read a submitted cell as an entry, and evaluate entries at the samples.
+# --- Read a submitted cell as an entry, and evaluate entries at the samples
 
 
 # Notes that a table does not show: textbooks mark every joint variable with a star, and six notes
@@ -333,9 +338,8 @@ def from_note(note: Note) -> Finding:
     return reading_note(note.code, note.message, note.span)
 
 
-# Sort values by their names: ``y = 2, x = 1`` is x, then y. Report wrong names.
-
-
+# --- Sort values by their names: ``y = 2, x = 1`` is x, then y. Report wrong names
+#
 # A name may belong to several places, because textbooks differ, or to no place. The values are
 # reordered only if each value that is not empty names exactly one place, and no two values name the
 # same place.
@@ -433,9 +437,8 @@ def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]
     )
 
 
-# Replace letters by the numbers that a script gives them, as in ``d1 = 0.1625``.
-
-
+# --- Replace letters by the numbers that a script gives them, as in ``d1 = 0.1625``
+#
 # The numbers count only if the exercise has no lengths as letters; otherwise letters are its
 # symbols.
 
@@ -495,7 +498,7 @@ def _cell(cell: GridCell, given: dict[str, str], used: dict[str, None]) -> GridC
     return joined([*pieces, cell.cut(start, len(cell.text))], cell.at)
 
 
-# Read the grids (tables and matrices) in pasted texts, and report errors in them.
+# --- Read the grids (tables and matrices) in pasted texts, and report errors in them
 
 
 R = TypeVar("R")
@@ -697,7 +700,7 @@ def side_by_side(names: Sequence[str]) -> str:
     return reduce(lambda first, second: say("{first}, {second}", first=first, second=second), names)
 
 
-# Find comments and captions in a pasted text, and the units that they name.
+# --- Find comments and captions in a pasted text, and the units that they name
 
 
 _COMMENT: Final = regex(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,80})")
@@ -769,7 +772,7 @@ def units_in(comment: str) -> tuple[set[AngleUnit], set[float]]:
     return angles, {METRES[word] for word in words if word in METRES}
 
 
-# --- A text with several answers ---
+# --- A text with several answers
 
 
 _MOST_ANSWERS: Final = 4

@@ -1,4 +1,4 @@
-"""Read a pasted DH table as rows of entries."""
+"""Read a pasted DH table as rows of entries: units in rows, comments and captions."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -58,7 +58,10 @@ from dh_grader.pasting.source import joined, line_number
 from dh_grader.regex import regex
 from dh_grader.translations import listed, say, say_count
 
-# Move the units in the second row of a pasted table into its headers.
+# --- Read a pasted DH table as rows of entries
+
+
+# --- Move the units in the second row of a pasted table into its headers
 
 
 _KINDS: Final = {**QUANTITIES, LENGTH_OR_LABEL: "length", THETA_OFFSET: "angle"}
@@ -116,7 +119,7 @@ def _with_unit(header: GridCell, unit: GridCell) -> GridCell:
     return joined([header, nothing.spelled(" ["), bare, nothing.spelled("]")], header.at)
 
 
-# Read which cells of a table a student marks: ``2.alpha``, or row ``2``, or several.
+# --- Read which cells of a table a student marks: ``2.alpha``, or row ``2``, or several
 
 
 _NAMES: Final = {
@@ -206,7 +209,7 @@ _NOT_MARKS: Final = reading_error(
 )
 
 
-# Convert the lengths in a column from the header's unit to the exercise's unit.
+# --- Convert the lengths in a column from the header's unit to the exercise's unit
 
 
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
@@ -283,11 +286,10 @@ def _checked_formula(entry: Entry, expression: Expression, header: Header, reade
     return unreadable(reading_error("header_unit", message))
 
 
-# Find the columns and units that comments and captions of a table name.
+# --- Find the columns and units that comments and captions of a table name
 #
 # The comment ``% theta [deg], d, a, alpha`` gives the columns of a table without headers.
-
-
+#
 # A unit without columns, such as ``% lengths in mm``, may apply to the table, so the text is
 # refused.
 
