@@ -4,8 +4,8 @@ import asyncio
 import threading
 
 import pytest
+from dh_grader import lti as platform_threads
 from dh_grader.lti import PlatformThreads
-from dh_grader.lti import fetching as platform_threads
 
 from tests.guards import ANSWER
 

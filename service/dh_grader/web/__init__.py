@@ -71,11 +71,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
     router.include_router(tutor_routes(practised, assets, tutoring))
     router.include_router(attempt_routes(catalogue, assets, tutoring))
     router.include_router(course_routes(catalogue, assets, tutoring))
-    if tutoring.store is not None:
-        # It loads the database drivers.
-        from dh_grader.web.lti_routes import lti_routes
-
-        router.include_router(lti_routes(catalogue, assets, tutoring))
+    router.include_router(_lti_routes(catalogue, assets, tutoring))
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:
@@ -135,6 +131,15 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
         return _file(files[name], files[name].content, _FOR_EVER)
 
     return WebPages(router, problem_page(assets), tutoring.close, tutoring.drafts)
+
+
+def _lti_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
+    if tutoring.store is None:
+        return APIRouter()
+    # It loads the database drivers.
+    from dh_grader.web.lti_routes import lti_routes
+
+    return lti_routes(catalogue, assets, tutoring)
 
 
 def _practice_routes(assets: Assets, access: Access) -> APIRouter:
