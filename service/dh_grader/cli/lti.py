@@ -220,7 +220,9 @@ def register(
 def list_registrations() -> None:
     """List the registered platforms."""
     found = _done(registrations.all_registrations)
-    deployments = _done(lambda it: {each.id: registrations.deployments_of(it, each.id) for each in found})
+    deployments = _done(
+        lambda it: {each.id: registrations.deployments_of(it, each.id) for each in found}
+    )
     for each in found:
         launched = say("never launched")
         if each.launched_at:
