@@ -33,6 +33,7 @@ from dh_grader.catalogue import (
 )
 from dh_grader.catalogue.files import line_of, read_regular, value_lines, with_line
 from dh_grader.catalogue.robot import Robot
+from dh_grader.cli import spoken, user_language
 from dh_grader.cli.grade import chosen_assignment, write
 from dh_grader.cli.terminal import (
     UNUSABLE,
@@ -42,11 +43,9 @@ from dh_grader.cli.terminal import (
     installed_exercise,
     installed_file,
     named_exercise,
-    spoken,
     stdout,
     unreadable,
     unwritable,
-    user_language,
 )
 from dh_grader.figures import exercise_figure, reference_figure
 from dh_grader.figures.drawing import Theme
@@ -68,18 +67,14 @@ from dh_grader.regex import regex
 from dh_grader.settings import load_settings
 from dh_grader.solutions import ModelSolution, Shown, solve
 from dh_grader.translations import joined, say, say_count
-from dh_grader.variants import (
+from dh_grader.variants import NoVariantError, built
+from dh_grader.variants.deployment import (
     CheckedVariant,
-    NoVariantError,
     TooFewVariantsError,
-    built,
     checked_variant,
     deploy,
     with_deployed,
 )
-
-# --- `dh-grader exercises`: list, show, check and create exercises
-
 
 # --- Write new exercise files without replacing existing ones
 
@@ -542,6 +537,9 @@ def _draw(exercise: Exercise, seeds: Iterable[str], folder: Path) -> None:
             (folder / f"{variant.id}.svg").write_text(exercise_figure(variant), encoding="utf-8")
     except OSError as error:
         give_up(unwritable(folder, error))
+
+
+# --- `dh-grader exercises`: list, show, check and create exercises
 
 
 _NARROWEST = 24
