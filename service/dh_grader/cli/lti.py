@@ -40,9 +40,6 @@ from dh_grader.store.database import in_transaction
 from dh_grader.submissions.bodies import field_error
 from dh_grader.translations import joined, say
 
-# --- `dh-grader lti`: the registered platforms, and our keys for signing messages to them
-
-
 # --- `dh-grader lti scores`: the scores of a course at its platform
 
 
@@ -131,6 +128,9 @@ def own_address(option: str | None) -> str:
     if found is None:
         give_up(say("Give the address of this service: set DH_GRADER_PUBLIC_URL, or --address."))
     return found.rstrip("/")
+
+
+# --- `dh-grader lti`: the registered platforms, and our keys for signing messages to them
 
 
 R = TypeVar("R")

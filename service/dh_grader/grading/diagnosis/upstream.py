@@ -25,24 +25,24 @@ from dh_grader.catalogue.robot import at_home
 from dh_grader.expressions.evaluate import SymbolValues
 from dh_grader.grading.diagnosis.formulas import WrongEntry
 from dh_grader.grading.diagnosis.slips_of_the_table import (
-    axis_direction,
-    home_slip,
-    joint_slips,
-    length_slips,
-    lengths_of,
-    row_slips,
-    table_slips,
-)
-from dh_grader.grading.diagnosis.whole_tables import (
     HOME_POSITION,
     Change,
     Names,
     Slip,
     SymbolChange,
-    TableRows,
+    axis_direction,
     change_cells,
     changed_values,
+    home_slip,
+    joint_slips,
+    length_slips,
+)
+from dh_grader.grading.diagnosis.whole_tables import (
+    TableRows,
+    lengths_of,
+    row_slips,
     slips_of_rows,
+    table_slips,
 )
 from dh_grader.grading.frames import reference_values, variable_column
 from dh_grader.grading.judging import Grading, as_entries
