@@ -4,7 +4,13 @@ import tomllib
 
 import pytest
 from dh_grader.variants import built
-from dh_grader.variants.deployment import TooFewVariantsError, deploy, difficulty_of, form_of, with_deployed
+from dh_grader.variants.deployment import (
+    TooFewVariantsError,
+    deploy,
+    difficulty_of,
+    form_of,
+    with_deployed,
+)
 
 from tests.variants.shipped import shipped
 from tests.variants.varied_files import VARY, varied, varied_text

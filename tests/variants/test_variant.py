@@ -13,7 +13,14 @@ import pytest
 from dh_grader.catalogue import CatalogueError, Exercise
 from dh_grader.catalogue.varying import read_condition, vocabulary_of
 from dh_grader.submissions.bodies import UnknownExerciseError, find_exercise
-from dh_grader.variants import BuiltVariants, NoVariantError, built, choices_of, hidden_variant, pinned
+from dh_grader.variants import (
+    BuiltVariants,
+    NoVariantError,
+    built,
+    choices_of,
+    hidden_variant,
+    pinned,
+)
 
 from tests.together import together
 from tests.variants.varied_files import VARY, varied, varied_text

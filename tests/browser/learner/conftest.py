@@ -9,10 +9,10 @@ from http.server import ThreadingHTTPServer
 from typing import Any
 
 import pytest
-from dh_grader.courses import roll
 from dh_grader.access import Scope, Secret, new_key_text
 from dh_grader.access.key_ring import add_key
 from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
 from dh_grader.courses.assignments import add_assignment
 from dh_grader.courses.roll import issue_links
 from dh_grader.store.attempt_store import AttemptStore
