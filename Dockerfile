@@ -20,7 +20,7 @@ COPY exercises exercises
 COPY service service
 RUN python -m pip wheel --no-deps --no-build-isolation --wheel-dir dist . \
     && python -m pip --python /opt/dh-grader/bin/python install --no-deps --no-index dist/*.whl \
-    && /opt/dh-grader/bin/python -m service.cli.licences > /opt/dh-grader/LICENCES
+    && /opt/dh-grader/bin/python -m dh_grader.cli.licences > /opt/dh-grader/LICENCES
 
 
 FROM python:3.13-slim@sha256:7c61056e61ac89e852de05f3dc6fa51a6dd2181797bceed46aa725dd7cb2cd3b
@@ -43,5 +43,5 @@ EXPOSE 8000
 
 # It asks /healthz at the port that DH_GRADER_PORT names.
 HEALTHCHECK --interval=30s --timeout=5s --start-period=5s --retries=3 \
-    CMD ["python", "-m", "service.server.alive"]
-CMD ["python", "-m", "service", "serve"]
+    CMD ["python", "-m", "dh_grader.server.alive"]
+CMD ["python", "-m", "dh_grader", "serve"]

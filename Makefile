@@ -37,7 +37,7 @@ help: ## list the targets
 install: $(dev) ## create .venv with everything for work on the project
 
 run: $(runtime) ## start the service on http://127.0.0.1:8000 (HOST=, PORT=)
-	$(python) -m service serve --host "$(HOST)" --port "$(PORT)"
+	$(python) -m dh_grader serve --host "$(HOST)" --port "$(PORT)"
 
 # A worker that has finished takes over tests of another.
 pytest := $(python) -m pytest -n auto --dist worksteal
@@ -89,7 +89,7 @@ pages: $(dev) ## write all that is made from the code: pages of docs, types of s
 	$(call written,tests.docs.problems,docs/problems.md)
 	$(call written,tests.docs.notice,NOTICE)
 	$(call written,tests.catalogue.checked,exercises/checked.json)
-	$(call written,tests.front.api_types,service/web/types/api.d.ts)
+	$(call written,tests.front.api_types,service/dh_grader/web/types/api.d.ts)
 	$(python) -m tests.translations.catalogues
 
 bench: $(dev) ## measure against the budgets
@@ -189,7 +189,7 @@ clean: ## remove .venv and every cache
 	@[ ! -e "$(VENV)" ] || [ -f "$(VENV)/pyvenv.cfg" ] || { echo '$(VENV) is no virtual environment; not removed.'; exit 1; }
 	rm -rf "$(VENV)" .coverage .hypothesis .mypy_cache .pytest_cache .ruff_cache build dist
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
-	rm -f service/translations/*/*.mo
+	rm -f service/dh_grader/translations/*/*.mo
 
 $(runtime): pyproject.toml requirements.lock requirements-build.lock
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || { echo \

@@ -16,7 +16,7 @@ class CompiledCatalogues(BuildHookInterface[Any]):
         """Compile the catalogues into a temporary folder, unless the install reads the checkout."""
         if version == "editable":
             return
-        translations = Path(self.root, "service", "translations")
+        translations = Path(self.root, "service", "dh_grader", "translations")
         # The build environment has no package that the program needs.
         compiled = runpy.run_path(str(translations / "catalogues.py"))["compiled_catalogue"]
         self._folder = tempfile.mkdtemp()
@@ -25,7 +25,7 @@ class CompiledCatalogues(BuildHookInterface[Any]):
             made = Path(self._folder, name)
             made.parent.mkdir(exist_ok=True)
             made.write_bytes(compiled(text.read_bytes(), text.name))
-            build_data["force_include"][str(made)] = f"service/translations/{name}"
+            build_data["force_include"][str(made)] = f"dh_grader/translations/{name}"
 
     def finalize(self, version: str, *_: object) -> None:
         """Remove the temporary folder."""

@@ -13,7 +13,8 @@ import venv
 from pathlib import Path
 from typing import Final
 
-from service.app import app
+from dh_grader.app import app
+
 from tests.api.serving import served
 
 _TYPESCRIPT: Final = """\

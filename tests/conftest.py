@@ -11,10 +11,10 @@ from pathlib import Path
 
 import pytest
 import typer.rich_utils
+from dh_grader.catalogue import Exercise, load_exercise
+from dh_grader.catalogue.kinds import DhTableSpec
 from hypothesis import HealthCheck, settings
 
-from service.catalogue import Exercise, load_exercise
-from service.catalogue.parts.dh_table import DhTableSpec
 from tests.api.serving import Served, served
 from tests.shipped import shipped_exercises
 

@@ -6,8 +6,7 @@ from types import MappingProxyType
 
 import pytest
 from _pytest.mark import ParameterSet
-
-from service.catalogue import Exercise, load_catalogue, shipped_folder
+from dh_grader.catalogue import Exercise, load_catalogue, shipped_folder
 
 # The exercises with real robots, and those on the same arms in textbooks. They are much alike.
 REAL_ROBOTS = (

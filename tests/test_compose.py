@@ -10,8 +10,7 @@ from typing import Any
 
 import pytest
 import yaml
-
-from service.settings import PREFIX, Settings
+from dh_grader.settings import PREFIX, Settings
 
 ROOT = Path(__file__).parent.parent
 COMPOSE: dict[str, Any] = yaml.safe_load((ROOT / "compose.yaml").read_text(encoding="utf-8"))

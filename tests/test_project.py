@@ -105,7 +105,9 @@ def test_the_version_is_stated_in_pyproject_only() -> None:
     assert importlib.metadata.version("dh-grader") == version
     stated = re.compile(rf"""["']{re.escape(version)}["']|__version__\s*=\s*["']""")
     repeats = [
-        path for path in (ROOT / "service").rglob("*.py") if stated.search(path.read_text("utf-8"))
+        path
+        for path in (ROOT / "service" / "dh_grader").rglob("*.py")
+        if stated.search(path.read_text("utf-8"))
     ]
     assert repeats == []
 
@@ -117,12 +119,12 @@ def test_a_wheel_contains_the_program_and_the_catalogue(tmp_path: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         carried = set(archive.namelist())
     exercises = {
-        f"service/_exercises/{path.relative_to(ROOT / 'exercises').as_posix()}"
+        f"service/dh_grader/_exercises/{path.relative_to(ROOT / 'exercises').as_posix()}"
         for path in (ROOT / "exercises").rglob("*.toml")
     }
     program = {
         path.relative_to(ROOT).as_posix()
-        for path in (ROOT / "service").rglob("*")
+        for path in (ROOT / "service" / "dh_grader").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts and path.suffix != ".mo"
     }
     # Of the translations, a wheel has the compiled catalogues only.
@@ -139,7 +141,7 @@ def test_a_wheel_contains_the_program_and_the_catalogue(tmp_path: Path) -> None:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="hadolint is not published for Windows")
 @pytest.mark.parametrize(
-    "dockerfile", ["Dockerfile", "service/bundles/templates/prairielearn/Dockerfile"]
+    "dockerfile", ["Dockerfile", "service/dh_grader/bundles/templates/prairielearn/Dockerfile"]
 )
 def test_hadolint_finds_nothing_in_a_dockerfile(dockerfile: str) -> None:
     hadolint = shutil.which("hadolint", path=sysconfig.get_path("scripts"))
@@ -161,7 +163,7 @@ def test_files_that_the_dockerfile_copies_exist_and_are_not_ignored() -> None:
     "file",
     [
         "Dockerfile",
-        "service/bundles/templates/prairielearn/Dockerfile",
+        "service/dh_grader/bundles/templates/prairielearn/Dockerfile",
         "compose.yaml",
         "deploy/simple/compose.yaml",
     ],

@@ -4,8 +4,8 @@ import re
 from importlib import import_module
 
 import pytest
+from dh_grader.regex import regex
 
-from service.regex import regex
 from tests.test_structure import trees
 
 

@@ -2,9 +2,8 @@ import os
 from pathlib import Path
 
 import pytest
-
-from service.catalogue import FeedbackLevel, shipped_folder
-from service.settings import Settings, SettingsError, load_settings
+from dh_grader.catalogue import FeedbackLevel, shipped_folder
+from dh_grader.settings import Settings, SettingsError, load_settings
 
 
 @pytest.fixture(autouse=True)

@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader import slices as time_slices
+from dh_grader.grading import grade
+from dh_grader.slices import checkpoint, in_slices, working_time
+from dh_grader.submissions.bodies import GradeRequest
 
-from service import time_slices
-from service.grading import grade
-from service.submissions.body import GradeRequest
-from service.time_slices import checkpoint, in_slices, working_time
 from tests.load.wrong_answers import tables
 from tests.shipped import shipped_exercises
 

@@ -4,11 +4,11 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
+from dh_grader.access import Secret
+from dh_grader.access.key_ring import KeyRing
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.tables import metadata
 
-from service.access.key_ring import KeyRing
-from service.access.keys import Secret
-from service.attempts.storage.tables import metadata
-from service.attempts.store import AttemptStore
 from tests.attempts.databases import migrated_database, new_file
 
 SECRET_TEXT = "0123456789abcdef" * 4

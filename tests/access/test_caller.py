@@ -1,8 +1,7 @@
 """Test what a caller may reach, and whose requests and attempts are one client's."""
 
 import pytest
-
-from service.access.caller import NOBODY, Caller
+from dh_grader.access import NOBODY, Caller
 
 LEARNER = Caller(frozenset(), learner="ada", key_id="0011aaff")
 

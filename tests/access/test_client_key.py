@@ -1,8 +1,7 @@
 """Identify a client by the address of its requests."""
 
 import pytest
-
-from service.access.client_key import client_key
+from dh_grader.access import client_key
 
 
 @pytest.mark.parametrize(

@@ -9,10 +9,10 @@ from collections.abc import Collection, Mapping
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from dh_grader.access import Key, KeysBusyError
+from dh_grader.access import key_ring as key_lookups
+from dh_grader.access.key_ring import KeyLookups, KeyPlace
 
-from service.access import key_lookups
-from service.access.key_lookups import KeyLookups, KeyPlace
-from service.access.keys import Key, KeysBusyError
 from tests.guards import ANSWER
 
 NOW = datetime(2026, 11, 22, 12, tzinfo=UTC)

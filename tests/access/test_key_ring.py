@@ -10,13 +10,21 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
-from sqlalchemy import Connection, Engine, delete, event, select, text
-
-from service.access import key_lookups, key_ring
-from service.access.caller import Caller, Scope
-from service.access.key_lookups import KeyPlace
-from service.access.key_ring import KeyRing
-from service.access.key_table import (
+from dh_grader.access import (
+    Caller,
+    CredentialError,
+    Key,
+    KeysBusyError,
+    KeysUnreachableError,
+    Scope,
+    Secret,
+    new_key_text,
+)
+from dh_grader.access import key_ring as key_lookups
+from dh_grader.access import key_ring as key_ring
+from dh_grader.access.key_ring import (
+    KeyPlace,
+    KeyRing,
     add_key,
     all_keys,
     insert_key,
@@ -26,10 +34,10 @@ from service.access.key_table import (
     revoke_key,
     settle,
 )
-from service.access.key_text import new_key_text
-from service.access.keys import CredentialError, Key, KeysBusyError, KeysUnreachableError, Secret
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.tables import key_secrets, keys
+from dh_grader.store.database import in_transaction, open_database
+from dh_grader.store.tables import key_secrets, keys
+from sqlalchemy import Connection, Engine, delete, event, select, text
+
 from tests.guards import ANSWER
 
 SECRET = Secret("0123456789abcdef" * 4)
@@ -491,7 +499,7 @@ def test_a_known_key_does_not_wait_for_invented_ones(
             assert answers.wait(ANSWER)
         return keys_at(connection, places)
 
-    monkeypatch.setattr("service.access.key_ring.keys_at", slow)
+    monkeypatch.setattr("dh_grader.access.key_ring.keys_at", slow)
 
     async def ask() -> Caller:
         invented = [asyncio.create_task(ring.caller(new_key_text())) for _ in range(300)]
@@ -549,7 +557,7 @@ def test_a_repeated_wrong_key_is_looked_up_rarely(engine: Engine) -> None:
 def test_too_many_lookups_raise_a_busy_error(
     engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.access.key_lookups.MAX_WAITING", 10)
+    monkeypatch.setattr("dh_grader.access.key_ring.MAX_WAITING", 10)
     key, known = made(engine)
     ring = KeyRing(engine, SECRET, 0.0)
     asked(ring, key)

@@ -4,8 +4,7 @@ import re
 from zlib import crc32
 
 import pytest
-
-from service.access.key_text import is_spelt_right, key_text_of, new_key_text
+from dh_grader.access import is_spelt_right, key_text_of, new_key_text
 
 DIGITS = "0123456789abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
 

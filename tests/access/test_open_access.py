@@ -1,9 +1,7 @@
 """Test what the setting `open` lets everybody do."""
 
 import pytest
-
-from service.access.caller import Scope
-from service.access.open_access import OPEN_ANYWHERE, OPEN_HERE, OpenAccess, open_access
+from dh_grader.access import OPEN_ANYWHERE, OPEN_HERE, OpenAccess, Scope, open_access
 
 GRADE, RECORD = frozenset({Scope.GRADE}), frozenset({Scope.GRADE, Scope.RECORD})
 

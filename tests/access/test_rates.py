@@ -11,10 +11,10 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
+from dh_grader.access import NOBODY, Caller
+from dh_grader.access.rates import Rates, UnusableRatesError, rates_in
 from limits.strategies import SlidingWindowCounterRateLimiter
 
-from service.access.caller import NOBODY, Caller
-from service.access.rates import Rates, UnusableRatesError, rates_in
 from tests.guards import ANSWER
 
 COURSE = Caller(frozenset(), key_id="course")

@@ -12,12 +12,9 @@ from pathlib import Path
 from typing import Any, Final
 
 import pytest
-
-from service.access.caller import Caller, Scope
-from service.access.keys import CredentialError, Key, Secret
-from service.access.sessions import key_of_session, signed_session
-from service.access.tokens import LearnerToken, signed, verified
-from service.settings import SettingsError, load_settings
+from dh_grader.access import Caller, CredentialError, Key, Scope, Secret
+from dh_grader.access.key_ring import LearnerToken, key_of_session, signed, signed_session, verified
+from dh_grader.settings import SettingsError, load_settings
 
 SECRET: Final = Secret("0123456789abcdef" * 4).token_secret
 HEADER: Final[Mapping[str, Any]] = {"alg": "HS256", "typ": "JWT"}

@@ -4,10 +4,9 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
 from fastapi import FastAPI
-
-from service.api.application import application
-from service.catalogue import Exercise
 
 
 class InProcess(httpx.BaseTransport):

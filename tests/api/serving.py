@@ -41,8 +41,8 @@ class Served:
 
 
 @contextmanager
-def served(folder: Path, *, module: str = "service", **environment: str) -> Iterator[Served]:
-    """Run a real process, `python -m service serve`, with its log in a folder."""
+def served(folder: Path, *, module: str = "dh_grader", **environment: str) -> Iterator[Served]:
+    """Run a real process, `python -m dh_grader serve`, with its log in a folder."""
     # Another `module` may start the service with a change.
     log = folder / "log"
     command = [sys.executable, "-m", module, "serve"]

@@ -3,8 +3,8 @@
 import asyncio
 import gc
 
-from service.api.application import application
-from service.catalogue import LateCatalogue, open_catalogue, shipped_folder
+from dh_grader.api.application import application
+from dh_grader.catalogue import LateCatalogue, open_catalogue, shipped_folder
 
 
 def test_garbage_is_collected_while_it_serves() -> None:

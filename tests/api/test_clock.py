@@ -14,20 +14,16 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.access import OPEN_HERE, Caller, Scope, Secret, new_key_text
+from dh_grader.access.key_ring import KeyRing, add_key, settle
+from dh_grader.access.rates import Rates
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
 
-from service.access.caller import Caller, Scope
-from service.access.key_ring import KeyRing
-from service.access.key_table import add_key, settle
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.access.open_access import OPEN_HERE
-from service.access.rates import Rates
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.storage.database import in_transaction
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.catalogue.attempts import AttemptsSpec
 from tests.attempts.databases import new_file
 from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT
 
@@ -46,7 +42,7 @@ class Clock:
 def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
     clock, real_time = Clock(), time.time
     # The module is imported with the first token.
-    importlib.import_module("service.access.tokens")
+    importlib.import_module("dh_grader.access.key_ring")
 
     class Told(datetime):
         @classmethod
@@ -54,7 +50,7 @@ def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
             return datetime.now(tz) + clock.ahead
 
     for name, module in list(sys.modules.items()):
-        own = name.startswith(("service.", "jwt."))
+        own = name.startswith(("dh_grader.", "jwt."))
         if own and getattr(module, "datetime", None) is datetime:
             monkeypatch.setattr(module, "datetime", Told)
     monkeypatch.setattr(time, "time", lambda: real_time() + clock.ahead.total_seconds())

@@ -8,13 +8,11 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.grading import grade
+from dh_grader.submissions.bodies import MAX_BODY_SIZE, MAX_BRACKETS, MAX_SUBMISSIONS
 from fastapi import FastAPI
-
-from service.api.application import application
-from service.catalogue import Exercise, FeedbackLevel
-from service.grading import grade
-from service.submissions.body import MAX_SUBMISSIONS
-from service.submissions.strict_json import MAX_BODY_SIZE, MAX_BRACKETS
 
 URL = "/v1/grade"
 # From the source of the exercise: Spong's planar arm with two links.
@@ -154,7 +152,7 @@ def test_a_failure_of_the_program_costs_one_submission(
             raise ZeroDivisionError("a secret")
         return grade(exercise, submission)
 
-    monkeypatch.setattr("service.api.routes.grading.grade", breaks)
+    monkeypatch.setattr("dh_grader.api.grading.grade", breaks)
     first, broken, last = results(client, RIGHT, {**RIGHT, "answers": {}}, RIGHT)
     assert first == last == {"report": alone(client, RIGHT).json()}
     assert broken["problem"]["status"] == 500
@@ -181,7 +179,7 @@ def test_others_are_served_between_two_gradings(
             events.append("served")
             await many
 
-    monkeypatch.setattr("service.api.routes.grading.grade", noted)
+    monkeypatch.setattr("dh_grader.api.grading.grade", noted)
     asyncio.run(asked_meanwhile())
     assert events.count("grading") == 60
     assert events[-1] == "grading"
@@ -190,5 +188,5 @@ def test_others_are_served_between_two_gradings(
 def test_the_readme_s_example_is_the_documented_one() -> None:
     root = Path(__file__).parents[2]
     shown = (root / "docs" / "examples" / "many.json").read_text("utf-8")
-    example = root / "service" / "api" / "document" / "examples" / "grade-many-request.json"
+    example = root / "service" / "dh_grader" / "api" / "examples" / "grade-many-request.json"
     assert shown == example.read_text("utf-8")

@@ -6,8 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import httpx
-
-from service.submissions.body import MAX_SUBMISSIONS
+from dh_grader.submissions.bodies import MAX_SUBMISSIONS
 
 ROOT = Path(__file__).parents[2]
 HTTP = ROOT / "docs" / "http.md"

@@ -10,20 +10,19 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.access import open_access
+from dh_grader.api import frames as preview
+from dh_grader.api.application import application
+from dh_grader.api.grading_gates import PracticeGate
+from dh_grader.api.http import ProblemError
+from dh_grader.api.permissions import RIGHTS, Access
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.grading import grade
+from dh_grader.grading.reading.entries import Reader
+from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 
-from service.access.open_access import open_access
-from service.api.application import application
-from service.api.courses.practice import PracticeGate
-from service.api.http.problems import ProblemError
-from service.api.permissions.access import Access
-from service.api.permissions.rights import RIGHTS
-from service.api.routes import preview
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.catalogue.attempts import AttemptsSpec
-from service.grading import grade
-from service.grading.reading.entry import Reader
 from tests.attempts.databases import new_file
 
 ARM = "stanford-arm"

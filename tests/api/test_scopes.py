@@ -16,26 +16,25 @@ from urllib.parse import urljoin, urlsplit
 
 import httpx
 import pytest
-from fastapi import FastAPI, Request
-from fastapi.routing import iter_route_contexts
-from sqlalchemy import Connection, select, update
-from starlette.routing import Route
-
-from service.access.caller import Caller, Scope
-from service.access.key_ring import KeyRing
-from service.access.key_table import add_key, revoke_key
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.access.open_access import OPEN_HERE, open_access
-from service.access.rates import Rates
-from service.api.application import application
-from service.api.document.openapi import example
-from service.api.http.problems import ProblemError
-from service.api.permissions.access import Access
-from service.api.permissions.rights import RIGHTS
-from service.api.routes import grading
-from service.attempts.storage.database import in_transaction
-from service.attempts.storage.tables import (
+from dh_grader.access import OPEN_HERE, Caller, Scope, Secret, new_key_text, open_access
+from dh_grader.access.key_ring import KeyRing, add_key, revoke_key
+from dh_grader.access.rates import Rates
+from dh_grader.api import grading
+from dh_grader.api.application import application
+from dh_grader.api.document import example
+from dh_grader.api.http import ProblemError
+from dh_grader.api.permissions import RIGHTS, Access
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.contract import MEDIA_TYPE, PROBLEM_TYPES, TYPE_PREFIX
+from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
+from dh_grader.grading import Report, Submission, grade
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
+from dh_grader.store.results import override
+from dh_grader.store.tables import (
     assignments,
     attempts,
     course_learners,
@@ -44,16 +43,12 @@ from service.attempts.storage.tables import (
     keys,
     overrides,
 )
-from service.attempts.store import AttemptStore
-from service.attempts.tutoring import override
-from service.catalogue import Exercise, shipped_folder
-from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from service.contract.problems import MEDIA_TYPE, PROBLEM_TYPES, TYPE_PREFIX
-from service.courses import roll
-from service.courses.assignments import add_assignment
-from service.courses.links import issue_links
-from service.grading import Report, Submission, grade
-from service.web import Tutoring, web_routes
+from dh_grader.web import Tutoring, web_routes
+from fastapi import FastAPI, Request
+from fastapi.routing import iter_route_contexts
+from sqlalchemy import Connection, select, update
+from starlette.routing import Route
+
 from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
 

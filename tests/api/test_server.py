@@ -1,4 +1,4 @@
-"""Test the real process, `python -m service serve`, on a free port."""
+"""Test the real process, `python -m dh_grader serve`, on a free port."""
 
 import json
 import os
@@ -85,7 +85,7 @@ def test_a_bad_exercise_file_prevents_startup(tmp_path: Path) -> None:
     (tmp_path / "broken.toml").write_text('title = "x"\n', encoding="utf-8")
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
     result = subprocess.run(
-        [sys.executable, "-m", "service", "serve", "--port", "0"],
+        [sys.executable, "-m", "dh_grader", "serve", "--port", "0"],
         cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode == 2
@@ -97,7 +97,7 @@ def test_a_bad_exercise_file_prevents_startup(tmp_path: Path) -> None:
 def test_a_bad_exercise_file_prevents_startup_under_another_server(tmp_path: Path) -> None:
     environment = os.environ | {"DH_GRADER_EXERCISES_DIR": str(tmp_path)}
     result = subprocess.run(
-        [sys.executable, "-m", "uvicorn", "service.app:app", "--port", "0"],
+        [sys.executable, "-m", "uvicorn", "dh_grader.app:app", "--port", "0"],
         cwd=ROOT, env=environment, capture_output=True, text=True, check=False,
     )  # fmt: skip
     assert result.returncode != 0

@@ -10,20 +10,15 @@ from typing import Any
 import httpx
 import jwt
 import pytest
-
-from service.access.caller import Scope
-from service.access.key_ring import KeyRing
-from service.access.key_table import add_key, revoke_key
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.access.open_access import OPEN_HERE
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.storage.database import in_transaction
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.web import Tutoring, web_routes
-from service.web.sign_in import own_path
+from dh_grader.access import OPEN_HERE, Scope, Secret, new_key_text
+from dh_grader.access.key_ring import KeyRing, add_key, revoke_key
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
+from dh_grader.web import Tutoring, web_routes
+from dh_grader.web.pages import own_path
 
 SECRET = Secret("0123456789abcdef" * 4)
 ADDRESS = "https://grader.example.edu"

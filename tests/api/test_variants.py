@@ -4,9 +4,9 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader import variants
+from dh_grader.variants import BuiltVariants, built
 
-from service.variants import variant as variants
-from service.variants.variant import BuiltVariants, built
 from tests.together import together
 from tests.variants.shipped import shipped
 

@@ -7,7 +7,8 @@ from functools import cache
 from random import Random
 from typing import Any, Final, NamedTuple
 
-from service.catalogue import Exercise
+from dh_grader.catalogue import Exercise
+
 from tests.attack.in_process import Post, grade_path
 from tests.expressions.fuzzing import PIECES, hostile, mutated, seeds
 from tests.grids.test_hostile import FRAGMENTS

@@ -9,9 +9,9 @@ from random import Random
 from typing import Any, Final
 
 import numpy as np
+from dh_grader.catalogue import Exercise, load_exercise
+from dh_grader.grading import PartReport, Verdict
 
-from service.catalogue import Exercise, load_exercise
-from service.grading import PartReport, Verdict
 from tests.attack.bodies import COLUMNS, exercises, model_of
 from tests.attack.formulas import (
     Call,

@@ -5,8 +5,9 @@ import sys
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
-from service.api.application import application
-from service.catalogue import Exercise
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+
 from tests.shipped import shipped_exercises
 
 
@@ -77,7 +78,7 @@ class InProcess:
 def caches() -> Iterator[Callable[[], None]]:
     known = set()
     for name, module in sorted(sys.modules.items()):
-        if name.startswith("service."):
+        if name.startswith("dh_grader."):
             for found in vars(module).values():
                 for value in found if isinstance(found, list) else [found]:
                     clear = getattr(value, "cache_clear", None)

@@ -7,11 +7,10 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Final
 
-from service.access.caller import Scope
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.attempts.storage.database import in_transaction, open_database
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.key_ring import add_key
+from dh_grader.store.database import in_transaction, open_database
+
 from tests.server.raw import Service
 
 # A request that matches the schema may still be refused: if it names an unknown exercise or part

@@ -18,9 +18,9 @@ from random import Random
 from typing import Final
 
 import numpy as np
+from dh_grader.expressions import ExpressionError, read
+from dh_grader.pasting import GridError, read_grid
 
-from service.expressions import ExpressionError, read
-from service.grids import GridError, read_grid
 from tests.attack import graded
 from tests.attack.formulas import (
     TURNING,

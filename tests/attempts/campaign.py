@@ -14,18 +14,17 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from dh_grader.catalogue import Exercise, FeedbackLevel, load_catalogue, shipped_folder
+from dh_grader.store import AttemptFilter
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.attempts import outcome_ids
+from dh_grader.store.database import in_transaction
+from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import exercise_statistics, page
+from dh_grader.store.tables import attempts
 from rich.console import Console
 from sqlalchemy import Connection, insert
 
-from service.attempts.attempt import AttemptFilter
-from service.attempts.recording import outcome_ids
-from service.attempts.regrades.outdated import Regrading
-from service.attempts.results.listing import page
-from service.attempts.results.statistics import exercise_statistics
-from service.attempts.storage.database import in_transaction
-from service.attempts.storage.tables import attempts
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel, load_catalogue, shipped_folder
 from tests.attempts.recorded import NOON, new_attempt
 from tests.benchmarks.timing import floor_seconds
 

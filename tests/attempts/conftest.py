@@ -5,9 +5,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import open_database
 
-from service.attempts.storage.database import open_database
-from service.attempts.store import AttemptStore
 from tests.attempts.databases import KINDS, new_file
 
 
@@ -17,13 +17,13 @@ def killable() -> Any:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(
         [
-            "service.attempts.regrades.outdated",
-            "service.attempts.store",
-            "service.authoring",
-            "service.cli.commands.regrade",
-            "service.cli.operations.restore",
-            "service.cli.program",
-            "service.server.start",
+            "dh_grader.store.regrades",
+            "dh_grader.store",
+            "dh_grader.authoring",
+            "dh_grader.cli.attempts",
+            "dh_grader.cli.attempts",
+            "dh_grader.cli",
+            "dh_grader.server",
         ]
     )
     return context.Process

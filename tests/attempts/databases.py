@@ -13,9 +13,8 @@ from typing import Any, Final
 from urllib.parse import quote
 
 import pytest
+from dh_grader.store.database import open_database
 from sqlalchemy import create_engine, make_url, text
-
-from service.attempts.storage.database import open_database
 
 KINDS = ("sqlite", "postgresql")
 # A guard against a server that does not stop (seconds).

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from service.attempts.storage.database import open_database
+from dh_grader.store.database import open_database
 
 
 def files_with(text: str, path: str) -> list[str]:

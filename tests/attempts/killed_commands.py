@@ -12,10 +12,10 @@ from multiprocessing import Pipe
 from multiprocessing.connection import Connection
 from typing import Any, Final
 
+from dh_grader.cli import program
+from dh_grader.store import database as database_file
 from sqlalchemy import Engine, event
 
-from service.attempts.storage import database_file
-from service.cli.program import program
 from tests.guards import ANSWER
 
 # The events of Python's audit hooks that stand for a step on the disk.

@@ -5,15 +5,20 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from typing import Any
 
-from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
-from service.attempts.graded import AttemptGrading, AttemptReport
-from service.attempts.outcome import Outcome
-from service.attempts.recording import record
-from service.attempts.regrades.outdated import RegradedAttempt, Regrading
-from service.attempts.storage.database import in_transaction
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel
-from service.contract.attempts import AttemptRequest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.contract import AttemptRequest
+from dh_grader.store import (
+    AttemptGrading,
+    AttemptReport,
+    NewAttempt,
+    Outcome,
+    RecordedAttempt,
+    Standing,
+)
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.attempts import record
+from dh_grader.store.database import in_transaction
+from dh_grader.store.regrades import RegradedAttempt, Regrading
 
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
 RIGHT = "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"

@@ -14,12 +14,12 @@ import time
 from collections import Counter
 from pathlib import Path
 
+from dh_grader.catalogue import load_catalogue, shipped_folder
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.tables import attempts, earlier_reports, regrade_queue
 from rich.console import Console
 from sqlalchemy import func, select
 
-from service.attempts.storage.tables import attempts, earlier_reports, regrade_queue
-from service.attempts.store import AttemptStore
-from service.catalogue import load_catalogue, shipped_folder
 from tests.api.serving import ROOT
 from tests.attempts.campaign import fill
 from tests.attempts.databases import new_database, postgresql_server
@@ -45,7 +45,7 @@ def regraded(store: AttemptStore, url: str, folder: Path, workers: int, killed: 
     command = [
         sys.executable,
         "-m",
-        "service",
+        "dh_grader",
         "attempts",
         "regrade",
         "scara",

@@ -15,13 +15,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.attempts import record
+from dh_grader.store.database import in_transaction, open_database
+from dh_grader.store.tables import attempts
 from sqlalchemy import select
 
-from service.attempts.recording import record
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.tables import attempts
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
 from tests.attempts.databases import new_database
 from tests.attempts.recorded import RIGHT, new_attempt
 from tests.guards import ANSWER

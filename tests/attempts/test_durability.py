@@ -18,15 +18,15 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.server import serve
+from dh_grader.settings import Settings
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import open_database
+from dh_grader.store.tables import attempts
 from pydantic import SecretStr
 from sqlalchemy import select
 
-from service.attempts.storage.database import open_database
-from service.attempts.storage.tables import attempts
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.server.start import serve
-from service.settings import Settings
 from tests.attempts.recorded import RIGHT, new_attempt, record_once
 from tests.guards import ANSWER
 

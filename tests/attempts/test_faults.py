@@ -8,12 +8,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.store import AttemptFilter, StoreDownError
+from dh_grader.store.attempt_store import AttemptStore
 from sqlalchemy import event
 
-from service.attempts.attempt import AttemptFilter
-from service.attempts.errors import StoreDownError
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
 from tests.attempts.recorded import RIGHT, new_attempt, record_once
 from tests.guards import ANSWER
 
@@ -26,7 +25,7 @@ def record(store: AttemptStore, exercise: Exercise, ordinal: int) -> bool:
 def test_a_locked_file_is_reported_after_a_wait_and_works_once_unlocked(
     sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.attempts.storage.database._LOCK_WAIT", 0.5)
+    monkeypatch.setattr("dh_grader.store.database._LOCK_WAIT", 0.5)
     scara = catalogue["scara"]
     store = AttemptStore.open(sqlite_url)
     store.start()

@@ -13,15 +13,15 @@ from typing import Final
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+from dh_grader.cli import program
+from dh_grader.store import UnusableDatabaseError
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import open_database
 from sqlalchemy import event
 from typer.testing import CliRunner, Result
 
-from service.api.application import application
-from service.attempts.errors import UnusableDatabaseError
-from service.attempts.storage.database import open_database
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.cli.program import program
 from tests.api.conftest import InProcess
 from tests.attempts.databases import new_file
 from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded_all

@@ -14,16 +14,15 @@ from pathlib import Path
 from typing import Any, Final
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.store import database
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.attempts import record
+from dh_grader.store.database import before, in_transaction, open_database, unfinished
+from dh_grader.store.results import override
+from dh_grader.store.tables import attempts, earlier_reports, overrides
 from sqlalchemy import func, select, text
 
-from service.attempts.recording import record
-from service.attempts.storage import database
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.database_file import before, unfinished
-from service.attempts.storage.tables import attempts, earlier_reports, overrides
-from service.attempts.store import AttemptStore
-from service.attempts.tutoring import override
-from service.catalogue import Exercise
 from tests.attempts.databases import KINDS, new_database
 from tests.attempts.erasure import files_with
 from tests.attempts.killed_commands import Ended, command, kills, moments

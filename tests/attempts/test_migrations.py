@@ -15,15 +15,13 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.store import UnusableDatabaseError, database
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import DatabaseFile, open_database
+from dh_grader.store.tables import attempts, metadata
 from sqlalchemy import Engine, event, inspect, select, text
 
-from service.attempts.errors import UnusableDatabaseError
-from service.attempts.storage import database
-from service.attempts.storage.database import open_database
-from service.attempts.storage.database_file import DatabaseFile
-from service.attempts.storage.tables import attempts, metadata
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
 from tests.attempts.databases import KINDS, new_database, new_file
 from tests.attempts.recorded import RIGHT, recorded
 from tests.attempts.test_upgrade import FIXED, INSERT, REPORT, ROWS, make_old

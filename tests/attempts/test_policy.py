@@ -1,10 +1,9 @@
 from datetime import UTC, datetime, timedelta, timezone
 
 import pytest
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.store import AttemptRefusedError, Ruling, points_after, ruling
 from pydantic import ValidationError
-
-from service.attempts.policy import AttemptRefusedError, Ruling, points_after, ruling
-from service.catalogue.attempts import AttemptsSpec
 
 NOON = datetime(2026, 11, 22, 12, tzinfo=UTC)
 HOUR = timedelta(hours=1)

@@ -11,14 +11,14 @@ from pathlib import Path
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.store import UnusableDatabaseError
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import open_database
 from sqlalchemy import event
 
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.errors import UnusableDatabaseError
-from service.attempts.storage.database import open_database
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
 from tests.api.conftest import InProcess
 from tests.attempts.databases import KINDS
 from tests.attempts.recorded import NO_TWIST

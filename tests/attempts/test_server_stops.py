@@ -7,12 +7,12 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.tables import attempts
 from sqlalchemy import select
 
-from service.api.application import application
-from service.attempts.storage.tables import attempts
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
 from tests.attempts.databases import STOPS, new_database, start, stop
 from tests.attempts.recorded import NO_TWIST
 from tests.guards import ANSWER
@@ -77,7 +77,7 @@ def test_every_acknowledged_attempt_is_recorded_once_however_the_server_stops(
     catalogue: Mapping[str, Exercise],
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("service.attempts.storage.writer._TIMEOUT", 0.5)
+    monkeypatch.setattr("dh_grader.store.database._TIMEOUT", 0.5)
     store = AttemptStore.open(postgresql_url)
     store.start()
 

@@ -6,14 +6,19 @@ from datetime import UTC, datetime
 import pytest
 from alembic.autogenerate import compare_metadata
 from alembic.migration import MigrationContext
+from dh_grader.store import (
+    NewAttempt,
+    Outcome,
+    RecordedAttempt,
+    Standing,
+    StoreDownError,
+    UnusableDatabaseError,
+)
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import open_database
+from dh_grader.store.tables import metadata
 from sqlalchemy import text
 
-from service.attempts.attempt import NewAttempt, RecordedAttempt, Standing
-from service.attempts.errors import StoreDownError, UnusableDatabaseError
-from service.attempts.outcome import Outcome
-from service.attempts.storage.database import open_database
-from service.attempts.storage.tables import metadata
-from service.attempts.store import AttemptStore
 from tests.attempts.recorded import record_once
 
 OUTCOME = Outcome("scara", "{}")

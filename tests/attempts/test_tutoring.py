@@ -4,19 +4,14 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.store import UnknownAttemptError, UnusablePointsError
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import LearnerData, forget, history, override
+from dh_grader.store.tables import attempts, metadata, outcomes, regrade_queue
 from sqlalchemy import func, select, text
 
-from service.attempts.errors import UnknownAttemptError, UnusablePointsError
-from service.attempts.regrades.outdated import Regrading
-from service.attempts.results.listing import history
-from service.attempts.storage.tables import attempts, metadata, outcomes, regrade_queue
-from service.attempts.store import AttemptStore
-from service.attempts.tutoring import (
-    LearnerData,
-    forget,
-    override,
-)
-from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, recorded, regraded
 from tests.guards import ANSWER
 

@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.store import UnusableDatabaseError, database
+from dh_grader.store.database import open_database, unmigrated_database
 
-from service.attempts.errors import UnusableDatabaseError
-from service.attempts.storage import database
-from service.attempts.storage.database import open_database, unmigrated_database
 from tests.attempts.databases import KINDS, migrated_database
 from tests.attempts.test_durability import Acknowledged, _port, _serve, assert_recorded_once
 from tests.attempts.test_upgrade import MIGRATIONS

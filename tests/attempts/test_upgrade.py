@@ -12,17 +12,15 @@ from uuid import uuid4
 import pytest
 from alembic import command
 from alembic.config import Config
+from dh_grader.access import Secret
+from dh_grader.access.key_ring import add_key, fits, revoke_key, settle
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.store import AttemptFilter, GradesFormat, database
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import graded_attempts, history, page, written
 from sqlalchemy import create_engine, make_url, text
 
-from service.access.key_table import add_key, fits, revoke_key, settle
-from service.access.keys import Secret
-from service.attempts.attempt import AttemptFilter, GradesFormat
-from service.attempts.regrades.outdated import Regrading
-from service.attempts.results.grades import graded_attempts, written
-from service.attempts.results.listing import history, page
-from service.attempts.storage import database
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.databases import new_database, new_file
 from tests.attempts.recorded import RIGHT, regraded
 

@@ -2,8 +2,8 @@
 
 from collections.abc import Callable
 
-from service.authoring import Level, Remark, examine
-from service.catalogue import Exercise
+from dh_grader.authoring import Level, Remark, examine
+from dh_grader.catalogue import Exercise
 
 Make = Callable[[str], Exercise]
 

@@ -3,11 +3,10 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.authoring import Level, examine, failed_checks
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.translations import LANGUAGES, told
 
-from service.authoring import Level, examine
-from service.authoring.answers import failed_checks
-from service.catalogue import Exercise, shipped_folder
-from service.translations import LANGUAGES, told
 from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, remarks_on, robot
 from tests.grading.support.bare_numbers import BARE, BareExercise
 from tests.shipped import sampled

@@ -1,8 +1,8 @@
 """Test the warnings about degrees without a unit in exercise files."""
 
 import pytest
+from dh_grader.authoring import Level, Remark
 
-from service.authoring import Level, Remark
 from tests.authoring.files import HEAD, POSE, ROBOT, Make, only, remarks_on, robot
 
 

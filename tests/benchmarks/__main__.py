@@ -12,14 +12,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
+from dh_grader.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
+from dh_grader.expressions import read
+from dh_grader.grading import Submission, grade
+from dh_grader.kinematics import Convention, pose
 from rich.console import Console
 from rich.table import Table
 
-from service.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
-from service.expressions import read
-from service.grading import Submission, grade
-from service.kinematics.chain import pose
-from service.kinematics.dh import Convention
 from tests.benchmarks import answers, paired, server, starts
 from tests.benchmarks.timing import floor_seconds, multiple, multiple_of_each
 

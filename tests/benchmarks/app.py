@@ -6,12 +6,11 @@ The first route only validates a body; the second returns the processor time of 
 import time
 from typing import Any
 
+from dh_grader import server as start
+from dh_grader.cli import main
+from dh_grader.server import installed_app
 from fastapi import FastAPI
 from pydantic import BaseModel
-
-from service.cli import main
-from service.server import start
-from service.server.installed import installed_app
 
 
 class Trivial(BaseModel):

@@ -86,7 +86,7 @@ def main() -> None:
         write_class(folder, options.count)
         subprocess.run(
             [
-                sys.executable, "-m", "service", "grade", str(folder), "--exercise", EXERCISE,
+                sys.executable, "-m", "dh_grader", "grade", str(folder), "--exercise", EXERCISE,
                 "--format", options.format, "--output", str(Path(temporary) / "out"),
                 "--jobs", str(options.jobs),
             ],

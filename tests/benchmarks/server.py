@@ -14,12 +14,12 @@ from collections.abc import Callable, Iterator, Mapping
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+from dh_grader.contract.courses import NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.store.database import in_transaction, open_database
 from sqlalchemy import Connection
 
-from service.attempts.storage.database import in_transaction, open_database
-from service.contract.courses import NewAssignment, NewCourse, NewLearner
-from service.courses import roll
-from service.courses.assignments import add_assignment
 from tests.benchmarks.answers import T06, distinct, one_student_s_table, table
 from tests.server.raw import service
 
@@ -220,6 +220,6 @@ async def _per_second(port: int, messages: list[bytes]) -> float:
 def first_answer_seconds() -> float:
     """Return the seconds from the server's start to its first report."""
     start = time.perf_counter()
-    with running_server(module="service") as port:
+    with running_server(module="dh_grader") as port:
         asyncio.run(post_all(port, [request(GRADE, tables_and_poses(1))], time.perf_counter() + 10))
         return time.perf_counter() - start

@@ -6,7 +6,7 @@ import subprocess
 import sys
 from typing import Final
 
-from service.catalogue import shipped_folder
+from dh_grader.catalogue import shipped_folder
 
 ROUNDS: Final = 5
 SUBMISSION: Final = shipped_folder().parent / "docs" / "examples" / "stanford-arm.json"
@@ -14,9 +14,9 @@ SUBMISSION: Final = shipped_folder().parent / "docs" / "examples" / "stanford-ar
 # A process for comparison, because the speed of a machine may vary.
 NUMPY: Final = ("-c", "import numpy")
 COMMANDS: Final = {
-    "dh-grader --help": ("-m", "service", "--help"),
+    "dh-grader --help": ("-m", "dh_grader", "--help"),
     "dh-grader grade, one file": (
-        *("-m", "service", "grade", str(SUBMISSION)),
+        *("-m", "dh_grader", "grade", str(SUBMISSION)),
         *("--exercise", "stanford-arm"),
     ),
 }  # fmt: skip

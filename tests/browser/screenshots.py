@@ -8,10 +8,10 @@ from collections.abc import Callable, Collection, Mapping
 from pathlib import Path
 from typing import Final
 
+from dh_grader.catalogue import load_catalogue, shipped_folder
+from dh_grader.store.attempt_store import AttemptStore
 from playwright.sync_api import Page, ViewportSize, expect, sync_playwright
 
-from service.attempts.store import AttemptStore
-from service.catalogue import load_catalogue, shipped_folder
 from tests.api.serving import ROOT, announced_port
 from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, new_attempt, recorded_all
 from tests.browser.chromium import ABSENT, OPTIONS, find_chromium
@@ -223,7 +223,7 @@ def main() -> None:
         raise SystemExit(f"There is no view {', '.join(unknown)}; there are {', '.join(VIEWS)}.")
     with tempfile.TemporaryDirectory() as folder:
         log = Path(folder) / "log"
-        command = [sys.executable, "-m", "service", "serve", "--port", "0"]
+        command = [sys.executable, "-m", "dh_grader", "serve", "--port", "0"]
         database = Path(folder) / "attempts.db"
         recorded_class(database)
         environment = os.environ | {"NO_COLOR": "1", "DH_GRADER_DATABASE": str(database)}

@@ -3,10 +3,9 @@
 from collections.abc import Iterator, Sequence
 from typing import Final
 
+from dh_grader.catalogue import Exercise, PartSpec
+from dh_grader.pasting import read_grid
 from playwright.sync_api import Locator, Page, expect
-
-from service.catalogue import Exercise, PartSpec
-from service.grids import read_grid
 
 
 def open_exercise(page: Page, service: str, exercise: str, fragment: str = "") -> None:

@@ -5,9 +5,9 @@ import statistics
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 from playwright.sync_api import Locator, Page, expect
 
-from service.catalogue import Exercise
 from tests.browser.fixtures import Visit
 from tests.browser.steps import answer, cells, open_exercise, paste, right_answers
 from tests.samples import one_in

@@ -26,7 +26,7 @@ def folder(tmp_path: Path) -> Path:
 @pytest.fixture
 def writing(folder: Path) -> Iterator[str]:
     log = folder.parent / "log"
-    command = [sys.executable, "-m", "service", "serve", "--port", "0"]
+    command = [sys.executable, "-m", "dh_grader", "serve", "--port", "0"]
     variables = {"NO_COLOR": "1", "DH_GRADER_EDITOR_DIR": str(folder)}
     with (
         log.open("wb") as output,

@@ -4,10 +4,10 @@ import json
 from pathlib import Path
 
 import pytest
+from dh_grader.bundles import DRAWN, BundleVariants, UnknownStudentError, platform_seeds
+from dh_grader.cli import program
 from typer.testing import CliRunner
 
-from service.bundles.variants import DRAWN, BundleVariants, UnknownStudentError, platform_seeds
-from service.cli.program import program
 from tests.variants.varied_files import varied_text
 
 VARIANTS = BundleVariants("s" * 64, {"reach": ["a", "b", "c"], "wrist": []})

@@ -6,8 +6,8 @@
 import json
 import sys
 
-from service.catalogue import exercise_files, load_catalogue, shipped_folder
-from service.catalogue.load import digest_of
+from dh_grader.catalogue import exercise_files, load_catalogue, shipped_folder
+from dh_grader.catalogue.load import digest_of
 
 
 def digests() -> dict[str, str]:

@@ -1,6 +1,7 @@
 """The list of exercise files that the tests have checked."""
 
-from service.catalogue.load import checked_digests
+from dh_grader.catalogue.load import checked_digests
+
 from tests.catalogue.checked import digests
 
 

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import CatalogueError, Fault, load_exercise
 
-from service.catalogue import CatalogueError, Fault, load_exercise
 from tests.catalogue.test_faults import VALID, changed, write
 
 CHECK = """

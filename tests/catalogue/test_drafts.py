@@ -4,9 +4,8 @@ from itertools import count
 from pathlib import Path
 
 import pytest
-
-from service.catalogue import CatalogueError, shipped_folder
-from service.catalogue.drafts import KEPT, MOST_DRAFTS, Drafts
+from dh_grader.catalogue import CatalogueError, shipped_folder
+from dh_grader.catalogue.load import KEPT, MOST_DRAFTS, Drafts
 
 TEXT = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
 

@@ -6,10 +6,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pydantic import BaseModel, TypeAdapter, ValidationError
-
-from service.catalogue import CatalogueError, load_catalogue, load_exercise
-from service.catalogue.files.schema import (
+from dh_grader.catalogue import CatalogueError, load_catalogue, load_exercise
+from dh_grader.catalogue.kinds import SPECS
+from dh_grader.catalogue.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
@@ -17,8 +16,9 @@ from service.catalogue.files.schema import (
     ScrewRobotSpec,
     SymbolSpec,
 )
-from service.catalogue.parts import SPECS
-from service.translations import LANGUAGES, told
+from dh_grader.translations import LANGUAGES, told
+from pydantic import BaseModel, TypeAdapter, ValidationError
+
 from tests.guards import ANSWER
 from tests.together import together
 

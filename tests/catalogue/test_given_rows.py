@@ -3,8 +3,8 @@
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import CatalogueError, load_exercise
 
-from service.catalogue import CatalogueError, load_exercise
 from tests.catalogue.test_faults import VALID, write
 
 TABLE = 'title = "Table"\nconvention = "standard"\n'

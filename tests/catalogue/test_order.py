@@ -3,7 +3,8 @@
 import re
 from pathlib import Path
 
-from service.catalogue import Exercise, by_level, exercise_after, read_exercise
+from dh_grader.catalogue import Exercise, by_level, exercise_after, read_exercise
+
 from tests.shipped import shipped_exercises
 
 FILE = """

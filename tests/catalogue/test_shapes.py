@@ -4,8 +4,7 @@ import re
 from collections.abc import Mapping
 
 import pytest
-
-from service.catalogue import Exercise
+from dh_grader.catalogue import Exercise
 
 GIVEN = "base frame, tool frame, directions given"
 FREE = "standard convention; frames free"

@@ -6,12 +6,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
+from dh_grader.catalogue.kinds import DhTableSpec
+from dh_grader.grading import Verdict
+from dh_grader.kinematics import Convention
 from numpy.typing import NDArray
 
-from service.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
-from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading import Verdict
-from service.kinematics.dh import Convention
 from tests.grading.support.submitting import full_marks, handed_in, part, table
 from tests.shipped import without_most_real_robots
 from tests.together import together

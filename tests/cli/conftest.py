@@ -1,9 +1,8 @@
 from collections.abc import Callable
 
 import pytest
+from dh_grader.cli import program
 from typer.testing import CliRunner, Result
-
-from service.cli.program import program
 
 Run = Callable[..., Result]
 

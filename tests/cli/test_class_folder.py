@@ -13,17 +13,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.cli.running import WorkerLostError, mapped
+from dh_grader.submissions.files import read_file
+from dh_grader.submissions.office_files import UnusableFileError
 
-from service.cli.running.processes import WorkerLostError, mapped
-from service.submissions.file_content import read_file
-from service.submissions.office_files import UnusableFileError
 from tests.benchmarks.class_folder import BROKEN, EXERCISE, write_class
 from tests.guards import ANSWER
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no pipes and links in folders")
 
 COUNT = 51
-PROGRAM = (sys.executable, "-m", "service", "grade", "--exercise", EXERCISE)
+PROGRAM = (sys.executable, "-m", "dh_grader", "grade", "--exercise", EXERCISE)
 
 
 @pytest.fixture(scope="module")

@@ -6,9 +6,8 @@ from typing import Any
 
 import pytest
 import typer
+from dh_grader.cli import COMMANDS, commands_of
 from typer.testing import CliRunner
-
-from service.cli.program import COMMANDS, commands_of
 
 
 def commands(found: Any, *path: str) -> Iterator[tuple[tuple[str, ...], Any]]:

@@ -10,9 +10,9 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import shipped_folder
+from dh_grader.cli.terminal import user_language
 
-from service.catalogue import shipped_folder
-from service.cli.language import user_language
 from tests.translations.catalogues import CODES, catalogue, help_texts
 
 ROOT = Path(__file__).parents[2]
@@ -21,8 +21,8 @@ VARIABLES = ("LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG", "DH_GRADER_LANGUAGE")
 ALL_HELP = """
 import sys, typer
 from typer.testing import CliRunner
-from service.cli.program import COMMANDS, program
-from service.cli.program import commands_of
+from dh_grader.cli import COMMANDS, program
+from dh_grader.cli import commands_of
 if sys.argv[1] == "qps":
     from tests.translations.pseudo import offer_pseudo
     offer_pseudo()
@@ -114,7 +114,7 @@ def test_the_pseudo_language_covers_all_help() -> None:
 @pytest.mark.long
 @pytest.mark.parametrize("locale", ["C", "C.UTF-8", "xx", "it_IT.UTF-8", ""])
 def test_other_locales_give_english(locale: str) -> None:
-    arguments = ("-m", "service", "exercises", "check", "--help")
+    arguments = ("-m", "dh_grader", "exercises", "check", "--help")
     printed = process(*arguments, LANG=locale).stdout
     assert printed == process(*arguments).stdout
     assert "Check exercise files: their fields" in printed
@@ -132,7 +132,7 @@ def test_names_of_commands_and_options_stay() -> None:
 def test_json_is_the_same_in_every_locale(tmp_path: Path) -> None:
     file = tmp_path / "a.json"
     file.write_text(json.dumps({"answers": {"table": "nonsense"}}), encoding="utf-8")
-    grade = ("-m", "service", "grade", file, "--exercise", "planar-rrr", "--format", "json")
+    grade = ("-m", "dh_grader", "grade", file, "--exercise", "planar-rrr", "--format", "json")
     german, english = process(*grade, LANG="de_DE.UTF-8"), process(*grade)
     assert german.stdout == english.stdout
     assert german.returncode == english.returncode
@@ -144,7 +144,7 @@ def wrong_table(folder: Path) -> tuple[object, ...]:
     file = folder / "a.json"
     answers = {"table": {"rows": named}, "pose": "[[1]]"}
     file.write_text(json.dumps({"answers": answers}), encoding="utf-8")
-    return "-m", "service", "grade", file, "--exercise", "planar-rrr"
+    return "-m", "dh_grader", "grade", file, "--exercise", "planar-rrr"
 
 
 @pytest.mark.long
@@ -180,7 +180,7 @@ def test_other_formats_do_not_follow_the_locale(form: str, tmp_path: Path) -> No
     ],
 )
 def test_errors_are_in_the_language(arguments: str, german: str) -> None:
-    result = process("-m", "service", *arguments.split(), LANG="de_DE.UTF-8")
+    result = process("-m", "dh_grader", *arguments.split(), LANG="de_DE.UTF-8")
     assert result.returncode == 2
     assert german in result.stderr
 
@@ -194,7 +194,7 @@ def test_findings_on_an_exercise_are_in_the_language(tmp_path: Path) -> None:
     }
     for name, each in texts.items():
         (tmp_path / f"{name}.toml").write_text(each, encoding="utf-8")
-    check = ("-m", "service", "exercises", "check", tmp_path)
+    check = ("-m", "dh_grader", "exercises", "check", tmp_path)
     german, english = process(*check, LANG="de_DE.UTF-8"), process(*check)
     assert ": hier gibt es keinen Schlüssel 'pionts'; meinten Sie 'points'?" in german.stderr
     assert re.search(r"bad\.toml: parts\[0\]\.pionts \(Zeile \d+\): ", german.stderr)
@@ -211,7 +211,7 @@ def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:
     for name, content in handed.items():
         (tmp_path / name).parent.mkdir(exist_ok=True)
         (tmp_path / name).write_bytes(content)
-    grade = ("-m", "service", "grade", tmp_path, "--exercise", "planar-rrr", "--format", "json")
+    grade = ("-m", "dh_grader", "grade", tmp_path, "--exercise", "planar-rrr", "--format", "json")
     german, english = process(*grade, "--lang", "de"), process(*grade, LANG="de_DE.UTF-8")
     told = [entry["error"] for entry in json.loads(german.stdout)]
     assert told[0] == "pose.csv ist leer; table.csv ist kein Text"
@@ -227,7 +227,7 @@ def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:
 
 @pytest.mark.long
 def test_the_list_of_exercises_is_in_the_language() -> None:
-    result = process("-m", "service", "exercises", "list", LANG="de_DE.UTF-8")
+    result = process("-m", "dh_grader", "exercises", "list", LANG="de_DE.UTF-8")
     assert "Gelenke  Titel und Teilaufgaben (Punkte)\nHier beginnen\n" in result.stdout
 
 
@@ -247,10 +247,10 @@ def plain_words(node: ast.AST) -> Iterator[str]:
 def test_nothing_is_printed_that_is_no_sentence() -> None:
     printers = {"echo", "print", "tell", "tell_verdict", "complain", "give_up"}
     found = []
-    for file in sorted((ROOT / "service" / "cli").rglob("*.py")):
+    for file in sorted((ROOT / "service" / "dh_grader" / "cli").rglob("*.py")):
         for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.Call):
                 name = getattr(node.func, "attr", getattr(node.func, "id", ""))
                 if name in printers:
                     found += [(file.name, text) for each in node.args for text in plain_words(each)]
-    assert found == [("program.py", "dh-grader ")]  # before the version
+    assert found == [("__init__.py", "dh-grader ")]  # before the version

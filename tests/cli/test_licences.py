@@ -4,7 +4,7 @@ import re
 from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
-from service.cli.licences import licence_of, licences, needed
+from dh_grader.cli.licences import licence_of, licences, needed
 
 LOCK = (Path(__file__).parents[2] / "requirements.lock").read_text(encoding="utf-8")
 

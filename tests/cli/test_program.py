@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 import typer
+from dh_grader.cli import COMMANDS, commands_of
 
-from service.cli.program import COMMANDS, commands_of
 from tests.submissions import office_documents as office
 
 ROOT = Path(__file__).parents[2]
@@ -21,7 +21,7 @@ OFFICE = {"openpyxl", "xlrd", "striprtf", "docx", "odf", "lxml", "defusedxml", "
 
 
 def process(
-    *arguments: object, python: tuple[str, ...] = ("-m", "service"), **environment: str
+    *arguments: object, python: tuple[str, ...] = ("-m", "dh_grader"), **environment: str
 ) -> subprocess.CompletedProcess[bytes]:
     command = [sys.executable, *python, *map(str, arguments)]
     return subprocess.run(
@@ -54,7 +54,7 @@ def test_help_names_every_command_and_the_program() -> None:
 
 def loaded(*arguments: object) -> tuple[set[str], bytes]:
     probe = (
-        "import sys; from service.cli import main\n"
+        "import sys; from dh_grader.cli import main\n"
         "try: main()\n"
         "finally: print(*sys.modules, file=sys.stderr)"
     )
@@ -65,11 +65,10 @@ def loaded(*arguments: object) -> tuple[set[str], bytes]:
 def test_help_and_version_do_not_import_the_grader() -> None:
     for option in ("--help", "--version"):
         modules, _ = loaded(option)
-        assert {name for name in modules if name.startswith("service.")} <= {
-            "service.cli", "service.cli.language", "service.cli.program", "service.regex",
-            "service.version",
-            "service.translations", "service.translations.catalogues",
-            "service.translations.languages", "service.translations.sentence",
+        assert {name for name in modules if f"{name}.".startswith("dh_grader.")} <= {
+            "dh_grader.cli", "dh_grader.cli.terminal", "dh_grader.regex",
+            "dh_grader",
+            "dh_grader.translations", "dh_grader.translations.catalogues",
         }  # fmt: skip
         heavy = {"numpy", "pydantic", "fastapi", "jinja2", "sympy", "httpx", *DATABASES}
         assert heavy & modules == set()
@@ -78,14 +77,27 @@ def test_help_and_version_do_not_import_the_grader() -> None:
 def test_grading_imports_no_unneeded_packages(answer: Path) -> None:
     modules, output = loaded("grade", answer, "--exercise", "planar-rrr", "--format", "json")
     assert json.loads(output)[0]["exercise"] == "planar-rrr"
-    assert {"numpy", "pydantic", "service.grading.kinds.dh_table"} <= modules
+    assert {"numpy", "pydantic", "dh_grader.grading.kinds.tables"} <= modules
     heavy = {"fastapi", "httptools", "httpx", "starlette", "sympy", "mpmath", "uvicorn", "uvloop"}
     heavy |= DATABASES
     # http.client would import the whole email package.
     slow = {"http.client", "jinja2", "rich.markdown", "rich.table", "scipy", "unittest"}
     unused = {
-        f"service.{name}"
-        for name in ("api", "attempts", "authoring", "courses", "lti", "server", "solutions", "web")
+        f"dh_grader.{name}"
+        for name in (
+            "api",
+            "authoring",
+            "client",
+            "contract",
+            "courses",
+            "figures",
+            "hints",
+            "lti",
+            "server",
+            "solutions",
+            "store",
+            "web",
+        )
     }
     assert modules & (heavy | slow | unused | OFFICE) == set()
 
@@ -118,7 +130,7 @@ def test_the_program_help_repeats_the_help_of_each_command() -> None:
 @pytest.mark.long
 def test_the_service_does_not_import_optional_packages() -> None:
     unwanted = {"sympy", "scipy", "jinja2", "prometheus_client", *DATABASES, *OFFICE}
-    probe = f"import sys, service.app; print(sorted({unwanted} & set(sys.modules)))"
+    probe = f"import sys, dh_grader.app; print(sorted({unwanted} & set(sys.modules)))"
     assert process(python=("-c", probe)).stdout.decode().strip() == "[]"
 
 
@@ -148,7 +160,7 @@ def test_an_ascii_terminal_gets_the_whole_report(answer: Path) -> None:
 def test_a_full_disk_is_reported_in_one_line(arguments: tuple[str, ...]) -> None:
     with Path("/dev/full").open("wb") as full:
         done = subprocess.run(
-            [sys.executable, "-m", "service", *arguments],
+            [sys.executable, "-m", "dh_grader", *arguments],
             cwd=ROOT,
             stdout=full,
             stderr=subprocess.PIPE,
@@ -165,7 +177,7 @@ def test_a_full_disk_is_reported_in_one_line(arguments: tuple[str, ...]) -> None
 def test_closed_streams_do_not_prevent_the_output_file(answer: Path, tmp_path: Path) -> None:
     output = tmp_path / "points.csv"
     command = f'"$@" --exercise planar-rrr --format csv --output {output} >&- 2>&-'
-    grade = (sys.executable, "-m", "service", "grade", str(answer))
+    grade = (sys.executable, "-m", "dh_grader", "grade", str(answer))
     done = subprocess.run(["sh", "-c", command, "sh", *grade], cwd=ROOT, check=False)
     assert done.returncode == 1
     assert output.read_text(encoding="utf-8").count("\n") == 2
@@ -179,7 +191,7 @@ def test_a_closed_pipe_ends_the_program_quietly(arguments: tuple[str, ...], answ
     os.close(reader)
     files = (str(answer),) * (arguments[0] == "grade")
     with open(writer, "wb") as gone:  # noqa: PTH123 - it has no path
-        command = [sys.executable, "-m", "service", *arguments, *files]
+        command = [sys.executable, "-m", "dh_grader", *arguments, *files]
         done = subprocess.run(command, cwd=ROOT, stdout=gone, stderr=subprocess.PIPE, check=False)
     # The exit code of a shell for a program that SIGPIPE has ended.
     assert (done.returncode, done.stderr) == (141, b"")

@@ -3,8 +3,7 @@ from collections.abc import Awaitable, Callable, Iterator
 from typing import Any
 
 import pytest
-
-from service.client import AsyncGraderClient, GraderClient, Retries
+from dh_grader.client import AsyncGraderClient, GraderClient, Retries
 
 # A call of a method on a sync or async client.
 Use = Callable[[Any], Any]

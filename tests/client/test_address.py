@@ -1,6 +1,5 @@
 import pytest
-
-from service.client.address import checked_server, client_options
+from dh_grader.client import checked_server, client_options
 
 
 @pytest.mark.parametrize(

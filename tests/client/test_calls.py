@@ -3,11 +3,8 @@ from collections.abc import Sequence
 from typing import Any
 
 import pytest
-
-from service.client import ExerciseSubmission
-from service.client.calls import grade, grade_many
-from service.submissions.body import MAX_SUBMISSIONS
-from service.submissions.strict_json import MAX_BODY_SIZE, read_json
+from dh_grader.client import ExerciseSubmission, grade, grade_many
+from dh_grader.submissions.bodies import MAX_BODY_SIZE, MAX_SUBMISSIONS, read_json
 
 
 def bodies(answers: Sequence[Any]) -> list[bytes]:

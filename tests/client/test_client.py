@@ -10,21 +10,18 @@ from typing import Any
 from uuid import UUID
 
 import pytest
-
-from service.catalogue import Exercise, FeedbackLevel
-from service.client import (
+from dh_grader import client as received
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.client import (
     ExerciseSubmission,
     GraderClient,
     RequestRefusedError,
     ServerUnreachableError,
     UnexpectedAnswerError,
 )
-from service.client import (
-    answers as received,
-)
-from service.grading import Submission, Verdict, grade
-from service.submissions.body import MAX_SUBMISSIONS
-from service.submissions.strict_json import read_json
+from dh_grader.grading import Submission, Verdict, grade
+from dh_grader.submissions.bodies import MAX_SUBMISSIONS, read_json
+
 from tests.api.serving import Served
 from tests.attack.bodies import model_of, spoiled
 from tests.client.conftest import Using

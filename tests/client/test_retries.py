@@ -1,7 +1,5 @@
 import pytest
-
-from service.client.errors import GraderClientError
-from service.client.retries import Retries
+from dh_grader.client import GraderClientError, Retries
 
 BUSY = GraderClientError("busy", is_temporary=True)
 

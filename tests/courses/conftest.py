@@ -8,19 +8,19 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.access import OPEN_HERE
+from dh_grader.access.key_ring import KeyRing
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
 from sqlalchemy import Connection
 
-from service.access.key_ring import KeyRing
-from service.access.open_access import OPEN_HERE
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.storage.database import in_transaction
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from service.courses import roll
-from service.courses.assignments import add_assignment
-from service.courses.links import issue_links
 from tests.access.kept_services import SECRET, KeptServices
 
 NOW = datetime.now(UTC)

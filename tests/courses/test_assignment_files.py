@@ -3,10 +3,10 @@
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import shipped_folder
+from dh_grader.cli import program
 from typer.testing import CliRunner
 
-from service.catalogue import shipped_folder
-from service.cli.program import program
 from tests.courses.conftest import Class
 
 FILE = """

@@ -1,9 +1,8 @@
 import codecs
 
 import pytest
+from dh_grader.courses import CourseError, decoded, read_class_list
 
-from service.courses.class_list import decoded, read_class_list
-from service.courses.errors import CourseError
 from tests.courses.conftest import Class
 from tests.courses.results.test_workbook import as_tutor
 

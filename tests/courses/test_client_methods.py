@@ -6,15 +6,10 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-
-from service.access.caller import Scope
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.attempts.storage.database import in_transaction
-from service.attempts.store import AttemptStore
-from service.client import GraderClient, RequestRefusedError
-from service.contract.courses import (
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.key_ring import add_key
+from dh_grader.client import GraderClient, RequestRefusedError
+from dh_grader.contract.courses import (
     AssignmentChange,
     CourseChange,
     DealRequest,
@@ -26,8 +21,11 @@ from service.contract.courses import (
     NewCourse,
     RemovalRequest,
     RevokeLinksRequest,
+    SendAgainRequest,
 )
-from service.contract.scores import SendAgainRequest
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
+
 from tests.api.serving import served
 from tests.courses.conftest import NO_TWIST
 

@@ -12,18 +12,11 @@ from typing import Any
 
 import httpx
 import pytest
-from pydantic import SecretStr
-from sqlalchemy import Connection
-
-from service.access.caller import Scope
-from service.access.key_table import add_key, settle
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.api.turns import ARRIVED
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.tutoring import forget
-from service.catalogue import Exercise
-from service.contract.courses import (
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.key_ring import add_key, settle
+from dh_grader.api.http import ARRIVED
+from dh_grader.catalogue import Exercise
+from dh_grader.contract.courses import (
     AssignmentChange,
     Extension,
     LinksRequest,
@@ -31,17 +24,34 @@ from service.contract.courses import (
     NewCourse,
     NewLearner,
 )
-from service.courses import learner_view, roll
-from service.courses.assignments import add_assignment, assignments_of, change_assignment, extend
-from service.courses.errors import CourseError
-from service.courses.links import issue_links, revoke_links
-from service.courses.results.gradebook import gradebook, handed_in, missing, written_gradebook
-from service.courses.terms import learner_terms, terms_of
-from service.server.installed import installed_app
-from service.settings import Settings
-from service.translations import ENGLISH
-from service.web.assets import load_assets
-from service.web.courses.course_pages import CourseState, assignment_page
+from dh_grader.courses import CourseError, roll
+from dh_grader.courses.assignments import (
+    add_assignment,
+    assignments_of,
+    change_assignment,
+    extend,
+    learner_terms,
+    terms_of,
+)
+from dh_grader.courses.gradebook import (
+    _log,
+    _log_missing,
+    gradebook,
+    handed_in,
+    missing,
+    written_gradebook,
+)
+from dh_grader.courses.roll import issue_links, revoke_links
+from dh_grader.server import installed_app
+from dh_grader.settings import Settings
+from dh_grader.store.database import in_transaction, open_database
+from dh_grader.store.results import forget
+from dh_grader.translations import ENGLISH
+from dh_grader.web.courses import CourseState, assignment_page
+from dh_grader.web.pages import load_assets
+from pydantic import SecretStr
+from sqlalchemy import Connection
+
 from tests.access.kept_services import SECRET
 from tests.attempts.databases import KINDS
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, Class, days
@@ -209,8 +219,8 @@ def test_an_exercise_whose_file_is_not_there_is_named_to_learner_and_tutor(
     class_.do(lambda it: add_assignment(it, "robots", new, {"scara", "brand-new"}))
     # The log of uvicorn may have been set up by another test, so that pytest does not see it.
     logged: list[object] = []
-    monkeypatch.setattr(learner_view._log, "warning", lambda *told: logged.extend(told))
-    learner_view._log_missing.cache_clear()
+    monkeypatch.setattr(_log, "warning", lambda *told: logged.extend(told))
+    _log_missing.cache_clear()
     class_.own()
     [course] = class_.ask("GET", "/v1/me").json()["courses"]
     found = course["assignments"][0]["exercises"]

@@ -10,28 +10,35 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.access import OPEN_HERE
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.contract.courses import AssignmentChange, NewAssignment, NewLearner
+from dh_grader.courses import CourseError, roll
+from dh_grader.courses.assignments import (
+    add_assignment,
+    assigned,
+    change_assignment,
+    deal_again,
+    learner_variants,
+    pin_choices,
+    terms_of,
+)
+from dh_grader.kinematics import COLUMNS
+from dh_grader.store import AttemptFilter, GradesFormat
+from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import (
+    everything_of,
+    exercise_statistics,
+    forget,
+    graded_attempts,
+    written,
+)
+from dh_grader.store.tables import assignments, attempts, deals
+from dh_grader.variants import built, seed_of
 from sqlalchemy import func, select, update
 
-from service.access.open_access import OPEN_HERE
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.attempt import AttemptFilter, GradesFormat
-from service.attempts.learner_data import everything_of
-from service.attempts.regrades.outdated import Regrading
-from service.attempts.results.grades import graded_attempts, written
-from service.attempts.results.statistics import exercise_statistics
-from service.attempts.storage.tables import assignments, attempts, deals
-from service.attempts.tutoring import forget
-from service.catalogue import Exercise, FeedbackLevel
-from service.contract.courses import AssignmentChange, NewAssignment, NewLearner
-from service.courses import roll
-from service.courses.assignments import add_assignment, change_assignment
-from service.courses.dealing import assigned, deal_again, learner_variants, pin_choices
-from service.courses.errors import CourseError
-from service.courses.terms import terms_of
-from service.kinematics.chain import COLUMNS
-from service.variants.seeds import seed_of
-from service.variants.variant import built
 from tests.attempts.recorded import regraded
 from tests.courses.conftest import Class
 from tests.variants.varied_files import VARY, varied

@@ -5,10 +5,10 @@ from functools import partial
 from typing import Any
 
 import pytest
-from sqlalchemy import func, select
-from typer.testing import CliRunner
-
-from service.attempts.storage.tables import (
+from dh_grader.cli import program
+from dh_grader.contract.courses import Extension
+from dh_grader.courses.assignments import extend
+from dh_grader.store.tables import (
     assignments,
     attempts,
     course_learners,
@@ -18,9 +18,9 @@ from service.attempts.storage.tables import (
     overrides,
     regrade_queue,
 )
-from service.cli.program import program
-from service.contract.courses import Extension
-from service.courses.assignments import extend
+from sqlalchemy import func, select
+from typer.testing import CliRunner
+
 from tests.attempts.databases import KINDS
 from tests.courses.conftest import Class, days
 from tests.courses.results.test_workbook import as_tutor

@@ -1,7 +1,7 @@
 from dataclasses import dataclass
 
-from service.contract.courses import CourseLearner
-from service.courses.names import place_of, told_apart
+from dh_grader.contract.courses import CourseLearner
+from dh_grader.courses import place_of, told_apart
 
 
 def test_learners_of_one_name_are_told_apart() -> None:

@@ -7,18 +7,16 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.contract.courses import AssignmentChange, Extension
+from dh_grader.courses.assignments import assignment_of, change_assignment, extend
+from dh_grader.grading.reading.entries import Reader
+from dh_grader.store import AttemptFilter
+from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import everything_of, exercise_statistics, forget
+from dh_grader.store.tables import hints
 from sqlalchemy import func, select
 
-from service.attempts.attempt import AttemptFilter
-from service.attempts.learner_data import everything_of
-from service.attempts.regrades.outdated import Regrading
-from service.attempts.results.statistics import exercise_statistics
-from service.attempts.storage.tables import hints
-from service.attempts.tutoring import forget
-from service.catalogue import Exercise, FeedbackLevel
-from service.contract.courses import AssignmentChange, Extension
-from service.courses.assignments import assignment_of, change_assignment, extend
-from service.grading.reading.entry import Reader
 from tests.courses.conftest import NO_TWIST, RIGHT, Class, days
 from tests.solutions.solved import solved
 

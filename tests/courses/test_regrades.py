@@ -6,17 +6,17 @@ from functools import partial
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.cli import program
+from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
+from dh_grader.store.regrades import Regrading
+from dh_grader.store.tables import assignments, attempts
 from sqlalchemy import select, update
 from typer.testing import CliRunner
 
-from service.attempts.regrades.outdated import Regrading
-from service.attempts.storage.tables import assignments, attempts
-from service.catalogue import Exercise, FeedbackLevel
-from service.cli.program import program
-from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from service.courses import roll
-from service.courses.assignments import add_assignment
-from service.courses.links import issue_links
 from tests.access.kept_services import SECRET
 from tests.attempts.databases import KINDS
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, Class

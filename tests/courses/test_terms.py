@@ -9,16 +9,15 @@ from typing import Any
 from zoneinfo import ZoneInfo
 
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.contract.courses import CourseAssignment, Extension
+from dh_grader.courses import with_own_dates
+from dh_grader.courses.assignments import LearnerTerms, extend, extended, terms_of
+from dh_grader.store import AttemptRefusedError, ruling
+from dh_grader.store.tables import assignments
 from sqlalchemy import select, update
 
-from service.attempts.policy import AttemptRefusedError, ruling
-from service.attempts.storage.tables import assignments
-from service.catalogue import Exercise, FeedbackLevel
-from service.catalogue.attempts import AttemptsSpec
-from service.contract.courses import CourseAssignment, Extension
-from service.courses.assignments import extend
-from service.courses.terms import LearnerTerms, extended, terms_of
-from service.courses.times import with_own_dates
 from tests.courses.conftest import Class
 from tests.together import together
 

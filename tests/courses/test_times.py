@@ -4,12 +4,11 @@ from datetime import UTC, date, datetime
 from zoneinfo import ZoneInfo
 
 import pytest
+from dh_grader.contract.courses import AssignmentChange, Extension
+from dh_grader.courses import CourseError, moment, zone_named
+from dh_grader.submissions.bodies import field_error
 from pydantic import ValidationError
 
-from service.contract.courses import AssignmentChange, Extension
-from service.courses.errors import CourseError
-from service.courses.times import moment, zone_named
-from service.submissions.field_errors import field_error
 from tests.together import together
 
 

@@ -12,11 +12,11 @@ from typing import Any
 import kubernetes_validate
 import pytest
 import yaml
+from dh_grader.cli import program
+from dh_grader.cli.running import shard_of
+from dh_grader.settings import PREFIX, Settings
 from typer.testing import CliRunner
 
-from service.cli.program import program
-from service.cli.running.shards import shard_of
-from service.settings import PREFIX, Settings
 from tests.deploy.manifests import FILES as ALL_FILES
 from tests.deploy.manifests import FOLDER, OVERLAYS, ROOT, documents, objects, pods, the
 

@@ -7,10 +7,9 @@ from typing import Any
 
 import pytest
 import yaml
+from dh_grader.api.permissions import RIGHTS
+from dh_grader.server.metrics import Metrics
 from prometheus_client.metrics import MetricWrapperBase
-
-from service.api.permissions.rights import RIGHTS
-from service.server.watching.metrics import Metrics
 
 FOLDER = Path(__file__).parents[2] / "deploy" / "monitoring"
 RULES: list[dict[str, Any]] = [

@@ -8,8 +8,7 @@ from typing import Any
 
 import pytest
 import yaml
-
-from service.settings import PREFIX, Settings
+from dh_grader.settings import PREFIX, Settings
 
 ROOT = Path(__file__).parents[2]
 SIMPLE = ROOT / "deploy" / "simple"

@@ -30,7 +30,7 @@ def repository(tmp_path: Path) -> Path:
     (folder / "table.csv").write_text(RIGHT, encoding="utf-8")
     program = tmp_path / "bin" / "dh-grader"
     program.parent.mkdir()
-    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m service "$@"\n', encoding="utf-8")
+    program.write_text(f'#!/bin/sh\nexec "{sys.executable}" -m dh_grader "$@"\n', encoding="utf-8")
     program.chmod(0o755)
     return tmp_path
 

@@ -13,12 +13,10 @@ from collections.abc import Iterable, Iterator, Mapping
 from itertools import pairwise
 from typing import Any, Final
 
-from pydantic import BaseModel
-from pydantic.fields import FieldInfo
-
-from service.catalogue.attempts import AttemptsSpec
-from service.catalogue.files.refusals import table_in
-from service.catalogue.files.schema import (
+from dh_grader.catalogue.files import table_in
+from dh_grader.catalogue.kinds import SPECS
+from dh_grader.catalogue.part import PartSpec, PosePartSpec
+from dh_grader.catalogue.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
@@ -29,8 +27,9 @@ from service.catalogue.files.schema import (
     TranslationSpec,
     ViewSpec,
 )
-from service.catalogue.part import PartSpec, PosePartSpec
-from service.catalogue.parts import SPECS
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
 
 Schema = Mapping[str, Any]
 

@@ -26,7 +26,7 @@ class Vendored:
     shipped: bool = True
 
 
-_STATIC: Final = "service/web/static/vendor"
+_STATIC: Final = "service/dh_grader/web/static/vendor"
 _ARMS: Final = "tests/importing/arms"
 _ROBOT_DATA: Final = "https://github.com/gepetto/example-robot-data"
 _TOOLBOX: Final = "https://github.com/petercorke/robotics-toolbox-python"
@@ -91,7 +91,7 @@ def _joints(
     )
 
 
-_SWAGGER: Final = "service/api/routes/swagger_ui"
+_SWAGGER: Final = "service/dh_grader/api/swagger_ui"
 VENDORED: Final = (
     Vendored(
         "three.js",
@@ -134,8 +134,8 @@ Copyright and licence: see the file LICENSE.
 
 The wheel and the image carry the works below, unchanged but for file names and imports. Each
 licence is in the file that is named, which the wheel and the image carry, too. Packages that the
-program needs are not in the wheel; `python -m service.cli.licences` lists those that are installed,
-with their licences, and the image has that list in /opt/dh-grader/LICENCES.
+program needs are not in the wheel; `python -m dh_grader.cli.licences` lists those that are
+installed, with their licences, and the image has that list in /opt/dh-grader/LICENCES.
 """
 _IN_TESTS: Final = "In the repository only, for its tests:\n"
 

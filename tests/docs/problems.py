@@ -6,7 +6,7 @@ Run ``python -m tests.docs.problems > docs/problems.md``.
 import sys
 from typing import Final
 
-from service.contract.problems import PROBLEM_TYPES, TYPE_PREFIX
+from dh_grader.contract import PROBLEM_TYPES, TYPE_PREFIX
 
 _INTRODUCTION: Final = f"""\
 # Problems

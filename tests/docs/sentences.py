@@ -15,14 +15,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from service.api.routes.preview import GENERIC
-from service.catalogue import Exercise
-from service.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
-from service.grading import FeedbackLevel, Submission, grade
-from service.grading.lost_points import without_places
-from service.grading.misconception import all_records
-from service.grading.reading.preview import preview_pasted
-from service.grading.report import Feedback, PartReport, Place, messages_of
+from dh_grader.api.frames import GENERIC
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
+from dh_grader.grading import FeedbackLevel, Submission, grade
+from dh_grader.grading.misconception import all_records
+from dh_grader.grading.reading import preview_pasted
+from dh_grader.grading.report import Feedback, PartReport, Place, messages_of, without_places
+
 from tests.docs import test_message_codes as messages_page
 from tests.docs.codes import sources
 from tests.docs.templates import Template, templates_in
@@ -213,7 +213,7 @@ def known_templates() -> list[Known]:
     codes: dict[str, set[str]] = {}
     for use in messages_page.program():
         codes.setdefault(use.file, set()).add(use.code)
-    files = sources(ROOT / "service")
+    files = sources(ROOT / "service" / "dh_grader")
     telling = {file: text for file, text in files.items() if file.startswith(_READING)}
     return [
         (template, frozenset(codes.get(template.file, ())))

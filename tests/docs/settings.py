@@ -7,9 +7,8 @@ import sys
 from enum import StrEnum
 from typing import Final
 
+from dh_grader.settings import PREFIX, SHIPPED, Settings
 from pydantic.fields import FieldInfo
-
-from service.settings import PREFIX, SHIPPED, Settings
 
 _INTRODUCTION: Final = f"""\
 # Settings

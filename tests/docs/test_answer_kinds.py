@@ -6,9 +6,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.kinds import KINDS
 
-from service.catalogue import Exercise
-from service.grading.kinds import KINDS
 from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "answer-kinds.md").read_text(encoding="utf-8")
@@ -37,7 +37,7 @@ def test_every_kind_has_an_entry() -> None:
 def test_every_code_on_the_page_exists() -> None:
     program = "\n".join(
         file.read_text(encoding="utf-8")
-        for file in (Path(__file__).parents[2] / "service" / "grading").rglob("*.py")
+        for file in (Path(__file__).parents[2] / "service" / "dh_grader" / "grading").rglob("*.py")
     )
     named = {code for code in re.findall(r"`([a-z]+_[a-z_0-9]+)`", PAGE) if code not in KINDS}
     assert len(named) > 25

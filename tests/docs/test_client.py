@@ -7,9 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader import client
+from dh_grader.client import Retries
 
-from service import client
-from service.client import Retries
 from tests.api.serving import Served
 
 PAGE = (Path(__file__).parents[2] / "docs" / "client.md").read_text(encoding="utf-8")

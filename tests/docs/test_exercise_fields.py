@@ -5,9 +5,9 @@ import tomllib
 from pathlib import Path
 
 import pytest
-
-from service.catalogue.attempts import AttemptsSpec
-from service.catalogue.files.schema import (
+from dh_grader.catalogue.kinds import SPECS
+from dh_grader.catalogue.part import PartSpec
+from dh_grader.catalogue.schema import (
     CheckSpec,
     ExerciseSpec,
     ExpectSpec,
@@ -15,8 +15,8 @@ from service.catalogue.files.schema import (
     ScrewRobotSpec,
     SymbolSpec,
 )
-from service.catalogue.part import PartSpec
-from service.catalogue.parts import SPECS
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+
 from tests.docs.exercise_fields import page
 
 FILE = Path(__file__).parents[2] / "docs" / "exercise-fields.md"

@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+from dh_grader.expressions import LIMITS, ExpressionError, read
 
-from service.expressions import LIMITS, ExpressionError, read
 from tests.expressions.corpus_files import ROBOT
 from tests.together import together
 

@@ -11,14 +11,14 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import LIMITS, ExpressionError, read
+from dh_grader.grading import FeedbackLevel
+from dh_grader.grading.reading import preview_pasted
+from dh_grader.grading.reading.table import MAX_ROWS
+from dh_grader.grading.report import MAX_SYMBOLS
+from dh_grader.pasting import GRID_LIMITS
 
-from service.catalogue import Exercise
-from service.expressions import LIMITS, ExpressionError, read
-from service.grading import FeedbackLevel
-from service.grading.reading.preview import preview_pasted
-from service.grading.reading.tables.table import MAX_ROWS
-from service.grading.work_budget import MAX_SYMBOLS
-from service.grids import GRID_LIMITS
 from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT
 from tests.grading.support.exercise_texts import all_codes
@@ -70,8 +70,8 @@ def program() -> Sequence[CodeUse]:
     # `translations` name languages, and a standard defines the codes in `lti/handed_files`.
     telling = {
         file: text
-        for file, text in sources(ROOT / "service").items()
-        if not file.startswith(("attempts/", "lti/handed_files/", "translations/"))
+        for file, text in sources(ROOT / "service" / "dh_grader").items()
+        if not file.startswith(("store/", "lti/handed_files.py", "translations/"))
     }
     return codes_in(telling)
 

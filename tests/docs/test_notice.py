@@ -11,11 +11,11 @@ BESIDE = {each.text for each in VENDORED} | {
     BUNDLED,
     "LICENSE",
     "NOTICE",
-    "service/api/routes/swagger_ui/NOTICE",
-    "service/web/static/vendor/three-0.185.1.README.md",
+    "service/dh_grader/api/swagger_ui/NOTICE",
+    "service/dh_grader/web/static/vendor/three-0.185.1.README.md",
     # Types for our checks, written in this project.
-    "service/web/static/vendor/three-0.185.1.module.min.d.ts",
-    "service/web/static/vendor/three-0.185.1.orbit-controls.d.ts",
+    "service/dh_grader/web/static/vendor/three-0.185.1.module.min.d.ts",
+    "service/dh_grader/web/static/vendor/three-0.185.1.orbit-controls.d.ts",
     "tests/docs/notice.py",
 }
 

@@ -5,11 +5,11 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.reading.headers import read_header
+from dh_grader.grading.report import MAX_PASTED
+from dh_grader.pasting import GRID_LIMITS, GridError, read_grid, read_robot
 
-from service.catalogue import Exercise
-from service.grading.reading.tables.column_headers import read_header
-from service.grading.work_budget import MAX_PASTED
-from service.grids import GRID_LIMITS, GridError, read_grid, read_robot
 from tests.grading.support.submitting import full_marks, handed_in, part
 
 PAGE = (Path(__file__).parents[2] / "docs" / "pasting.md").read_text(encoding="utf-8")

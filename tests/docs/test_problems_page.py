@@ -5,8 +5,9 @@ from http import HTTPStatus
 from json import loads
 from pathlib import Path
 
-from service.api.http.problems import ProblemError
-from service.contract.problems import PROBLEM_TYPES
+from dh_grader.api.http import ProblemError
+from dh_grader.contract import PROBLEM_TYPES
+
 from tests.docs.problems import page
 
 ROOT = Path(__file__).parents[2]
@@ -43,13 +44,16 @@ def test_the_page_is_generated() -> None:
 
 
 def test_the_page_lists_exactly_the_types_of_the_program() -> None:
-    texts = {file: file.read_text(encoding="utf-8") for file in (ROOT / "service").rglob("*.py")}
+    texts = {
+        file: file.read_text(encoding="utf-8")
+        for file in (ROOT / "service" / "dh_grader").rglob("*.py")
+    }
     used = set().union(*map(names_in, texts))
     assert len(used) > 30
     assert used - PROBLEM_TYPES.keys() == set()
     # Each name is written somewhere; some are keys of tables.
     others = [text for file, text in texts.items() if file.name != "problems.py"]
-    others.append(texts[ROOT / "service" / "api" / "http" / "problems.py"])
+    others.append(texts[ROOT / "service" / "dh_grader" / "api" / "http.py"])
     named = {name for name, each in PROBLEM_TYPES.items() if not each.is_general} - {"refused"}
     assert {name for name in named if not any(f'"{name}"' in text for text in others)} == set()
 

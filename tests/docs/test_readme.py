@@ -7,9 +7,9 @@ from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
 
 import pytest
+from dh_grader.cli import program
 from typer.testing import CliRunner
 
-from service.cli.program import program
 from tests.docs.walkthrough import blocks
 from tests.shipped import shipped_exercises
 

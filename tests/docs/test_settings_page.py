@@ -4,8 +4,8 @@ import re
 from pathlib import Path
 
 import pytest
+from dh_grader.settings import Settings, load_settings
 
-from service.settings import Settings, load_settings
 from tests.docs.settings import page
 
 FILE = Path(__file__).parents[2] / "docs" / "settings.md"

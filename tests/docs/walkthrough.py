@@ -23,9 +23,8 @@ from pathlib import Path
 
 import pytest
 import yaml
+from dh_grader.cli import program
 from typer.testing import CliRunner
-
-from service.cli.program import program
 
 _FENCE = re.compile(r"^```(\w+)([^\n]*)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
 _ANYTHING = "…"

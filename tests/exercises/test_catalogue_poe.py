@@ -11,11 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise, Robot
+from dh_grader.kinematics import pose as table_pose
 from numpy.typing import NDArray
 from scipy.linalg import expm
 
-from service.catalogue import Exercise, Robot
-from service.kinematics.chain import pose as table_pose
 from tests.exercises.real.statements import home_of
 from tests.shipped import REAL_ROBOTS, shipped_exercises
 

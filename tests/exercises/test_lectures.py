@@ -9,9 +9,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Verdict
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Verdict
 from tests.grading.support.robots import AngleUnit
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part, table
 

@@ -10,9 +10,9 @@ from typing import Any
 
 import pytest
 import sympy as sp
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.submitting import full_marks, graded_pose, not_correct
 
 Matrix = list[list[str]]

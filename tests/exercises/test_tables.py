@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 
-from service.catalogue import Exercise
 from tests.grading.support.robots import ROBOTS, SPELLINGS, Robot, Spelling
 from tests.grading.support.submitting import full_marks, graded_table
 

@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import pytest
 import sympy as sp
+from dh_grader.catalogue import Exercise
 
-from service.catalogue import Exercise
 from tests.grading.support.submitting import full_marks, handed_in, part
 
 four, five, six = sp.symbols("theta4 theta5 theta6")

@@ -1,15 +1,14 @@
 """The symbols of an arm: joints 1, 2 and 4 turn, joint 3 slides."""
 
-# The test of `service/expressions/x/y.py` is `x/test_y.py`. The tests in this folder are for the
+# The test of `dh_grader/expressions/x.py` is `x/test_y.py`. The tests in this folder are for the
 # whole reader: written cases (`corpus`, and `repairs` for the reader's repairs), random texts
 # (`fuzz`), properties of trees, formulas printed by SymPy, and memoized readings. One test checks
 # that no text is run as a program.
 
 import numpy as np
 import pytest
+from dh_grader.expressions import Symbol, Vocabulary, joint_variable
 from numpy.typing import NDArray
-
-from service.expressions import Symbol, Vocabulary, joint_variable
 
 Values = dict[str, NDArray[np.float64]]
 

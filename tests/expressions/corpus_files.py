@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from service.expressions import Symbol, Vocabulary, joint_variable
+from dh_grader.expressions import Symbol, Vocabulary, joint_variable
 
 FOLDER = Path(__file__).parent / "corpus"
 ROBOT = Vocabulary(

@@ -7,9 +7,8 @@ from random import Random
 from typing import Final, NamedTuple
 
 import numpy as np
+from dh_grader.expressions import Expression, ExpressionError, read, reader, words
 
-from service.expressions import Expression, ExpressionError, read, reader
-from service.expressions.parsing.lexing import words
 from tests.expressions.corpus_files import FOLDER, ROBOT, cases, names, python_text
 
 Fingerprint = tuple[object, ...]
@@ -195,7 +194,7 @@ class Outcome(NamedTuple):
 
 
 def outcome(text: str, *, degrees: bool = False) -> Outcome:
-    for memoized in reader._memoized:
+    for memoized in reader._reader_memoized:
         memoized.cache_clear()
     reader._parsed.cache_clear()
     words.split.cache_clear()

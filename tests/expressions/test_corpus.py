@@ -2,8 +2,8 @@
 
 import numpy as np
 import pytest
+from dh_grader.expressions import ExpressionError, read
 
-from service.expressions import ExpressionError, read
 from tests.expressions.corpus_files import ROBOT, Case, cases, names, numbers
 from tests.expressions.reference import worth
 from tests.together import together

@@ -3,9 +3,9 @@
 from copy import deepcopy
 
 import pytest
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, read
+from dh_grader.translations import Sentence
 
-from service.expressions import ExpressionError, Symbol, Vocabulary, read
-from service.translations import Sentence
 from tests.together import together
 
 CASES = [

@@ -1,10 +1,10 @@
 """Any text is read quickly, and always with the same result."""
 
 import pytest
+from dh_grader.expressions import LIMITS, ExpressionError, read
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.expressions import LIMITS, ExpressionError, read
 from tests.expressions.corpus_files import ROBOT
 from tests.expressions.fuzzing import PIECES, hostile, outcome, seeds, texts
 from tests.guards import STALL

@@ -4,9 +4,9 @@ import contextlib
 import time
 
 import pytest
+from dh_grader.expressions import LIMITS, ExpressionError, Vocabulary, read
+from dh_grader.expressions.vocabulary import Binary, Node, SymbolNode, children
 
-from service.expressions import LIMITS, ExpressionError, Vocabulary, read
-from service.expressions.tree import Binary, Node, SymbolNode, children
 from tests.expressions.fuzzing import seeds, texts
 from tests.guards import STALL
 

@@ -8,8 +8,7 @@ from functools import cache
 import numpy as np
 import pytest
 import sympy
-
-from service.expressions import (
+from dh_grader.expressions import (
     LIMITS,
     Expression,
     Symbol,
@@ -18,8 +17,8 @@ from service.expressions import (
     read,
     reading_cost,
 )
-from service.expressions.parsing.degrees import in_degrees
-from service.grading.work_budget import MAX_SYMBOLS
+from dh_grader.expressions.parser import in_degrees
+from dh_grader.grading.report import MAX_SYMBOLS
 
 JOINTS = [sympy.Symbol(f"theta{i}") for i in range(1, 8)]
 LENGTHS = [sympy.Symbol(f"L{i}") for i in range(7)]

@@ -6,13 +6,21 @@ from operator import add, mul, sub
 import numpy as np
 import pytest
 import sympy
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
+from dh_grader.expressions.parser import in_degrees
+from dh_grader.expressions.printing import to_text
+from dh_grader.expressions.vocabulary import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    Pi,
+    SymbolNode,
+    Unit,
+)
 from hypothesis import example, given
 from hypothesis import strategies as st
-
-from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
-from service.expressions.parsing.degrees import in_degrees
-from service.expressions.printing.text import to_text
-from service.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
 
 ARM = Vocabulary(
     [

@@ -4,9 +4,9 @@ from math import acos, asin, atan2, cos, exp, pi, sin, sqrt, tan
 
 import numpy as np
 import pytest
+from dh_grader.expressions import Vocabulary, read
 from numpy.typing import NDArray
 
-from service.expressions import Vocabulary, read
 from tests.together import together
 
 Values = dict[str, NDArray[np.float64]]

@@ -3,8 +3,8 @@
 import time
 
 import pytest
+from dh_grader.expressions import ExpressionError, read, reading_cost, symbols_in
 
-from service.expressions import ExpressionError, read, reading_cost, symbols_in
 from tests.expressions.corpus_files import ROBOT
 from tests.expressions.fuzzing import outcome
 from tests.guards import STALL

@@ -5,14 +5,8 @@ import threading
 
 import numpy as np
 import pytest
+from dh_grader.expressions import Expression, ExpressionError, Vocabulary, read, reader
 
-from service.expressions import (
-    Expression,
-    ExpressionError,
-    Vocabulary,
-    read,
-    reader,
-)
 from tests.expressions.conftest import Values
 from tests.expressions.corpus_files import ROBOT, cases, names
 
@@ -109,7 +103,7 @@ def test_a_shared_memo_changes_no_value() -> None:
 def test_threads_that_read_the_same_texts_agree() -> None:
     texts = [f"{text} + 0*{number}" for number, text in enumerate(READABLE[:60])]
     expected = [None if (each := _readable(text)) is None else str(each.text()) for text in texts]
-    for memoized in reader._memoized:
+    for memoized in reader._reader_memoized:
         memoized.cache_clear()
     reader._parsed.cache_clear()
     together = threading.Barrier(4)

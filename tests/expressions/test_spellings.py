@@ -9,8 +9,8 @@ from random import Random
 
 import numpy as np
 import pytest
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, read
 
-from service.expressions import ExpressionError, Symbol, Vocabulary, read
 from tests.expressions.corpus_files import ROBOT, SpellingCase, cases, names, spelling_cases
 from tests.expressions.reference import worth
 from tests.together import together

@@ -6,10 +6,10 @@ from random import Random
 import numpy as np
 import pytest
 import sympy
+from dh_grader.expressions import LIMITS, read
 from sympy.printing.numpy import NumPyPrinter
 from sympy.simplify.fu import TR8, TR10i
 
-from service.expressions import LIMITS, read
 from tests.expressions.corpus_files import ROBOT
 from tests.expressions.random_formulas import NUMBERS, entry, product, value
 

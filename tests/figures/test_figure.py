@@ -11,17 +11,20 @@ from typing import Final
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.robot import Robot
+from dh_grader.catalogue.schema import ViewSpec
+from dh_grader.figures import default_view, exercise_figure, reference_figure
+from dh_grader.figures.drawing import Theme
+from dh_grader.figures.mechanism import (
+    JOINT_LENGTH,
+    View,
+    drawing_numbers,
+    given_frames,
+    mechanism_of,
+)
+from dh_grader.kinematics import Numbers
 
-from service.catalogue import Exercise
-from service.catalogue.files.schema import ViewSpec
-from service.catalogue.robots.robot import Robot
-from service.figures.drawing.style import Theme
-from service.figures.figure import default_view, exercise_figure, reference_figure
-from service.figures.geometry.given_frames import given_frames
-from service.figures.geometry.mechanism import JOINT_LENGTH, mechanism_of
-from service.figures.geometry.symbol_numbers import drawing_numbers
-from service.figures.geometry.view import View
-from service.kinematics.transforms import Numbers
 from tests.browser.fixtures import Visit
 from tests.shipped import shipped_exercises
 

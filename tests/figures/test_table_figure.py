@@ -8,8 +8,8 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
 
-from service.api.application import application
 from tests.api.conftest import InProcess
 from tests.browser.hostile import TEXTS
 from tests.shipped import shipped_exercises

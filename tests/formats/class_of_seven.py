@@ -2,8 +2,9 @@
 
 from functools import cache
 
-from service.formats.shared.graded import GradedFile, GradedSubmission, answered
-from service.grading import FeedbackLevel
+from dh_grader.formats.graded import GradedFile, GradedSubmission, answered
+from dh_grader.grading import FeedbackLevel
+
 from tests.formats.submissions import POSE, ROWS, graded, planar, submission
 
 ANNA, BEN, CLEO, DANA, EMRE, FRITZ, GINA = range(7)

@@ -10,19 +10,17 @@ from typing import Any
 
 import jsonschema
 import pytest
-from rich.console import Console
-
-from service.catalogue import Exercise, FeedbackLevel, load_exercise, shipped_folder
-from service.formats import report_format
-from service.formats.shared.graded import (
+from dh_grader.catalogue import Exercise, FeedbackLevel, load_exercise, shipped_folder
+from dh_grader.formats import report_format
+from dh_grader.formats.graded import (
     AnsweredExercise,
     AnsweredPart,
     GradedFile,
     GradedSubmission,
+    Setting,
     answered,
 )
-from service.formats.shared.report_format import Setting
-from service.grading import (
+from dh_grader.grading import (
     CellReport,
     Correction,
     Feedback,
@@ -36,6 +34,7 @@ from service.grading import (
     Verdict,
     grade,
 )
+from rich.console import Console
 
 ROWS = [
     {"a": 0, "alpha": 0, "d": 0, "theta": "q1"},

@@ -3,12 +3,11 @@
 import io
 
 import pytest
+from dh_grader.formats.terminal import AlignedColumn, AlignedTable
 from rich.console import Console
 from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
-
-from service.formats.shared.aligned import AlignedColumn, AlignedTable
 
 COLUMNS = (
     AlignedColumn("row"),

@@ -7,13 +7,18 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from dh_grader.formats import FORMAT_NAMES, report_format
+from dh_grader.formats.class_page import (
+    WRITTEN,
+    feedback_zip,
+    is_document,
+    is_earlier_output,
+    is_output,
+)
+from dh_grader.formats.documents import HTML
+from dh_grader.submissions.files import MAX_START, all_handed_in
+from dh_grader.translations import LANGUAGES
 
-from service.formats import FORMAT_NAMES, report_format
-from service.formats.class_page import feedback_zip
-from service.formats.documents.html import HTML
-from service.formats.earlier_outputs import WRITTEN, is_document, is_earlier_output, is_output
-from service.submissions.handed_in import MAX_START, all_handed_in
-from service.translations import LANGUAGES
 from tests.formats.class_of_seven import class_of_seven
 from tests.formats.submissions import cases, document, setting
 from tests.formats.test_worksheets import BLACKBOARD, CANVAS, WORDS, moodle

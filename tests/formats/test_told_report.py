@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 from dataclasses import replace
 
-from service.catalogue import Exercise
-from service.formats.told_report import report_in, with_texts
-from service.grading import (
+from dh_grader.catalogue import Exercise
+from dh_grader.formats.graded import report_in, with_texts
+from dh_grader.grading import (
     Correction,
     Feedback,
     FeedbackLevel,
@@ -15,7 +15,8 @@ from service.grading import (
     Submission,
     grade,
 )
-from service.translations import ENGLISH, say
+from dh_grader.translations import ENGLISH, say
+
 from tests.translations.german import german
 
 WORDS = {

@@ -9,17 +9,17 @@ from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import pytest
-
-from service import grading
-from service.formats.shared.graded import GradedFile, GradedSubmission, answered
-from service.formats.worksheets import (
+from dh_grader import grading
+from dh_grader.formats.graded import GradedFile, GradedSubmission, answered
+from dh_grader.formats.worksheets import (
     Grade,
     UnusableWorksheetError,
     Worksheet,
     grade_of,
     is_worksheet,
 )
-from service.grading import Submission
+from dh_grader.grading import Submission
+
 from tests.formats.submissions import planar
 
 

@@ -5,7 +5,8 @@
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-from service.grading import PartReport, Submission, grade
+from dh_grader.grading import PartReport, Submission, grade
+
 from tests.frame_choice.oracle import is_equivalent
 from tests.frame_choice.robots import (
     ALPHA,

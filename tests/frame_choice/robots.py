@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
-from service.catalogue import Exercise, load_exercise
+from dh_grader.catalogue import Exercise, load_exercise
 
 TextRow = tuple[str, str, str, str]
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass, field
 from itertools import cycle
 
 import numpy as np
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Severity, Submission, Verdict, grade
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Severity, Submission, Verdict, grade
 from tests.frame_choice.edits import Edit, random_edit
 from tests.frame_choice.generator import Table, reassignment
 from tests.frame_choice.oracle import is_equivalent

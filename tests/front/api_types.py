@@ -1,6 +1,6 @@
 """Write the TypeScript types of the HTTP interface from the OpenAPI document.
 
-Run ``python -m tests.front.api_types > service/web/types/api.d.ts``.
+Run ``python -m tests.front.api_types > service/dh_grader/web/types/api.d.ts``.
 """
 
 import json
@@ -8,7 +8,7 @@ import sys
 from collections.abc import Mapping
 from typing import Any, Final
 
-from service.app import app
+from dh_grader.app import app
 
 Schema = Mapping[str, Any]
 

@@ -12,9 +12,9 @@ from typing import Final
 from deno import find_deno_bin
 
 ROOT: Final = Path(__file__).parents[2]
-STATIC: Final = ROOT / "service" / "web" / "static"
+STATIC: Final = ROOT / "service" / "dh_grader" / "web" / "static"
 VENDOR: Final = STATIC / "vendor"
-TYPES: Final = ROOT / "service" / "web" / "types"
+TYPES: Final = ROOT / "service" / "dh_grader" / "web" / "types"
 TESTS: Final = Path(__file__).parent
 
 # All settings are in one file, which editors and TypeScript's own tsc read, too.

@@ -8,10 +8,10 @@ from typing import Any, Final
 import httpx
 import numpy as np
 import pytest
+from dh_grader.app import app
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.robot import Robot
 
-from service.app import app
-from service.catalogue import Exercise
-from service.catalogue.robots.robot import Robot
 from tests.api.conftest import InProcess
 from tests.front.deno import TESTS, deno
 from tests.shipped import shipped_exercises

@@ -4,8 +4,8 @@ import re
 from subprocess import CompletedProcess
 
 import pytest
+from dh_grader.app import app
 
-from service.app import app
 from tests.front import deno
 from tests.front.api_types import api_types
 
@@ -51,7 +51,7 @@ def test_the_unit_tests_pass() -> None:
 def test_the_types_of_the_interface_are_those_of_the_openapi_document() -> None:
     written = (deno.TYPES / "api.d.ts").read_text(encoding="utf-8")
     assert written == api_types(app.openapi()), (
-        "python -m tests.front.api_types > service/web/types/api.d.ts"
+        "python -m tests.front.api_types > service/dh_grader/web/types/api.d.ts"
     )
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.robots import EXACT, PLANAR_RRR, SPELLINGS, STANFORD
 from tests.grading.support.submitting import (
     cell,

@@ -3,10 +3,10 @@
 from collections.abc import Callable, Iterator
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import SPECS
+from dh_grader.grading import FeedbackLevel, Verdict
 
-from service.catalogue import Exercise
-from service.catalogue.parts import SPECS
-from service.grading import FeedbackLevel, Verdict
 from tests.grading.support.bare_numbers import BARE, OF_A_ROBOT, BareExercise
 from tests.grading.support.submitting import handed_in, part
 from tests.together import together

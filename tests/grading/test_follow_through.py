@@ -7,9 +7,9 @@ from typing import Any
 
 import pytest
 import sympy
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Verdict
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Verdict
 from tests.grading.support.scara import (
     A1,
     A3,

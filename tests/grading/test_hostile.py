@@ -6,12 +6,12 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import LIMITS
+from dh_grader.grading import FeedbackLevel, Report, Submission, UnknownPartError, Verdict, grade
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.catalogue import Exercise
-from service.expressions import LIMITS
-from service.grading import FeedbackLevel, Report, Submission, UnknownPartError, Verdict, grade
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import (
     as_data,

@@ -4,12 +4,12 @@ import json
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import FeedbackLevel, Submission, grade
+from dh_grader.grading.reading import preview_pasted
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.catalogue import Exercise
-from service.grading import FeedbackLevel, Submission, grade
-from service.grading.reading.preview import preview_pasted
 from tests.grading.support.robots import EXACT, RRRP
 from tests.grading.support.submitting import as_data
 from tests.grids.writers import FORMATS

@@ -6,9 +6,9 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.robots import EXACT, PLANAR_RRR, ROBOTS, RRRP, SCARA, STANFORD, Robot
 from tests.grading.support.submitting import cell, graded_pose, graded_table, not_correct
 

@@ -6,11 +6,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
+import dh_grader
 import pytest
 
-import service
-
-SERVICE = Path(service.__file__).parent
+SERVICE = Path(dh_grader.__file__).parent
 RUNNERS = {
     "eval",
     "exec",
@@ -86,9 +85,9 @@ def test_the_search_leaves_regular_expressions_alone() -> None:
 # opened, each socket, each process and each piece of code that is compiled or run.
 PROGRAM = r"""
 import sys
-import service.grading
-from service.catalogue import load_catalogue, shipped_folder
-from service.grading import Submission, grade
+import dh_grader.grading
+from dh_grader.catalogue import load_catalogue, shipped_folder
+from dh_grader.grading import Submission, grade
 
 heavy = {"sympy", "scipy", "httpx", "fastapi", "sqlalchemy", "typer", "rich"}
 print("imported:", sorted(heavy & {name.partition(".")[0] for name in sys.modules}))

@@ -6,9 +6,8 @@ from importlib.metadata import version
 from typing import Any
 
 import pytest
-
-from service.catalogue import Exercise, FeedbackLevel, least
-from service.grading import (
+from dh_grader.catalogue import Exercise, FeedbackLevel, least
+from dh_grader.grading import (
     CellReport,
     Correction,
     Feedback,
@@ -22,8 +21,8 @@ from service.grading import (
     Verdict,
     grade,
 )
-from service.grading.feedback import with_shared_messages
-from service.grading.report import messages_of
+from dh_grader.grading.report import messages_of, with_shared_messages
+
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import (
     as_data,

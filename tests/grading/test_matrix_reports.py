@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import pytest
 import sympy as sp
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import FeedbackLevel, PartReport, Severity, Verdict
 from sympy import Matrix
 
-from service.catalogue import Exercise
-from service.grading import FeedbackLevel, PartReport, Severity, Verdict
 from tests.grading.support.robots import PLANAR_RRR, SCARA, STANFORD, Robot
 from tests.grading.support.submitting import (
     codes,

@@ -5,10 +5,8 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import pytest
-
-from service.grading import misconception as engine
-from service.grading.feedback import Finding
-from service.grading.misconception import (
+from dh_grader.grading import misconception as engine
+from dh_grader.grading.misconception import (
     AnyHypothesis,
     Written,
     check,
@@ -19,6 +17,7 @@ from service.grading.misconception import (
     register,
     says,
 )
+from dh_grader.grading.report import Finding
 
 
 @dataclass

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Severity, Verdict
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.catalogue import Exercise
-from service.grading import Severity, Verdict
 from tests.grading.support.robots import EXACT, ROBOTS, STANFORD, Robot
 from tests.grading.support.submitting import graded_table, handed_in, part, table
 from tests.grading.support.worth import about, points

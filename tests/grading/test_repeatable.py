@@ -8,17 +8,17 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import as_data, handed_in, not_correct, part, table
 
 PROGRAM = """
 import json, sys
 from dataclasses import asdict
-from service.catalogue import load_catalogue, shipped_folder
-from service.grading import Submission, grade
+from dh_grader.catalogue import load_catalogue, shipped_folder
+from dh_grader.grading import Submission, grade
 
 exercise = load_catalogue(shipped_folder())["stanford-arm"]
 print(json.dumps(asdict(grade(exercise, Submission(json.load(sys.stdin))))))

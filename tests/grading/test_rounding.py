@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Severity, Verdict
 
-from service.catalogue import Exercise
-from service.grading import Severity, Verdict
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import (
     cell,

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Severity, Verdict
 
-from service.catalogue import Exercise
-from service.grading import Severity, Verdict
 from tests.grading.support.robots import COLUMNS, EXACT, ROBOTS, Robot
 from tests.grading.support.slips import Slip, slips
 from tests.grading.support.submitting import cell, graded_table, not_correct, row

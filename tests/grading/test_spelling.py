@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Correction, PartReport
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise
-from service.grading import Correction, PartReport
-from service.grading.report import messages_of
 from tests.grading.support.robots import EXACT, PLANAR_RRR, STANFORD, AngleUnit
 from tests.grading.support.submitting import full_marks, graded_pose, graded_table
 

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel, PartSpec, shipped_folder
+from dh_grader.expressions import ExpressionError, read
+from dh_grader.grading import PartReport
+from dh_grader.grading.numbers import draw
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise, FeedbackLevel, PartSpec, shipped_folder
-from service.expressions import ExpressionError, read
-from service.grading import PartReport
-from service.grading.numerics.samples import draw
-from service.grading.report import messages_of
 from tests.grading.support.sheets import Grid, Sheet, sheet_of
 from tests.grading.support.submitting import handed_in, part
 from tests.grading.support.thief import Thief, expressions_in, is_trivial, known_before, lazy

@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
-
-from service.catalogue import Exercise
-from service.grading import Submission, grade
-from service.grading.report import PartReport
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Submission, grade
+from dh_grader.grading.report import PartReport
 
 STANFORD = """\
 0, -90deg, 0, theta1

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.grading import PartReport, Severity, Submission, Verdict, grade
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise, shipped_folder
-from service.grading import PartReport, Severity, Submission, Verdict, grade
-from service.grading.report import messages_of
 from tests.frame_choice.generator import reassignment
 from tests.frame_choice.robots import (
     COLUMNS,

@@ -3,11 +3,10 @@
 from collections.abc import Iterator, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.grading import PartReport, Report, Submission, grade
+from dh_grader.grading.report import WorkBudget, messages_of
 
-from service.catalogue import Exercise, FeedbackLevel
-from service.grading import PartReport, Report, Submission, grade
-from service.grading.report import messages_of
-from service.grading.work_budget import WorkBudget
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.solutions.solved import solved
 
@@ -60,7 +59,7 @@ def test_marks_are_the_same_without_any_explanation(
     for answers in spoilt_answers(exercise):
         explained = grade(exercise, Submission(answers))
         with monkeypatch.context() as context:
-            context.setattr("service.grading.work_budget.WorkBudget.affords", _affords_nothing)
+            context.setattr("dh_grader.grading.report.WorkBudget.affords", _affords_nothing)
             bare = grade(exercise, Submission(answers))
         assert marks(bare) == marks(explained), answers
         assert len(told(bare)) <= 1

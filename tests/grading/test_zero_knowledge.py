@@ -7,12 +7,11 @@ from itertools import chain
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise, PartSpec, exercise_files, shipped_folder
+from dh_grader.grading import Submission, Verdict, grade
+from dh_grader.solutions import solve
+from dh_grader.solutions.lazy import IDENTITY, LAZY, motion
 
-from service.catalogue import Exercise, PartSpec, exercise_files, shipped_folder
-from service.grading import Submission, Verdict, grade
-from service.solutions import solve
-from service.solutions.kinds import LAZY
-from service.solutions.lazy import IDENTITY, motion
 from tests.samples import one_in
 
 IDS = [file.stem for file in exercise_files(shipped_folder())]

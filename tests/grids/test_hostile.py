@@ -5,10 +5,18 @@ from collections.abc import Callable
 from typing import TypeVar
 
 import pytest
+from dh_grader.pasting import (
+    GRID_LIMITS,
+    Grid,
+    GridError,
+    NamedGrid,
+    read_grid,
+    read_grids,
+    read_robot,
+)
 from hypothesis import example, given
 from hypothesis import strategies as st
 
-from service.grids import GRID_LIMITS, Grid, GridError, NamedGrid, read_grid, read_grids, read_robot
 from tests.grids.scripts.test_robot_script import SCRIPTS
 from tests.grids.writers import FORMATS, POSE
 from tests.guards import STALL

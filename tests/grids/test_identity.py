@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
-
-from service.expressions import Kind, Vocabulary, joint_variable
-from service.grading.feedback import UnreadableAnswerError
-from service.grading.numerics.samples import Samples
-from service.grading.reading.entry import Reader
-from service.grading.reading.matrices.matrix import read_matrix
-from service.grading.reading.matrices.matrix_list import read_matrices
-from service.grids import GridError, read_grid
+from dh_grader.expressions import Kind, Vocabulary, joint_variable
+from dh_grader.grading.numbers import Samples
+from dh_grader.grading.reading.entries import Reader
+from dh_grader.grading.reading.matrices import read_matrices, read_matrix
+from dh_grader.grading.report import UnreadableAnswerError
+from dh_grader.pasting import GridError, read_grid
 
 TURN = "[c1 -s1 0; s1 c1 0; 0 0 1]"
 

@@ -1,10 +1,10 @@
 """Each format reads back its own cells, and refuses other texts."""
 
 import pytest
+from dh_grader.pasting import GridError, read_grid
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from service.grids import GridError, read_grid
 from tests.grids.writers import FORMATS, MATRICES, POSE, Rows
 from tests.together import together
 

@@ -1,8 +1,8 @@
 """Read several matrices in one text."""
 
 import pytest
+from dh_grader.pasting import GridError, read_grids
 
-from service.grids import GridError, read_grids
 from tests.grids.writers import MATRICES, POSE
 from tests.together import together
 

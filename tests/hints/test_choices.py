@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import DhTableSpec
+from dh_grader.expressions import read
+from dh_grader.grading import Submission
+from dh_grader.hints import MOST, other_choices
 
-from service.catalogue import Exercise
-from service.catalogue.parts.dh_table import DhTableSpec
-from service.expressions import read
-from service.grading import Submission
-from service.hints.choices import MOST, other_choices
 from tests.shipped import sampled, shipped_exercises
 from tests.solutions.solved import solved
 

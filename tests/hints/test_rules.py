@@ -7,14 +7,13 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from dh_grader import hints as picture
+from dh_grader.figures.drawing import Theme
+from dh_grader.grading.misconception import Record, all_records
+from dh_grader.hints import OF_COLUMN, RULES, Rule, rule_picture
+from dh_grader.kinematics import Convention, modified_link, standard_link
+from dh_grader.translations import Language
 
-from service.figures.drawing.style import Theme
-from service.grading.misconception import Record, all_records
-from service.hints import picture
-from service.hints.picture import rule_picture
-from service.hints.rules import OF_COLUMN, RULES, Rule
-from service.kinematics.dh import Convention, modified_link, standard_link
-from service.translations import Language
 from tests.together import together
 
 RECORDS = [record for record in all_records() if record.codes]

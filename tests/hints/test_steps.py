@@ -7,12 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader import grading
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.grading.misconception import Record, all_records
+from dh_grader.grading.report import Verdict, messages_of
+from dh_grader.hints import Topic, has_hints, hint_step, may_have_hints
 
-from service import grading
-from service.catalogue import Exercise, FeedbackLevel
-from service.grading.misconception import Record, all_records
-from service.grading.report import Verdict, messages_of
-from service.hints.steps import Topic, has_hints, hint_step, may_have_hints
 from tests.docs.codes import sources
 from tests.grading.diagnosis.traces import answered, exercises
 from tests.grading.support.submitting import handed_in

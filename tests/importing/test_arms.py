@@ -5,10 +5,8 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from dh_grader.importing.urdf import home_axes, placed, read_urdf, tips
 
-from service.importing.axes import home_axes
-from service.importing.frames import placed
-from service.importing.urdf import read_urdf, tips
 from tests.importing.test_frames import by_table
 from tests.importing.urdf_texts import Part, tip, turned
 

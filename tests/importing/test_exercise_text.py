@@ -1,14 +1,10 @@
 import pytest
+from dh_grader.authoring import Level, examine
+from dh_grader.catalogue import Exercise, load_exercise
+from dh_grader.importing.exercise_text import Draft, HomeRobot, exercise_text, lettered
+from dh_grader.importing.urdf import home_axes, placed, read_urdf
+from dh_grader.kinematics import Convention
 
-from service.authoring import examine
-from service.authoring.remarks import Level
-from service.catalogue import Exercise, load_exercise
-from service.importing.axes import home_axes
-from service.importing.exercise_text import Draft, exercise_text, lettered
-from service.importing.frames import placed
-from service.importing.home_statement import HomeRobot
-from service.importing.urdf import read_urdf
-from service.kinematics.dh import Convention
 from tests.importing.urdf_texts import Part, urdf
 
 ARM = [

@@ -2,12 +2,9 @@ import ast
 
 import numpy as np
 import pytest
-
-from service.importing.export import toolbox_text, urdf_text
-from service.importing.home_statement import HomeRobot
-from service.importing.urdf import read_urdf
-from service.kinematics.chain import frames
-from service.kinematics.dh import Convention, standard_link
+from dh_grader.importing.exercise_text import HomeRobot, toolbox_text, urdf_text
+from dh_grader.importing.urdf import read_urdf
+from dh_grader.kinematics import Convention, frames, standard_link
 
 
 def robot(seed: int) -> HomeRobot:

@@ -1,11 +1,16 @@
 import numpy as np
 import pytest
+from dh_grader.importing.urdf import (
+    Arm,
+    Placed,
+    UnclearAxesError,
+    greatest_difference,
+    home_axes,
+    placed,
+    read_urdf,
+)
+from dh_grader.kinematics import Convention, frames
 
-from service.importing.axes import UnclearAxesError, home_axes
-from service.importing.frames import Placed, greatest_difference, placed
-from service.importing.urdf import Arm, read_urdf
-from service.kinematics.chain import frames
-from service.kinematics.dh import Convention
 from tests.importing.urdf_texts import Part, random_parts, tip, turned, urdf
 
 

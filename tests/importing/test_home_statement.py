@@ -2,14 +2,15 @@
 
 import numpy as np
 import pytest
+from dh_grader.importing.exercise_text import (
+    HomeRobot,
+    UnevenLettersError,
+    home_statement,
+    lettered,
+)
+from dh_grader.importing.urdf import UnclearAxesError, home_axes, placed, read_urdf
+from dh_grader.kinematics import Convention, frames
 
-from service.importing.axes import UnclearAxesError, home_axes
-from service.importing.exercise_text import lettered
-from service.importing.frames import placed
-from service.importing.home_statement import HomeRobot, UnevenLettersError, home_statement
-from service.importing.urdf import read_urdf
-from service.kinematics.chain import frames
-from service.kinematics.dh import Convention
 from tests.importing.statement_reader import pose
 from tests.importing.urdf_texts import Part, random_parts, urdf
 

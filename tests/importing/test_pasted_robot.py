@@ -5,19 +5,13 @@ import tomllib
 from dataclasses import replace
 
 import pytest
+from dh_grader.authoring import Level, examine
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.load import read_exercise
+from dh_grader.grading.grade import Submission, grade
+from dh_grader.importing import ImportedRobot, ImportOptions, RefusedRobotError, imported_table
+from dh_grader.kinematics import Convention
 
-from service.authoring import examine
-from service.authoring.remarks import Level
-from service.catalogue import Exercise
-from service.catalogue.load import read_exercise
-from service.grading.grade import Submission, grade
-from service.importing.robot_import import (
-    ImportedRobot,
-    ImportOptions,
-    RefusedRobotError,
-    imported_table,
-)
-from service.kinematics.dh import Convention
 from tests.importing.tables.drawn import EXERCISES
 
 PASTED = """

@@ -1,8 +1,8 @@
 import time
 
 import pytest
+from dh_grader.importing.urdf import UnusableUrdfError, read_urdf, tips
 
-from service.importing.urdf import UnusableUrdfError, read_urdf, tips
 from tests.importing.urdf_texts import Part, urdf
 
 ONE = Part("revolute", [0, 0, 0.1], [0, 0, 0])

@@ -4,8 +4,8 @@ import time
 from collections.abc import Callable
 
 import pytest
+from dh_grader.importing.urdf import UnusableUrdfError, read_urdf
 
-from service.importing.urdf import UnusableUrdfError, read_urdf
 from tests.importing.urdf_texts import Part, urdf
 
 # Seconds of processor time: ten times the budget of 100 ms.

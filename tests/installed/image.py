@@ -28,9 +28,9 @@ for place in /tmp /srv /opt/dh-grader; do
     touch "$place/x" 2>/dev/null && echo "$place is writable"
 done
 dh-grader grade - --exercise stanford-arm --format jsonl
-python -m service serve >/dev/null & service=$!
-for _ in $(seq 60); do python -m service.server.alive && break; sleep 1; done
-python -m service.server.alive; echo "health $?"
+python -m dh_grader serve >/dev/null & service=$!
+for _ in $(seq 60); do python -m dh_grader.server.alive && break; sleep 1; done
+python -m dh_grader.server.alive; echo "health $?"
 kill -TERM "$service"; wait "$service"; echo "end $?"
 """
 # The mounts end together with their namespace.

@@ -11,11 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.bundles import platform_seeds
+from dh_grader.catalogue import Exercise, load_exercise
+from dh_grader.solutions import solve
+from dh_grader.variants import hidden_variant
 
-from service.bundles.variants import platform_seeds
-from service.catalogue import Exercise, load_exercise
-from service.solutions import solve
-from service.variants.variant import hidden_variant
 from tests.installed.environment import checked, run, unpack
 from tests.variants.varied_files import varied_text
 

@@ -9,9 +9,9 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.app import create
+from dh_grader.bundles import own_wheel
 
-from service.app import create
-from service.bundles.own_wheel import own_wheel
 from tests.formats.submissions import POSE, ROWS
 from tests.installed.environment import (
     checked,
@@ -29,7 +29,7 @@ def test_the_program_is_the_installed_one(programs: Path, tmp_path: Path) -> Non
     assert checked(programs / "dh-grader", "--version", cwd=tmp_path).split() == [
         "dh-grader", version("dh-grader"),
     ]  # fmt: skip
-    ask = "import service; print(service.__file__)"
+    ask = "import dh_grader; print(dh_grader.__file__)"
     file = Path(checked(programs / "python", "-c", ask, cwd=tmp_path).strip())
     assert file.is_relative_to(programs.parent)
     assert file.with_name("py.typed").is_file()
@@ -73,8 +73,8 @@ def test_the_wheel_holds_the_templates_of_reports_and_pages(programs: Path, tmp_
     report = run(programs / "dh-grader", *options, cwd=tmp_path)
     assert report.stdout.startswith("<!doctype html>"), report.stderr
     ask = (
-        "from service.web.assets import load_assets; from service.web.pages import play_page;"
-        "from service.translations import ENGLISH;"
+        "from dh_grader.web.pages import load_assets; from dh_grader.web.pages import play_page;"
+        "from dh_grader.translations import ENGLISH;"
         "print(play_page(load_assets(), ENGLISH).decode())"
     )
     assert "<dh-play>" in checked(programs / "python", "-c", ask, cwd=tmp_path)
@@ -103,7 +103,7 @@ def contents(wheel: Path) -> dict[str, bytes]:
 @pytest.mark.long
 def test_the_program_rebuilds_its_own_wheel(wheel: Path, programs: Path, tmp_path: Path) -> None:
     make = (
-        "import pathlib, service.bundles.own_wheel as own; made = own.own_wheel();"
+        "import pathlib, dh_grader.bundles as own; made = own.own_wheel();"
         "pathlib.Path(made.name).write_bytes(made.content)"
     )
     checked(programs / "python", "-c", make, cwd=tmp_path)
@@ -116,5 +116,5 @@ def test_the_program_rebuilds_its_own_wheel(wheel: Path, programs: Path, tmp_pat
     assert [
         name
         for name, content in built.items()
-        if name.startswith("service/") and from_checkout[name] != content
+        if name.startswith("dh_grader/") and from_checkout[name] != content
     ] == []

@@ -1,9 +1,8 @@
 """Construct translations and screw axes as textbooks describe them."""
 
 import numpy as np
+from dh_grader.kinematics import Matrices, Numbers, identity
 from numpy.typing import ArrayLike
-
-from service.kinematics.transforms import Matrices, Numbers, identity
 
 
 def trans(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Matrices:

@@ -6,11 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
-from hypothesis import given
-from hypothesis import strategies as st
-from numpy.typing import NDArray
-
-from service.kinematics.chain import (
+from dh_grader.kinematics import (
+    Convention,
     Row,
     compound,
     links,
@@ -18,7 +15,9 @@ from service.kinematics.chain import (
     pose,
     standard_rows,
 )
-from service.kinematics.dh import Convention
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 STANDARD, MODIFIED = Convention.STANDARD, Convention.MODIFIED

@@ -1,12 +1,11 @@
 """Compare link transforms with products of four elementary matrices."""
 
 import numpy as np
+from dh_grader.kinematics import Convention, link_transforms, modified_link, standard_link
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
-
-from service.kinematics.dh import Convention, link_transforms, modified_link, standard_link
 
 Array = NDArray[np.float64]
 ANGLE = st.floats(-20, 20)

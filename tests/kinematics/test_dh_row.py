@@ -4,11 +4,18 @@ import doctest
 
 import numpy as np
 import pytest
+from dh_grader import kinematics as dh_row
+from dh_grader.kinematics import (
+    Convention,
+    dh1_residual,
+    dh2_residual,
+    link_transforms,
+    rot_x,
+    rot_y,
+    rot_z,
+    row,
+)
 
-from service.kinematics import dh_row
-from service.kinematics.dh import Convention, link_transforms
-from service.kinematics.dh_row import dh1_residual, dh2_residual, row
-from service.kinematics.transforms import rot_x, rot_y, rot_z
 from tests.kinematics.constructions import trans
 
 RNG = np.random.default_rng(6)

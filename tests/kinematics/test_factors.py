@@ -2,11 +2,17 @@
 
 import numpy as np
 import pytest
+from dh_grader.kinematics import (
+    Convention,
+    axis_frames,
+    factors_of,
+    pose,
+    read_screws,
+    rot_x,
+    rot_z,
+    screws,
+)
 
-from service.kinematics.chain import axis_frames, pose
-from service.kinematics.dh import Convention
-from service.kinematics.factors import factors_of, read_screws, screws
-from service.kinematics.transforms import rot_x, rot_z
 from tests.kinematics.constructions import trans
 
 BOTH = pytest.mark.parametrize("convention", list(Convention))

@@ -4,15 +4,22 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
+from dh_grader.kinematics import (
+    THETA,
+    Convention,
+    D,
+    coincident,
+    dependent,
+    inverse,
+    modified_rows,
+    pose,
+    rank,
+    space_jacobian,
+)
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.linalg import logm
-
-from service.kinematics.chain import THETA, D, modified_rows, pose
-from service.kinematics.dh import Convention
-from service.kinematics.jacobian import coincident, dependent, rank, space_jacobian
-from service.kinematics.transforms import inverse
 
 Rows = Sequence[tuple[float, float, float, float]]
 

@@ -5,14 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
-
-from service.kinematics import rotations
-from service.kinematics.rotations import (
+from dh_grader import kinematics as rotations
+from dh_grader.kinematics import (
     PROPER,
     SEQUENCES,
+    Matrices,
     about,
     composed,
     from_angles,
@@ -21,7 +18,10 @@ from service.kinematics.rotations import (
     other_triple,
     to_angles,
 )
-from service.kinematics.transforms import Matrices
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.spatial.transform import Rotation
+
 from tests.together import together
 
 RNG = np.random.default_rng(4)

@@ -4,21 +4,23 @@ import doctest
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
-from scipy.linalg import expm
-
-from service.kinematics import screws
-from service.kinematics.screws import (
+from dh_grader import kinematics as screws
+from dh_grader.kinematics import (
     adjoint,
     exponential,
+    inverse,
     moved,
     product_in_body,
     product_in_space,
+    rot_x,
+    rot_z,
     skew,
     sliding_axis,
     turning_axis,
 )
-from service.kinematics.transforms import inverse, rot_x, rot_z
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
 from tests.kinematics.constructions import screw_axis, trans
 from tests.together import together
 

@@ -4,12 +4,12 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from dh_grader.kinematics import identity, inverse, is_rigid, rot_x, rot_y, rot_z
 from hypothesis import given
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from service.kinematics.transforms import identity, inverse, is_rigid, rot_x, rot_y, rot_z
 from tests.kinematics.constructions import trans
 
 Array = NDArray[np.float64]

@@ -1,6 +1,6 @@
 from hashlib import sha256
 
-from service.learning.draws import SlipDraws
+from dh_grader.learning import SlipDraws
 
 
 def test_a_draw_is_the_beginning_of_a_digest_as_a_fraction() -> None:

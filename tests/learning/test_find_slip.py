@@ -6,15 +6,14 @@ from dataclasses import replace
 from itertools import islice
 
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.catalogue.kinds import DhTableSpec, FindSlipSpec
+from dh_grader.grading import PartReport, Severity, Verdict
+from dh_grader.grading.kinds.tables import slip_of
+from dh_grader.grading.report import messages_of
+from dh_grader.kinematics import COLUMNS
+from dh_grader.learning import DrawnSlip
 
-from service.catalogue import Exercise, FeedbackLevel
-from service.catalogue.parts.dh_table import DhTableSpec
-from service.catalogue.parts.find_slip import FindSlipSpec
-from service.grading import PartReport, Severity, Verdict
-from service.grading.kinds.find_slip import slip_of
-from service.grading.report import messages_of
-from service.kinematics.chain import COLUMNS
-from service.learning.find_slip import DrawnSlip
 from tests.grading.support.submitting import full_marks, handed_in, part, table
 
 SEEDS, SAMPLE, RUN = 5000, 16, 250

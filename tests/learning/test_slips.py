@@ -5,16 +5,21 @@ from dataclasses import replace
 from typing import get_args
 
 import pytest
-
-from service.authoring.slips import unfit_slips
-from service.catalogue import Exercise
-from service.catalogue.parts.find_slip import FindSlipSpec, SlipName
-from service.grading.kinds.find_slip import blame, slip_of
-from service.grading.misconception import all_records
-from service.kinematics.dh import Convention
-from service.learning.find_slip import NoSlipError, TableBlame, drawn_slip
-from service.learning.slips import SLIPS, changes_of
-from service.learning.table_texts import TableTexts, model_table
+from dh_grader.authoring import unfit_slips
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import FindSlipSpec, SlipName
+from dh_grader.grading.kinds.tables import blame, slip_of
+from dh_grader.grading.misconception import all_records
+from dh_grader.kinematics import Convention
+from dh_grader.learning import (
+    SLIPS,
+    NoSlipError,
+    TableBlame,
+    TableTexts,
+    changes_of,
+    drawn_slip,
+    model_table,
+)
 
 # The cases about cells and tables; the one DH row of a transform is another answer kind.
 OF_TABLES = {"WrongCell", "Rereadable", "WrittenTable", "StudentTable"}

@@ -16,10 +16,10 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from dh_grader.store.database import open_database
+from dh_grader.store.tables import attempts
 from sqlalchemy import select
 
-from service.attempts.storage.database import open_database
-from service.attempts.storage.tables import attempts
 from tests.attack.floods import costly
 from tests.attempts.databases import KINDS, new_database, new_file, postgresql_server
 from tests.load.clients import Mix, Results, submitted

@@ -50,8 +50,8 @@ def cramped(folder: Path, url: str, most: int) -> Iterator[Service]:
     limited = (
         "import resource, runpy, sys;"
         f"resource.setrlimit(resource.RLIMIT_FSIZE, ({most}, {most}));"
-        "sys.argv = ['service', 'serve', '--port', '0'];"
-        "runpy.run_module('service', run_name='__main__')"
+        "sys.argv = ['dh_grader', 'serve', '--port', '0'];"
+        "runpy.run_module('dh_grader', run_name='__main__')"
     )
     environment = os.environ | {"NO_COLOR": "1", "DH_GRADER_DATABASE": url}
     log = folder / "cramped-log"

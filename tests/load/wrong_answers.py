@@ -20,10 +20,11 @@ from functools import cache
 from pathlib import Path
 from typing import Any, Final, NamedTuple
 
-from service.api.http.bodies import validated
-from service.catalogue import Exercise
-from service.grading import grade
-from service.submissions.body import GradeRequest
+from dh_grader.api.http import validated
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import grade
+from dh_grader.submissions.bodies import GradeRequest
+
 from tests.guards import ANSWER
 from tests.server.raw import Service, service
 from tests.shipped import shipped_exercises

@@ -11,20 +11,20 @@ from urllib.parse import parse_qs, urlsplit
 
 import httpx
 import pytest
+from dh_grader.access import OPEN_HERE
+from dh_grader.access.key_ring import KeyRing
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.lti.fetching import ensure_key
+from dh_grader.lti.registrations import NewRegistration, add_registration
+from dh_grader.store import tables
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
+from dh_grader.store.tables import course_learners, courses
+from dh_grader.web import Tutoring, web_routes
 from sqlalchemy import Connection, func, select
 
-from service.access.key_ring import KeyRing
-from service.access.open_access import OPEN_HERE
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.storage import lti_tables as tables
-from service.attempts.storage.database import in_transaction
-from service.attempts.storage.tables import course_learners, courses
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.lti.own_keys import ensure_key
-from service.lti.registrations import NewRegistration, add_registration
-from service.web import Tutoring, web_routes
 from tests.access.kept_services import SECRET, KeptServices
 from tests.attempts.databases import new_file
 from tests.lti.platform import Platform, running

@@ -10,10 +10,10 @@ from typing import Any
 import httpx
 import jwt
 import pytest
+from dh_grader.lti.registrations import Registration
+from dh_grader.store.tables import assignments
 from sqlalchemy import select
 
-from service.attempts.storage.tables import assignments
-from service.lti.registrations import Registration
 from tests.lti.conftest import Tool, hidden, token_of
 from tests.lti.platform import CLIENT, DEPLOYMENT, DL, LTI, Platform, deep_linking
 

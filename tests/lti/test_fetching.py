@@ -12,11 +12,11 @@ from ipaddress import ip_address
 from typing import Any
 
 import pytest
+from dh_grader.lti import fetching
+from dh_grader.lti.fetching import TIMEOUT, FetchError, answer, fetch_json, is_public
+from dh_grader.lti.registrations import unusable
 from fastapi import FastAPI, Response
 
-from service.lti import fetching
-from service.lti.fetching import TIMEOUT, FetchError, answer, fetch_json, is_public
-from service.lti.registrations import unusable
 from tests.guards import ANSWER
 from tests.lti.platform import running
 

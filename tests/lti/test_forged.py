@@ -9,12 +9,16 @@ from typing import Any
 
 import jwt
 import pytest
+from dh_grader.lti.launch import digest
+from dh_grader.lti.registrations import (
+    LTI_PROBLEMS,
+    NewRegistration,
+    add_registration,
+    remove_registration,
+)
+from dh_grader.store.tables import launches, learners, registrations
 from sqlalchemy import select, update
 
-from service.attempts.storage.lti_tables import launches, learners, registrations
-from service.lti.logins import digest
-from service.lti.problems import LTI_PROBLEMS
-from service.lti.registrations import NewRegistration, add_registration, remove_registration
 from tests.lti.conftest import Begun, Tool, hidden
 from tests.lti.platform import (
     CLIENT,
@@ -388,7 +392,8 @@ def test_two_platforms_and_two_courses_with_the_same_user(tool: Tool, platform: 
 
 
 def test_a_learner_is_a_platform_and_its_user() -> None:
-    from service.lti.linking import pseudonym
+    from dh_grader.lti.launch import pseudonym
+
     from tests.access.kept_services import SECRET
 
     one, two = (pseudonym(each, "user 1", SECRET) for each in ("moodle", "canvas"))

@@ -9,14 +9,13 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.lti.joining import allow, canvas_configuration, invite
+from dh_grader.lti.registrations import all_registrations, deployments_of
+from dh_grader.store.tables import invitations
 from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse, Response
 from sqlalchemy import update
 
-from service.attempts.storage.lti_tables import invitations
-from service.lti.joining.invitations import allow, invite
-from service.lti.joining.tool_configuration import canvas_configuration
-from service.lti.registrations import all_registrations, deployments_of
 from tests.lti.conftest import ADDRESS, Tool
 from tests.lti.platform import running
 

@@ -4,10 +4,10 @@ import re
 from typing import Any
 
 import pytest
+from dh_grader.store.tables import contexts, resource_links
+from dh_grader.translations import LANGUAGES
 from sqlalchemy import event, select
 
-from service.attempts.storage.lti_tables import contexts, resource_links
-from service.translations import LANGUAGES
 from tests.lti.conftest import Tool, hidden, token_of
 from tests.lti.platform import LTI, MEMBER, ROLES
 from tests.translations.pseudo import PSEUDO
@@ -144,7 +144,7 @@ def test_previews_and_guests_record_nothing(tool: Tool) -> None:
 
 
 def test_roles_of_platforms_have_a_role_here() -> None:
-    from service.lti.roles import LtiRole, role_of
+    from dh_grader.lti.registrations import LtiRole, role_of
 
     lis = "http://purl.imsglobal.org/vocab/lis/v2"
     cases = {

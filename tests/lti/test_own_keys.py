@@ -2,11 +2,11 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
+from dh_grader.access import Secret
+from dh_grader.lti.fetching import ensure_key, published_keys, rotate, signing_key
+from dh_grader.lti.registrations import LtiError
+from dh_grader.store.tables import own_keys
 
-from service.access.keys import Secret
-from service.attempts.storage.lti_tables import own_keys
-from service.lti.own_keys import ensure_key, published_keys, rotate, signing_key
-from service.lti.problems import LtiError
 from tests.access.kept_services import SECRET
 from tests.lti.conftest import Tool
 

@@ -3,12 +3,10 @@ from datetime import UTC, datetime
 from typing import Any
 
 import pytest
+from dh_grader.lti import PlatformThreads
+from dh_grader.lti.fetching import FetchError, PlatformKeys
+from dh_grader.lti.registrations import LtiError, Registration
 
-from service.lti.fetching import FetchError
-from service.lti.platform_keys import PlatformKeys
-from service.lti.platform_threads import PlatformThreads
-from service.lti.problems import LtiError
-from service.lti.registrations import Registration
 from tests.lti.platform import Platform, public_jwk
 
 

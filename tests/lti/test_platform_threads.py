@@ -4,9 +4,9 @@ import asyncio
 import threading
 
 import pytest
+from dh_grader import lti as platform_threads
+from dh_grader.lti import PlatformThreads
 
-from service.lti import platform_threads
-from service.lti.platform_threads import PlatformThreads
 from tests.guards import ANSWER
 
 

@@ -1,7 +1,8 @@
 """The operators' page of registered platforms."""
 
-from service.lti.problems import LTI_PROBLEMS, LtiError, cause_without_values
-from service.translations import LANGUAGES, say, told
+from dh_grader.lti.registrations import LTI_PROBLEMS, LtiError, cause_without_values
+from dh_grader.translations import LANGUAGES, say, told
+
 from tests.lti.conftest import hidden
 from tests.lti.scores.conftest import Journey
 from tests.lti.scores.conftest import journey as journey

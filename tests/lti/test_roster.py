@@ -4,13 +4,12 @@ from typing import Any
 
 import jwt
 import pytest
+from dh_grader.contract.courses import NewLearner
+from dh_grader.courses.roll import add_learners
+from dh_grader.lti import roster as roster_members
+from dh_grader.store.tables import contexts, course_learners
 from sqlalchemy import select
 
-from service.attempts.storage.lti_tables import contexts
-from service.attempts.storage.tables import course_learners
-from service.contract.courses import NewLearner
-from service.courses.roll import add_learners
-from service.lti.roster import members as roster_members
 from tests.lti.conftest import Tool, hidden, token_of
 from tests.lti.platform import MEMBER, TEST_USER
 

@@ -40,15 +40,17 @@ class Package:
 
 PACKAGES: Final[Mapping[str, Package]] = {
     "access": Package(
-        ["service/access/*.py"], ["tests/access", "tests/api/test_scopes.py"], ["tests/access"]
+        ["service/dh_grader/access/*.py"],
+        ["tests/access", "tests/api/test_scopes.py"],
+        ["tests/access"],
     ),
     "permissions": Package(
-        ["service/api/permissions/*.py"],
+        ["service/dh_grader/api/permissions.py"],
         ["tests/api/permissions", "tests/api/test_scopes.py", "tests/api/test_sign_in.py"],
         ["tests/api/permissions"],
     ),
     "terms": Package(
-        ["service/courses/terms.py"],
+        ["service/dh_grader/courses/assignments.py"],
         [
             "tests/courses/test_terms.py",
             "tests/courses/test_courses.py",
@@ -57,12 +59,12 @@ PACKAGES: Final[Mapping[str, Package]] = {
         ["tests/courses/test_terms"],
     ),
     "gradebook": Package(
-        ["service/courses/results/*.py"],
+        ["service/dh_grader/courses/gradebook.py"],
         ["tests/courses/results", "tests/courses/test_courses.py"],
         ["tests/courses/results"],
     ),
     "results": Package(
-        ["service/attempts/results/*.py"],
+        ["service/dh_grader/store/results.py"],
         [
             "tests/attempts/results",
             "tests/api/recording/test_listing.py",
@@ -71,21 +73,17 @@ PACKAGES: Final[Mapping[str, Package]] = {
         ["tests/attempts/results"],
     ),
     "fair_points": Package(
-        ["service/grading/judging/marking/fair_points.py"],
+        ["service/dh_grader/grading/judging_table.py"],
         ["tests/grading/judging", "tests/grading/test_unread_cells.py", "tests/frame_choice/rows"],
         ["tests/grading/judging/marking/test_fair_points.py"],
     ),
     "marks": Package(
-        [
-            "service/grading/judging/marking/marks.py",
-            "service/grading/judging/marking/worth.py",
-            "service/grading/lost_points.py",
-        ],
+        ["service/dh_grader/grading/marks.py", "service/dh_grader/grading/report.py"],
         ["tests/grading/judging/marking", "tests/grading/test_points.py"],
         ["tests/grading/judging/marking/test_m", "tests/grading/judging/marking/test_w"],
     ),
     "comparison": Package(
-        ["service/grading/numerics/comparison.py", "service/grading/numerics/tolerances.py"],
+        ["service/dh_grader/grading/numbers.py"],
         ["tests/grading/numerics", "tests/grading/test_rounding.py"],
         ["tests/grading/numerics"],
     ),

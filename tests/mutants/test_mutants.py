@@ -52,7 +52,7 @@ def test_a_file_has_these_mutants(source: str, expected: set[str]) -> None:
 
 
 def test_the_tree_is_as_before_after_each_mutant() -> None:
-    source = (ROOT / "service/courses/terms.py").read_text(encoding="utf-8")
+    source = (ROOT / "service/dh_grader/courses/assignments.py").read_text(encoding="utf-8")
     tree = ast.parse(source)
     found = [(each, compile(tree, "terms.py", "exec")) for each in mutants(tree)]
     assert len(found) > 100
@@ -140,7 +140,7 @@ def test_a_mutant_is_tried_by_the_tests_that_reach_its_line() -> None:
 
 
 def result(before: str, after: str, end: str) -> Result:
-    return Result("service/x.py", 3, "f", before, after, end)
+    return Result("service/dh_grader/x.py", 3, "f", before, after, end)
 
 
 def test_the_report_counts_and_names_survivors(capsys: pytest.CaptureFixture[str]) -> None:
@@ -149,16 +149,18 @@ def test_the_report_counts_and_names_survivors(capsys: pytest.CaptureFixture[str
     assert report("x", results, [])
     told = capsys.readouterr().out
     assert "x: 90.0% of 10 killed (8 killed, 1 survived, 1 time-out)" in told
-    assert "service/x.py:3: a < b -> a <= b" in told
+    assert "service/dh_grader/x.py:3: a < b -> a <= b" in told
     results.append(result("e", "f", "unreached"))
     assert not report("x", results, [])
     assert "e -> f (no test reaches it)" in capsys.readouterr().out
     # An equivalent mutant does not count; one that a test kills is no longer equivalent.
-    same = [Equivalent("service/x.py", "f", "e", "It is only faster.", "f")]
+    same = [Equivalent("service/dh_grader/x.py", "f", "e", "It is only faster.", "f")]
     assert report("x", results, same)
     assert "of 10 killed" in capsys.readouterr().out
-    report("x", results, [Equivalent("service/x.py", "f", "c", "It is only faster.", "d")])
-    assert "no longer equivalent: service/x.py:3: c -> d" in capsys.readouterr().out
+    report(
+        "x", results, [Equivalent("service/dh_grader/x.py", "f", "c", "It is only faster.", "d")]
+    )
+    assert "no longer equivalent: service/dh_grader/x.py:3: c -> d" in capsys.readouterr().out
 
 
 def test_each_equivalent_mutant_is_one_of_the_code() -> None:
@@ -176,7 +178,7 @@ def test_each_equivalent_mutant_is_one_of_the_code() -> None:
 
 @pytest.mark.long
 def test_the_runner_kills_a_mutant_and_lets_an_equivalent_one_live() -> None:
-    file, home = "service/grading/judging/marking/worth.py", "tests/grading/judging/marking"
+    file, home = "service/dh_grader/grading/marks.py", "tests/grading/judging/marking"
     package = Package([file], [f"{home}/test_worth.py"], [home])
     results = tried(package, functions=["_unit"])
     ends = {each.after: each for each in results}
@@ -194,6 +196,6 @@ def test_the_runner_kills_a_mutant_and_lets_an_equivalent_one_live() -> None:
 @pytest.mark.long
 def test_the_runner_changes_files_that_load_a_plugin_of_pytest() -> None:
     home = "tests/api/permissions"
-    package = Package(["service/api/permissions/access.py"], [f"{home}/test_access.py"], [home])
+    package = Package(["service/dh_grader/api/permissions.py"], [f"{home}/test_access.py"], [home])
     results = tried(package, functions=["is_loopback"])
     assert {each.end for each in results} == {"killed"}

@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 import sympy as sp
+from dh_grader.catalogue import Exercise, load_exercise
+from dh_grader.grading import PartReport, Severity, Submission, Verdict, grade
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise, load_exercise
-from service.grading import PartReport, Severity, Submission, Verdict, grade
-from service.grading.report import messages_of
 from tests.pose_slips.chain import link, pose, printed
 from tests.pose_slips.robots import SpoiltRobot
 from tests.pose_slips.slips import TableSlip, slips_of

@@ -6,8 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import sympy as sp
-
-from service.catalogue import shipped_folder
+from dh_grader.catalogue import shipped_folder
 
 PARTS = """
 [[parts]]

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.submitting import handed_in, part
 from tests.pose_slips.campaign import KINDS, answer_to, exercise_of, spoilt, trials
 from tests.pose_slips.robots import robots

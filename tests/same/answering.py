@@ -1,8 +1,9 @@
 """Answer requests and commands by the program of the working folder: ``answering.py IN OUT``.
 
 This file runs in a process of its own with the program of another checkout, so it imports nothing
-of the project by itself, and asks the program only by what users have: its application and its
-command. A line of IN is a request or a command; the same line of OUT is what came back.
+of the project by itself, and asks the program only by what users have: its application, its
+command and ``dh_grader.grade``. A line of IN is a request or a command; the same line of OUT is
+what came back.
 """
 
 import asyncio
@@ -15,6 +16,7 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable
+from http import HTTPStatus
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -48,6 +50,7 @@ class Program:
         )
         sys.path.insert(0, str(self._root))
         self._app = import_module(f"{self._package}.app").app
+        self._face = import_module(self._package)
         self._loop = asyncio.new_event_loop()
         self._budgets: list[object] = []
         self._watch_budgets()
@@ -83,8 +86,26 @@ class Program:
 
     def answered(self, asked: dict[str, Any]) -> dict[str, Any]:
         """Return what the program answers."""
-        words = asked["words"]
-        return self._ran(asked) if words else self._requested(asked)
+        if asked["words"]:
+            return self._ran(asked)
+        return self._reported(asked) if asked["by_face"] else self._requested(asked)
+
+    def _reported(self, asked: dict[str, Any]) -> dict[str, Any]:
+        # The report as JSON, from the face of the package if there is one.
+        if not hasattr(self._face, "grade"):
+            answer = self._requested(asked)
+            body = answer["body"] if answer["status"] == HTTPStatus.OK else None
+            return {"body": body, "spent": answer["spent"]}
+        exercise = asked["path"].removeprefix("/v1/exercises/").partition("/")[0]
+        given = asked["body"]
+        try:
+            # The service limits the level to that of the exercise, as the default of the face does.
+            report = self._face.grade(
+                exercise, given["answers"], angle_unit=given["angle_unit"], feedback=None
+            )
+        except (LookupError, ValueError):
+            return {"body": None, "spent": self._spent()}
+        return {"body": self._lasting(report.to_json().encode()), "spent": self._spent()}
 
     def _requested(self, asked: dict[str, Any]) -> dict[str, Any]:
         status, headers, pieces = 0, dict[str, str](), list[bytes]()

@@ -13,9 +13,9 @@ from itertools import islice, product
 from typing import Any, Final
 
 import numpy as np
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.misconception import all_records
 
-from service.catalogue import Exercise
-from service.grading.misconception import all_records
 from tests.docs import sentences
 from tests.expressions.corpus_files import cases, repair_cases, repairs
 from tests.frame_choice import misconceptions
@@ -29,6 +29,8 @@ from tests.worst.bodies import KNOWN
 LEVELS: Final = ("full", "hints", "verdicts", "score")
 LANGUAGES: Final = ("en", "de")
 ALL_LANGUAGES: Final = ("en", "de", "es", "fr", "zh")
+# The reports that are asked of the face of the package; all others go over HTTP.
+BY_FACE: Final = ("full", "en")
 FRAMES: Final = 20
 # Changes of a right table, each on all cells where it makes sense.
 SLIPS: Final = (
@@ -55,6 +57,8 @@ class Asked:
     method: str = "GET"
     path: str = ""
     body: object = None
+    # A program that has ``dh_grader.grade`` answers by it, another one by the request.
+    by_face: bool = False
     # The contents of files, by their names, for a command.
     files: Mapping[str, str] = field(default_factory=dict)
 
@@ -87,6 +91,7 @@ def _reports(catalogue: Mapping[str, Exercise]) -> Iterator[Asked]:
                 method="POST",
                 path=f"/v1/exercises/{exercise}/grade?lang={language}",
                 body=body,
+                by_face=(level, language) == BY_FACE,
             )
 
 

@@ -33,15 +33,19 @@ def test_a_commit_answers_like_itself(base: Path, tmp_path: Path) -> None:
     ("file", "before", "after"),
     [
         pytest.param(
-            "service/grids/scripts/titles.py", "around the table or matrix were", "around it were",
+            "service/dh_grader/pasting/around.py",
+            "around the table or matrix were",
+            "around it were",
             id="a sentence",
         ),
         pytest.param(
-            "service/grading/judging/marking/worth.py", "QUARTER: Final = 0.25",
+            "service/dh_grader/grading/marks.py", "QUARTER: Final = 0.25",
             "QUARTER: Final = 0.26", id="a point",
         ),
         pytest.param(
-            "service/grading/diagnosis/tables/table_cell.py", "CELL_WORK = 1.2", "CELL_WORK = 1.3",
+            "service/dh_grader/grading/diagnosis/table_cells.py",
+            "CELL_WORK = 1.2",
+            "CELL_WORK = 1.3",
             id="a charge of the work budget",
         ),
     ],

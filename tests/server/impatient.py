@@ -7,15 +7,15 @@ import asyncio
 import os
 import time
 
+from dh_grader import server as start
+from dh_grader.api import grading as health
+from dh_grader.cli import main
+from dh_grader.server import connections as open_connections
+from dh_grader.server import connections as protocol
+from dh_grader.server import installed_app
+from dh_grader.server import processes as process
+from dh_grader.settings import Settings
 from fastapi import FastAPI
-
-from service.api.routes import health
-from service.cli import main
-from service.server import start
-from service.server.connections import open_connections, protocol
-from service.server.installed import installed_app
-from service.server.processes import process
-from service.settings import Settings
 
 TIMEOUT = 1.0
 HEAD_TIMEOUT = TIMEOUT / 2

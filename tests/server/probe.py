@@ -21,7 +21,7 @@ from pathlib import Path
 from tests.server.raw import HEALTH, ROOT
 
 SECONDS = 60.0
-APP = "service.app:app"
+APP = "dh_grader.app:app"
 HALF_A_HEAD = b"GET /healthz HTTP/1.1\r\nHost: x\r\n"
 HALF_A_BODY = b"POST /v1/preview HTTP/1.1\r\nHost: x\r\nContent-Length: 1000\r\n\r\n{"
 LARGE = b"GET /openapi.json HTTP/1.1\r\nHost: x\r\n\r\n"
@@ -37,7 +37,7 @@ CLIENTS: dict[str, tuple[bytes, bytes]] = {
 }
 # For each server: the packages to install, and its command.
 SERVERS: dict[str, tuple[list[str], list[str]]] = {
-    "dh-grader": ([], ["service", "serve", "--port"]),
+    "dh-grader": ([], ["dh_grader", "serve", "--port"]),
     "uvicorn, httptools": ([], ["uvicorn", APP, "--http", "httptools", "--port"]),
     "uvicorn, h11": (["h11"], ["uvicorn", APP, "--http", "h11", "--port"]),
     "granian": (["granian"], ["granian", "--interface", "asgi", APP, "--port"]),

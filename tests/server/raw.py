@@ -137,7 +137,7 @@ def workers(running: Service) -> set[int]:
 
 @contextlib.contextmanager
 def service(
-    folder: Path, *options: str, module: str = "service", **settings: str
+    folder: Path, *options: str, module: str = "dh_grader", **settings: str
 ) -> Iterator[Service]:
     """Run the service on a free port, with its log in ``folder``."""
     log = folder / "log"

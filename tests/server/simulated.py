@@ -9,12 +9,12 @@ from collections.abc import Coroutine
 from typing import Any
 
 import pytest
+from dh_grader.api.http import CLIENT, COURSE_SITE, Client, give_way
+from dh_grader.server import turns as admission
+from dh_grader.server import turns as speed
+from dh_grader.server.turns import FairAdmission
+from dh_grader.slices import FIRST_SLICE, SLICE
 from starlette.requests import Request
-
-from service.api.turns import CLIENT, COURSE_SITE, Client, give_way
-from service.server.turns import admission, speed
-from service.server.turns.admission import FairAdmission
-from service.time_slices import FIRST_SLICE, SLICE
 
 # Seconds from an answer to the client's next request: the wire, and the client's own work.
 WIRE = 0.0003

@@ -7,8 +7,8 @@ import sys
 from pathlib import Path
 
 import pytest
+from dh_grader.server.alive import main
 
-from service.server.alive import main
 from tests.server.raw import ROOT, service
 
 

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator, Mapping
 from types import FrameType
 
 import pytest
+from dh_grader import slices as time_slices
+from dh_grader.slices import FIRST_SLICE
 
-from service import time_slices
-from service.time_slices import FIRST_SLICE
 from tests.server.simulated import ORDINARY, Process
 from tests.worst.bodies import ARM, KNOWN
 from tests.worst.entry_points import (

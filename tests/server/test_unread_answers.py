@@ -6,10 +6,13 @@ import socket
 from typing import Any
 
 import uvicorn
+from dh_grader.server.connections import (
+    ConnectionLimits,
+    GuardedProtocol,
+    GuardedState,
+    OpenConnections,
+)
 
-from service.server.connections.guarded_state import GuardedState
-from service.server.connections.open_connections import ConnectionLimits, OpenConnections
-from service.server.connections.protocol import GuardedProtocol
 from tests.server.raw import HEALTH
 
 MB = 1024 * 1024

@@ -11,14 +11,12 @@ from functools import cache
 from typing import Any
 
 import uvicorn
+from dh_grader.server.connections import GuardedProtocol, GuardedState, Valve
+from dh_grader.server.processes import Server
 from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol, RequestResponseCycle
 from uvicorn.server import ServerState
 
-from service.server.connections.flow import Valve
-from service.server.connections.guarded_state import GuardedState
-from service.server.connections.protocol import GuardedProtocol
-from service.server.processes.process import Server
 from tests.together import together
 
 # For each class of uvicorn: its methods with their parameters, and its instances' attributes.

@@ -15,12 +15,12 @@ from typing import NamedTuple
 
 import numpy as np
 import sympy as sp
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import LinkTransformsSpec
+from dh_grader.expressions import read
+from dh_grader.solutions.algebra import Algebra
 from sympy.printing.numpy import NumPyPrinter
 
-from service.catalogue import Exercise
-from service.catalogue.parts.link_transforms import LinkTransformsSpec
-from service.expressions import read
-from service.solutions.algebra import Algebra
 from tests.grading.support.submitting import full_marks, handed_in, part
 from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved

@@ -3,8 +3,8 @@
 from collections.abc import Callable
 from typing import TypeVar
 
-from service.catalogue import Exercise
-from service.solutions import solve
+from dh_grader.catalogue import Exercise
+from dh_grader.solutions import solve
 
 Answer = TypeVar("Answer")
 

@@ -4,10 +4,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-
-from service.catalogue import Exercise
-from service.grading import Submission, grade
-from service.solutions import solve
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Submission, grade
+from dh_grader.solutions import solve
 
 # a, alpha, d, and theta without the joint variable.
 ROWS = [

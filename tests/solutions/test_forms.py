@@ -4,9 +4,9 @@ import re
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.solutions import ModelSolution, Shown, solve
 
-from service.catalogue import Exercise
-from service.solutions import ModelSolution, Shown, solve
 from tests.solutions.solved import solved
 
 # Robotic Fundamentals (UMFM4X-15-M), Examples 1 to 3; Spong, Hutchinson, Vidyasagar, Robot Modeling

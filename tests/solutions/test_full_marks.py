@@ -4,10 +4,10 @@ import re
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.expressions import LIMITS, read
+from dh_grader.solutions import ModelSolution, PartAnswer
 
-from service.catalogue import Exercise, shipped_folder
-from service.expressions import LIMITS, read
-from service.solutions import ModelSolution, PartAnswer
 from tests.grading.support.robots import AngleUnit
 from tests.grading.support.submitting import full_marks, handed_in
 from tests.shipped import sampled

@@ -6,13 +6,8 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy
-from hypothesis import given, settings
-from hypothesis import strategies as st
-from numpy.typing import NDArray
-
-from service.kinematics.chain import pose
-from service.kinematics.dh import Convention
-from service.solutions.motions import (
+from dh_grader.kinematics import Convention, pose
+from dh_grader.solutions.algebra import (
     Fixed,
     Motion,
     Shift,
@@ -24,6 +19,9 @@ from service.solutions.motions import (
     multiplied,
     rotation_about,
 )
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from numpy.typing import NDArray
 
 Numbers = NDArray[np.float64]
 

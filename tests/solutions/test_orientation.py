@@ -5,10 +5,9 @@ from itertools import permutations, product
 import numpy as np
 import pytest
 import sympy
+from dh_grader.solutions.algebra import Motion, Turn, X, Y, Z, as_angle, euler_angles
 from scipy.spatial.transform import Rotation
 
-from service.solutions.motions import Motion, Turn, X, Y, Z
-from service.solutions.orientation import as_angle, euler_angles
 from tests.together import together
 
 AXES = {"X": X, "Y": Y, "Z": Z}

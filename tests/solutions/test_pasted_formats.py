@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.catalogue.kinds import DhTableSpec
+from dh_grader.kinematics import COLUMNS
 
-from service.catalogue import Exercise, shipped_folder
-from service.catalogue.parts.dh_table import DhTableSpec
-from service.kinematics.chain import COLUMNS
 from tests.grading.support.submitting import full_marks, handed_in
 from tests.grids.writers import FORMATS
 from tests.shipped import sampled

@@ -10,12 +10,12 @@ from random import Random
 
 import pytest
 import sympy
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.expressions import LIMITS, Expression, read
+from dh_grader.kinematics import Convention
+from dh_grader.solutions.algebra import Algebra
 from sympy.printing.numpy import NumPyPrinter
 
-from service.catalogue import Exercise, shipped_folder
-from service.expressions import LIMITS, Expression, read
-from service.kinematics.dh import Convention
-from service.solutions.algebra import Algebra
 from tests.grading.support.submitting import full_marks, handed_in
 from tests.samples import one_in
 from tests.shipped import sampled

@@ -4,12 +4,10 @@ from collections.abc import Callable
 
 import pytest
 import sympy
-
-from service.catalogue import Exercise
-from service.expressions import read
-from service.expressions.printing.text import to_text
-from service.solutions.algebra import Algebra
-from service.solutions.trees import Writer
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import read
+from dh_grader.expressions.printing import to_text
+from dh_grader.solutions.algebra import Algebra, Writer
 
 ARM = """
 title = "An arm"

@@ -4,9 +4,9 @@ import tracemalloc
 from dataclasses import replace
 
 import pytest
+from dh_grader.grading import CellReport, PartReport, ReadEntry, Report, Verdict
+from dh_grader.statistics import ClassStatistics, ScoreDistribution, Share
 
-from service.grading import CellReport, PartReport, ReadEntry, Report, Verdict
-from service.statistics import ClassStatistics, ScoreDistribution, Share
 from tests.formats.class_of_seven import ANNA, BEN, CLEO, DANA, EMRE, FRITZ, class_of_seven
 
 TABLE = ("planar-rrr", "table")

@@ -6,11 +6,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.submissions import Assignment, assigned, of_one
+from dh_grader.submissions.answers import ExerciseAnswers, answers_in
+from dh_grader.submissions.files import all_handed_in
+from dh_grader.translations import LANGUAGES, told
 
-from service.submissions.answers import ExerciseAnswers, answers_in
-from service.submissions.assignment import Assignment, assigned, of_one
-from service.submissions.handed_in import all_handed_in
-from service.translations import LANGUAGES, told
 from tests.shipped import shipped_exercises
 
 CATALOGUE = shipped_exercises()

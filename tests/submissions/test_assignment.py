@@ -2,13 +2,13 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import CatalogueError, Exercise, FeedbackLevel, shipped_folder
+from dh_grader.grading import Submission, grade
+from dh_grader.submissions import Assignment, assigned, load_assignment
+from dh_grader.submissions.answers import answers_in
+from dh_grader.submissions.bodies import find_exercise
+from dh_grader.submissions.files import all_handed_in
 
-from service.catalogue import CatalogueError, Exercise, FeedbackLevel, shipped_folder
-from service.grading import Submission, grade
-from service.submissions.answers import answers_in
-from service.submissions.assignment import Assignment, assigned, load_assignment
-from service.submissions.handed_in import all_handed_in
-from service.submissions.lookup import find_exercise
 from tests.shipped import shipped_exercises
 
 CATALOGUE = shipped_exercises()

@@ -1,6 +1,5 @@
 import pytest
-
-from service.submissions.documents import pasted_from
+from dh_grader.submissions.documents import pasted_from
 
 TABULAR = "\\begin{tabular}{cc}\n$a$ & $d$ \\\\ 0 & 1\n\\end{tabular}"
 BARS = "| a | d |\n|---|---|\n| 0 | 1 |"

@@ -4,18 +4,21 @@ from collections.abc import Iterator, Mapping
 from typing import Any, Final
 
 import pytest
+from dh_grader.api.application import application
+from dh_grader.contract import AttemptRequest
+from dh_grader.contract.courses import CourseChange, LinksRequest, NewAssignment
+from dh_grader.contract.frames import FramesRequest
+from dh_grader.submissions.bodies import GradeManyRequest, GradeRequest, field_error
+from dh_grader.translations import LANGUAGES, say, told
+from dh_grader.web.tutor_checks import ClassUpload
 from pydantic import BaseModel, ValidationError
 
-from service.api.application import application
-from service.contract.attempts import AttemptRequest
-from service.contract.courses import CourseChange, LinksRequest, NewAssignment
-from service.contract.frames import FramesRequest
-from service.submissions.body import GradeManyRequest, GradeRequest
-from service.submissions.field_errors import field_error
-from service.translations import LANGUAGES, say, told
-from service.web.tutor.class_report import ClassUpload
-
-ROOMS: Final = ("service.contract", "service.submissions.body", "service.web", "service.lti")
+ROOMS: Final = (
+    "dh_grader.contract",
+    "dh_grader.submissions.bodies",
+    "dh_grader.web",
+    "dh_grader.lti",
+)
 HOSTILE: Final[tuple[Any, ...]] = (
     None, True, 7, 0.5, -1, 10**9, 10**5000, float("inf"), "", "a b", "É\0", "x" * 300, "7.5",
     "2026-10-01", "2026-99-01T25:00", [], {}, {"unknown": 1},

@@ -9,10 +9,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-
-from service.submissions import handed_in
-from service.submissions.handed_in import ClassEntry, HandedIn, UnusableClassError, all_handed_in
-from service.submissions.office_files import UnusableFileError
+from dh_grader.submissions import files as handed_in
+from dh_grader.submissions.files import ClassEntry, HandedIn, UnusableClassError, all_handed_in
+from dh_grader.submissions.office_files import UnusableFileError
 
 needs_links = pytest.mark.skipif(os.name == "nt", reason="needs a right for symbolic links")
 

@@ -1,6 +1,6 @@
 import pytest
+from dh_grader.submissions.bodies import UnknownExerciseError, find_exercise, nearest
 
-from service.submissions.lookup import UnknownExerciseError, find_exercise, nearest
 from tests.shipped import shipped_exercises
 
 

@@ -13,13 +13,10 @@ from typing import Any, Final
 
 import openpyxl
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
-from service.local_grading import GradingTerms, graded
-from service.submissions.assignment import of_one
-from service.submissions.handed_in import all_handed_in
-from service.submissions.office_files import (
+from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.submissions import of_one
+from dh_grader.submissions.files import all_handed_in
+from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
     Excerpt,
     UnusableFileError,
@@ -27,6 +24,9 @@ from service.submissions.office_files import (
     excerpts,
     typed_text,
 )
+from hypothesis import given
+from hypothesis import strategies as st
+
 from tests.shipped import shipped_exercises
 from tests.submissions import office_documents as made
 

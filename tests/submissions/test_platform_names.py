@@ -1,6 +1,5 @@
 import pytest
-
-from service.submissions.platform_names import platform_name
+from dh_grader.submissions import platform_name
 
 
 @pytest.mark.parametrize(

@@ -8,13 +8,12 @@ from pathlib import Path
 import docx
 import openpyxl
 import pytest
-
-from service.catalogue import Exercise
-from service.grading import Submission, grade
-from service.local_grading import GradingTerms, graded
-from service.submissions.assignment import of_one
-from service.submissions.handed_in import all_handed_in
-from service.submissions.remarks import changing_remark
+from dh_grader.catalogue import Exercise
+from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.grading import Submission, grade
+from dh_grader.submissions import of_one
+from dh_grader.submissions.documents import changing_remark
+from dh_grader.submissions.files import all_handed_in
 
 HEAD = ("a", "alpha", "d", "theta")
 DEGREES = (

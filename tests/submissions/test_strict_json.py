@@ -2,10 +2,7 @@ import contextlib
 import json
 
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
-from service.submissions.strict_json import (
+from dh_grader.submissions.bodies import (
     MAX_BRACKETS,
     MAX_COMMAS,
     MAX_DEPTH,
@@ -13,7 +10,9 @@ from service.submissions.strict_json import (
     nested_deeper,
     read_json,
 )
-from service.translations import LANGUAGES, told
+from dh_grader.translations import LANGUAGES, told
+from hypothesis import given
+from hypothesis import strategies as st
 
 JSON = st.recursive(
     st.none() | st.booleans() | st.integers() | st.floats(allow_nan=False, allow_infinity=False)

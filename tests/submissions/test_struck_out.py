@@ -8,18 +8,17 @@ import docx
 import openpyxl
 import pytest
 import xlwt
+from dh_grader.catalogue import Exercise
+from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.grading import Submission, Verdict, grade
+from dh_grader.submissions import of_one
+from dh_grader.submissions.files import all_handed_in
 from odf.opendocument import OpenDocumentSpreadsheet
 from odf.style import Style, TextProperties
 from odf.table import Table, TableCell, TableRow
 from odf.text import P
 from openpyxl.comments import Comment
 from openpyxl.styles import Font
-
-from service.catalogue import Exercise
-from service.grading import Submission, Verdict, grade
-from service.local_grading import GradingTerms, graded
-from service.submissions.assignment import of_one
-from service.submissions.handed_in import all_handed_in
 
 HEAD = ("a", "alpha", "d", "theta")
 ROWS = (

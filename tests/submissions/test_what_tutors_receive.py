@@ -3,12 +3,11 @@
 from collections.abc import Mapping
 
 import pytest
-
-from service.catalogue import Exercise
-from service.grading import PartReport, Submission, grade
-from service.submissions.documents import pasted_from
-from service.submissions.file_content import read_content
-from service.submissions.office_files import UnusableFileError
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Submission, grade
+from dh_grader.submissions.documents import pasted_from
+from dh_grader.submissions.files import read_content
+from dh_grader.submissions.office_files import UnusableFileError
 
 ROWS = (
     ("1", "a1", "0", "0", "theta1"), ("2", "a2", "180°", "0", "theta2"),

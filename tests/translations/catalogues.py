@@ -22,13 +22,12 @@ import typer
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
-
-from service.cli.language import paragraphs, with_help
-from service.cli.program import COMMANDS, commands_of, program
-from service.translations.languages import DOMAINS
+from dh_grader.cli import COMMANDS, commands_of, program
+from dh_grader.cli.terminal import paragraphs, with_help
+from dh_grader.translations import DOMAINS
 
 ROOT: Final = Path(__file__).parents[2]
-FOLDER: Final = ROOT / "service" / "translations"
+FOLDER: Final = ROOT / "service" / "dh_grader" / "translations"
 CODES: Final = ("de", "es", "fr", "zh")
 # The functions that mark a sentence: in Python, in templates of pages and in their scripts.
 _KEYWORDS: Final[dict[str, dict[str, Any]]] = {
@@ -46,8 +45,8 @@ _QUOTED: Final = re.compile(r"`[^`]+`")
 @cache
 def extracted(domain: str) -> Catalog:
     """Return the sentences of a domain (pages, command line or reports) in the source."""
-    # Sentences in `service/web` belong to the domain of pages. Help texts and sentences in
-    # `service/cli` belong to that of the command line, all other sentences to that of reports.
+    # Sentences in `dh_grader/web` belong to the domain of pages. Help texts and sentences in
+    # `dh_grader/cli` belong to that of the command line, all other sentences to that of reports.
     found = Catalog(charset="utf-8", fuzzy=False)
     for file, method in _files(domain):
         with file.open("rb") as content:
@@ -68,7 +67,7 @@ def extracted(domain: str) -> Catalog:
 
 
 def help_texts() -> Iterator[tuple[str, str]]:
-    file = "service/cli/program.py"
+    file = "service/dh_grader/cli/__init__.py"
     yield from _help_texts(program, file)
     for name in COMMANDS:
         yield from _help_texts(commands_of(name), file)
@@ -77,27 +76,27 @@ def help_texts() -> Iterator[tuple[str, str]]:
 def _help_texts(commands: typer.Typer, file: str) -> Iterator[tuple[str, str]]:
     for each in with_help(typer.main.get_command(commands)):
         called = getattr(getattr(each, "callback", None), "__wrapped__", None)
-        if called is not None and called.__module__.startswith("service."):
-            file = f"{called.__module__.replace('.', '/')}.py"
+        if called is not None and called.__module__.startswith("dh_grader."):
+            file = f"service/{called.__module__.replace('.', '/')}.py"
         for text in filter(None, paragraphs(getattr(each, "help", None) or "")):
             yield text, file
 
 
 def _files(domain: str) -> Iterator[tuple[Path, str]]:
-    for file in sorted((ROOT / "service").rglob("*.py")):
+    for file in sorted((ROOT / "service" / "dh_grader").rglob("*.py")):
         if _domain(file) == domain:
             yield file, "python"
-    for file in sorted((ROOT / "service").rglob("*.html")):
+    for file in sorted((ROOT / "service" / "dh_grader").rglob("*.html")):
         if _domain(file) == domain:
             yield file, "jinja2.ext:babel_extract"
     if domain == "pages":
-        for file in sorted((ROOT / "service" / "web" / "static").rglob("*.js")):
+        for file in sorted((ROOT / "service" / "dh_grader" / "web" / "static").rglob("*.js")):
             if "vendor" not in file.parts:
                 yield file, "javascript"
 
 
 def _domain(file: Path) -> str:
-    room = file.relative_to(ROOT / "service").parts[0]
+    room = file.relative_to(ROOT / "service" / "dh_grader").parts[0]
     return {"web": "pages", "cli": "commands"}.get(room, "sentences")
 
 

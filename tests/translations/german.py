@@ -5,9 +5,8 @@ from gettext import NullTranslations
 from typing import Any, cast
 
 import pytest
-
-from service.grading import Report
-from service.translations import LANGUAGES, Language, Sentence
+from dh_grader.grading import Report
+from dh_grader.translations import LANGUAGES, Language, Sentence
 
 
 class _Words(NullTranslations):

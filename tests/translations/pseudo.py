@@ -8,8 +8,7 @@ from gettext import NullTranslations
 from typing import Final
 
 import pytest
-
-from service.translations import ENGLISH, LANGUAGES, Language
+from dh_grader.translations import ENGLISH, LANGUAGES, Language
 
 _ACCENTED: Final = str.maketrans(
     "aceinosuyzACEINOSUYZ", "áćéíñóśúýźÁĆÉÍÑÓŚÚÝŹ"
@@ -54,7 +53,7 @@ def without_others(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 if __name__ == "__main__":
-    from service.cli import main
+    from dh_grader.cli import main
 
     offer_pseudo()
     main()

@@ -3,8 +3,7 @@
 import pickle
 
 import pytest
-
-from service.translations import (
+from dh_grader.translations import (
     ENGLISH,
     LANGUAGES,
     Language,
@@ -13,6 +12,7 @@ from service.translations import (
     say,
     told,
 )
+
 from tests.translations.german import german
 
 

@@ -8,10 +8,10 @@ from string import Formatter
 from unicodedata import lookup
 
 import pytest
+from dh_grader.grading import FeedbackLevel, Submission, grade
+from dh_grader.grading.report import PartReport, messages_of
+from dh_grader.translations import Sentence, told
 
-from service.grading import FeedbackLevel, Submission, grade
-from service.grading.report import PartReport, messages_of
-from service.translations import Sentence, told
 from tests.docs.sentences import (
     answers,
     formulas,

@@ -6,8 +6,7 @@ from gettext import NullTranslations
 from typing import ClassVar
 
 import pytest
-
-from service.translations import LANGUAGES, bulleted, joined, listed, say, say_count, told
+from dh_grader.translations import LANGUAGES, bulleted, joined, listed, say, say_count, told
 
 
 class German(NullTranslations):

@@ -3,8 +3,7 @@
 import re
 
 import pytest
-
-from service.typeset.formulas import formula
+from dh_grader.typeset import formula
 
 
 def shown(html: str) -> str:

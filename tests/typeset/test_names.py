@@ -5,9 +5,8 @@ import time
 from pathlib import Path
 
 import pytest
-
-from service.expressions.characters import greek
-from service.typeset.names import TypesetName, in_unicode, pieces, typeset
+from dh_grader.expressions import characters as greek
+from dh_grader.typeset import TypesetName, in_unicode, pieces, typeset
 
 FILE = json.loads(Path(__file__).with_name("names.json").read_text(encoding="utf-8"))
 SYMBOLS = frozenset(FILE["symbols"])

@@ -3,8 +3,7 @@
 from html.parser import HTMLParser
 
 import pytest
-
-from service.typeset.statement import statement_html
+from dh_grader.typeset import statement_html
 
 
 class Elements(HTMLParser):

@@ -1,6 +1,6 @@
 """The shipped exercises that have variants."""
 
-from service.catalogue import Exercise, load_exercise, shipped_folder
+from dh_grader.catalogue import Exercise, load_exercise, shipped_folder
 
 VARIED = ("planar-rr-numbers", "elbow-directions", "vertical-axes")
 

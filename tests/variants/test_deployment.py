@@ -3,10 +3,15 @@
 import tomllib
 
 import pytest
+from dh_grader.variants import built
+from dh_grader.variants.deployment import (
+    TooFewVariantsError,
+    deploy,
+    difficulty_of,
+    form_of,
+    with_deployed,
+)
 
-from service.variants.comparison import difficulty_of, form_of
-from service.variants.deployment import TooFewVariantsError, deploy, with_deployed
-from service.variants.variant import built
 from tests.variants.shipped import shipped
 from tests.variants.varied_files import VARY, varied, varied_text
 

@@ -4,14 +4,12 @@ import re
 from collections.abc import Iterable, Iterator
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.figures import exercise_figure
+from dh_grader.grading import Submission, grade
+from dh_grader.variants import built, seed_of
+from dh_grader.variants.deployment import Form, checked_variant, difficulty_of, form_of
 
-from service.catalogue import Exercise
-from service.figures.figure import exercise_figure
-from service.grading import Submission, grade
-from service.variants.comparison import Form, difficulty_of, form_of
-from service.variants.deployment import checked_variant
-from service.variants.seeds import seed_of
-from service.variants.variant import built
 from tests.variants.shipped import VARIED, shipped
 
 # What students get wrong: a cell of the table, from its numbers to other ones.

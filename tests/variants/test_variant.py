@@ -10,12 +10,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import CatalogueError, Exercise
+from dh_grader.catalogue.varying import read_condition, vocabulary_of
+from dh_grader.submissions.bodies import UnknownExerciseError, find_exercise
+from dh_grader.variants import (
+    BuiltVariants,
+    NoVariantError,
+    built,
+    choices_of,
+    hidden_variant,
+    pinned,
+)
 
-from service.catalogue import CatalogueError, Exercise
-from service.catalogue.varying.conditions import read_condition, vocabulary_of
-from service.submissions.lookup import UnknownExerciseError, find_exercise
-from service.variants.pinned import choices_of, pinned
-from service.variants.variant import BuiltVariants, NoVariantError, built, hidden_variant
 from tests.together import together
 from tests.variants.varied_files import VARY, varied, varied_text
 
@@ -82,7 +88,7 @@ def test_another_name_leaves_the_values_of_the_others() -> None:
 def test_variants_are_the_same_in_every_process() -> None:
     code = (
         "from tests.variants.varied_files import varied\n"
-        "from service.variants.variant import built\n"
+        "from dh_grader.variants import built\n"
         "e = varied()\n"
         "print([(v.version, v.statement) for v in (built(e, str(i)) for i in range(40))])"
     )

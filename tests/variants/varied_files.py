@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from service.catalogue import Exercise, read_exercise
+from dh_grader.catalogue import Exercise, read_exercise
 
 VARY = """
 a1 = [0.3, 0.4, 0.5]

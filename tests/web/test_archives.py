@@ -11,12 +11,12 @@ from itertools import pairwise
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.cli.grade import grade_commands as commands
+from dh_grader.submissions.bodies import MAX_BODY_SIZE
+from dh_grader.web.tutor_checks import MAX_UPLOAD
 from typer.testing import CliRunner
 
-from service.catalogue import Exercise
-from service.cli.commands.grade import commands
-from service.submissions.strict_json import MAX_BODY_SIZE
-from service.web.tutor.class_report import MAX_UPLOAD
 from tests.web.tutor.test_tutor_routes import RIGHT, Tutor
 
 MEGABYTE = 1_000_000
@@ -89,7 +89,7 @@ def test_a_hostile_archive_in_a_folder_affects_only_itself(tmp_path: Path) -> No
 def test_a_folder_with_too_many_files_is_not_read(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("service.submissions.handed_in.MAX_SUBMISSIONS_IN_FOLDER", 50)
+    monkeypatch.setattr("dh_grader.submissions.files.MAX_SUBMISSIONS_IN_FOLDER", 50)
     for i in range(51):
         (tmp_path / f"{i}.zip").write_bytes(b"")
     done = CliRunner().invoke(commands, ["--exercise", "planar-rr", str(tmp_path)])

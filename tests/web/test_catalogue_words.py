@@ -1,8 +1,8 @@
 """Test the words by which the search finds exercises."""
 
 import pytest
+from dh_grader.web.pages import words_of
 
-from service.web.catalogue_words import words_of
 from tests.shipped import shipped_exercises
 
 SEVEN = ("franka-research-3", "kuka-lbr-iiwa-7", "kinova-gen3", "sawyer")

@@ -4,10 +4,9 @@ import re
 from pathlib import Path
 
 import pytest
+from dh_grader.web import pages
 
-from service import web
-
-PAGES = sorted(Path(web.__file__).parent.rglob("*.html"))
+PAGES = sorted(Path(pages.__file__).parent.rglob("*.html"))
 FORMS = [
     (page, form) for page in PAGES for form in re.findall(r"<form\b[^>]*>", page.read_text("utf-8"))
 ]

@@ -9,8 +9,8 @@ from html.parser import HTMLParser
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import load_catalogue
 
-from service.catalogue import load_catalogue
 from tests.browser.hostile import BREAKOUT, HOSTILE_EXERCISE, PICTURE
 from tests.web.tutor.test_tutor_routes import Tutor
 

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.http import LANGUAGE_COOKIE
+from dh_grader.catalogue import Exercise
+from dh_grader.translations import LANGUAGES
+from dh_grader.web import web_routes
 
-from service.api.application import application
-from service.api.http.language import LANGUAGE_COOKIE
-from service.catalogue import Exercise
-from service.translations import LANGUAGES
-from service.web import web_routes
 from tests.translations.pseudo import PSEUDO, without_others
 
 PAGES = (

@@ -8,10 +8,9 @@ from collections.abc import Mapping
 import httpx
 import pytest
 import sympy as sp
-
-from service.api.application import application
-from service.catalogue import Exercise
-from service.web import web_routes
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+from dh_grader.web import web_routes
 
 # Spong, Hutchinson, Vidyasagar, section 3.2; Craig, section 3.4.
 MOVES = {"standard": "Rotzθ Transzd Transxa Rotxα", "modified": "Rotxα Transxa Rotzθ Transzd"}

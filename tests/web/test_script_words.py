@@ -5,10 +5,9 @@ import re
 from pathlib import Path
 
 import pytest
+from dh_grader.translations import LANGUAGES
+from dh_grader.web.pages import FOLDER, dictionary, load_assets, sentences_in
 
-from service.translations import LANGUAGES
-from service.web.assets import FOLDER, load_assets
-from service.web.script_words import dictionary, sentences_in
 from tests.translations.catalogues import extracted
 from tests.translations.pseudo import PSEUDO, without_others
 

@@ -14,20 +14,20 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import reader, words
+from dh_grader.expressions import reader as decimals
+from dh_grader.expressions import reader as reading_work
+from dh_grader.formats import report_format
+from dh_grader.formats.graded import Setting
+from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.submissions import of_one
+from dh_grader.submissions.files import all_handed_in
 from fastapi import FastAPI
 from rich.console import Console
 
-from service.api.application import application
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.expressions import reader, reading_work
-from service.expressions.evaluation import decimals
-from service.expressions.parsing.lexing import words
-from service.formats import report_format
-from service.formats.shared.report_format import Setting
-from service.local_grading import GradingTerms, graded
-from service.submissions.assignment import of_one
-from service.submissions.handed_in import all_handed_in
 from tests.attempts.databases import new_file
 from tests.benchmarks.floors import stanford_pose
 
@@ -42,7 +42,7 @@ _PATHS = {
     PREVIEW: "/v1/preview", PREVIEWS: "/v1/previews", FRAMES: "/v1/frames", BATCH: "/v1/grade",
 }  # fmt: skip
 _CACHES = (
-    *reader._memoized, reader._parsed, reading_work._memoized,
+    *reader._reader_memoized, reader._parsed, reading_work._reading_work_memoized,
     reading_work._of_word, words.split, decimals.decimals_of,
 )  # fmt: skip
 

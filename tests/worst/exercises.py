@@ -3,8 +3,9 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
-from service.catalogue import Exercise
-from service.catalogue.parts.dh_table import DhTableSpec
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import DhTableSpec
+
 from tests.frame_choice.robots import GIVEN, POLICIES, ROBOTS, exercise
 from tests.shipped import shipped_exercises
 

@@ -4,7 +4,8 @@ import random
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from service.catalogue import Exercise
+from dh_grader.catalogue import Exercise
+
 from tests.expressions.fuzzing import hostile, seeds
 from tests.worst.entry_points import FILE, FRAMES, GRADE, PREVIEW, PREVIEWS, SUBMITTED, Attack
 

@@ -7,21 +7,24 @@ from types import FrameType
 
 # The first of these that is found in the stack names the stage.
 _STAGES = (
-    ("service/expressions/repairs/", "repairs"),
-    ("service/grading/diagnosis/", "diagnosis"),
-    ("service/expressions/printing/", "printing"),
-    ("service/grids/", "grids"),
-    ("service/expressions/reader.py", "reading characters"),
-    ("service/grading/reading/", "reading answers"),
-    ("service/grading/follow_through.py", "follow-through"),
-    ("service/grading/judging/", "judging"),
-    ("service/grading/kinds/", "judging"),
-    ("service/formats/", "rendering"),
-    ("service/attempts/", "recording"),
-    ("service/submissions/", "body"),
-    ("service/api/", "body"),
+    ("service/dh_grader/expressions/repairs/", "repairs"),
+    ("service/dh_grader/grading/diagnosis/", "diagnosis"),
+    ("service/dh_grader/expressions/printing.py", "printing"),
+    ("service/dh_grader/pasting/", "pasting"),
+    ("service/dh_grader/expressions/reader.py", "reading characters"),
+    ("service/dh_grader/grading/reading/", "reading answers"),
+    ("service/dh_grader/grading/marks.py", "follow-through"),
+    ("service/dh_grader/grading/judging", "judging"),
+    ("service/dh_grader/grading/frames/", "judging"),
+    ("service/dh_grader/grading/marks.py", "judging"),
+    ("service/dh_grader/grading/judging_table.py", "judging"),
+    ("service/dh_grader/grading/kinds/", "judging"),
+    ("service/dh_grader/formats/", "rendering"),
+    ("service/dh_grader/store/", "recording"),
+    ("service/dh_grader/submissions/", "body"),
+    ("service/dh_grader/api/", "body"),
 )
-_EVALUATION = "service/expressions/evaluation/"
+_EVALUATION = "service/dh_grader/expressions/evaluate.py"
 INTERVAL = 0.001
 
 
@@ -36,8 +39,8 @@ def _stage(frame: FrameType | None) -> tuple[str, str]:
     while frame is not None:
         path = _path(frame)
         paths.append(path)
-        if not innermost and "/service/" in path:
-            innermost = f"{path.partition('/service/')[2]}:{frame.f_code.co_name}"
+        if not innermost and "/dh_grader/" in path:
+            innermost = f"{path.partition('/dh_grader/')[2]}:{frame.f_code.co_name}"
         if "/grading/kinds/" in path:
             follows |= bool(getattr(frame.f_locals.get("grading"), "following", False))
         frame = frame.f_back

@@ -9,10 +9,10 @@ from itertools import count
 from types import SimpleNamespace
 
 import pytest
+from dh_grader.grading import Submission, grade
+from dh_grader.grading.reading import preview_pasted
+from dh_grader.pasting import source as pairs
 
-from service.grading import Submission, grade
-from service.grading.reading.preview import preview_pasted
-from service.grids.cutting import pairs
 from tests.worst.__main__ import PROMISED, PROMISED_DECIMALS
 from tests.worst.bodies import ARM, KNOWN, NESTED, OF_DECIMALS
 from tests.worst.entry_points import ATTEMPTS, ENTRIES, GRADE, HINTS, SOLUTION, Attack, Target

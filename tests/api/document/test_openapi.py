@@ -10,16 +10,15 @@ from urllib.parse import quote
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.document import _BODY_SCHEMAS, EXAMPLES, public_name
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
 from fastapi import FastAPI
 from jsonschema import Draft202012Validator
 from openapi_spec_validator import validate
 from pydantic import BaseModel, StringConstraints, TypeAdapter
 
-from service.api.application import application
-from service.api.document.openapi import _BODY_SCHEMAS, EXAMPLES
-from service.api.document.schemas import public_name
-from service.api.permissions.access import Access
-from service.catalogue import Exercise
 from tests.front.deno import deno
 
 Schema = dict[str, Any]

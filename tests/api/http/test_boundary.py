@@ -7,14 +7,13 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.permissions import RIGHTS
+from dh_grader.catalogue import Exercise
+from dh_grader.submissions.bodies import MAX_BODY_SIZE
+from dh_grader.web import web_routes
 from fastapi import FastAPI
 from fastapi.routing import iter_route_contexts
-
-from service.api.application import application
-from service.api.permissions.rights import RIGHTS
-from service.catalogue import Exercise
-from service.submissions.strict_json import MAX_BODY_SIZE
-from service.web import web_routes
 
 GRADE = "/v1/exercises/planar-rrr/grade"
 ClientOf = Callable[[FastAPI], httpx.Client]

@@ -5,8 +5,8 @@ import json
 
 import httpx
 import pytest
+from dh_grader.api.permissions import RIGHTS
 
-from service.api.permissions.rights import RIGHTS
 from tests.api.test_scopes import Guarded
 from tests.api.test_scopes import guarded as guarded
 

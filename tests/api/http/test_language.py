@@ -1,11 +1,11 @@
 """Choose the language of a response."""
 
 import pytest
+from dh_grader.api.http import LANGUAGE_COOKIE, keep_language, language_of
+from dh_grader.translations import ENGLISH, LANGUAGES
 from starlette.requests import Request
 from starlette.responses import Response
 
-from service.api.http.language import LANGUAGE_COOKIE, keep_language, language_of
-from service.translations import ENGLISH, LANGUAGES
 from tests.translations.pseudo import PSEUDO
 
 

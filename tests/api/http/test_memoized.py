@@ -1,6 +1,6 @@
 import asyncio
 
-from service.api.http.memoized import MOST_RESULTS, MemoizedResults
+from dh_grader.api.http import MOST_RESULTS, MemoizedResults
 
 
 def test_results_are_computed_once_and_the_last_ones_are_kept() -> None:

@@ -7,13 +7,12 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.http import ProblemError, message_of
+from dh_grader.api.permissions import ACCESS_PROBLEMS, access_problem
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.store import AttemptRefusedError, ruling
+from dh_grader.translations import LANGUAGES, Sentence, SentenceValue, told
 from fastapi import FastAPI
-
-from service.api.http.problems import ProblemError, message_of
-from service.api.permissions.access_problems import ACCESS_PROBLEMS, access_problem
-from service.attempts.policy import AttemptRefusedError, ruling
-from service.catalogue.attempts import AttemptsSpec
-from service.translations import LANGUAGES, Sentence, SentenceValue, told
 
 GERMAN = {"Accept-Language": "de-AT, en;q=0.5"}
 VALUES: dict[str, SentenceValue] = {

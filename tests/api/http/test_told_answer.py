@@ -7,17 +7,19 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api import frames as preview
+from dh_grader.api import grading
+from dh_grader.api import grading as hints
+from dh_grader.api.application import application
+from dh_grader.catalogue import load_catalogue
+from dh_grader.expressions import ExpressionError
+from dh_grader.formats.graded import with_texts
+from dh_grader.grading import Report, Submission, grade
+from dh_grader.hints import HintStep
+from dh_grader.kinematics import Convention
+from dh_grader.translations import say
 from fastapi import FastAPI
 
-from service.api.application import application
-from service.api.routes import grading, hints, preview
-from service.catalogue import load_catalogue
-from service.expressions import ExpressionError
-from service.formats.told_report import with_texts
-from service.grading import Report, Submission, grade
-from service.hints.steps import HintStep
-from service.kinematics.dh import Convention
-from service.translations import say
 from tests.api.routes.test_exercises import SECRETIVE
 from tests.translations.german import as_sentence, messages_in, offer_german
 

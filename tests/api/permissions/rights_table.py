@@ -6,7 +6,7 @@ Run ``python -m tests.api.permissions.rights_table``.
 from pathlib import Path
 from typing import Final
 
-from service.api.permissions.rights import RIGHTS, Right
+from dh_grader.api.permissions import RIGHTS, Right
 
 PAGE: Final = Path(__file__).parents[3] / "docs" / "keys.md"
 _HEADINGS: Final = (

@@ -6,13 +6,9 @@ from typing import Any
 
 import httpx
 import pytest
-from fastapi import FastAPI, Request
-from starlette.routing import Route
-
-from service.access.caller import Caller, Scope
-from service.access.open_access import OPEN_HERE, open_access
-from service.api.http.problems import ProblemError
-from service.api.permissions.access import (
+from dh_grader.access import OPEN_HERE, Caller, Scope, open_access
+from dh_grader.api.http import ProblemError
+from dh_grader.api.permissions import (
     PLAIN_COOKIE,
     SECURE_COOKIE,
     Access,
@@ -23,6 +19,9 @@ from service.api.permissions.access import (
     require_reach,
     session_in,
 )
+from fastapi import FastAPI, Request
+from starlette.routing import Route
+
 from tests.together import together
 
 PROGRAM = {"host": "127.0.0.1:8000"}

@@ -12,19 +12,21 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.access import NOBODY, Caller, Scope, new_key_text
+from dh_grader.access.key_ring import KeyRing, add_key
+from dh_grader.access.rates import Rates
+from dh_grader.api.http import CLIENT, Client, ProblemError
+from dh_grader.api.permissions import (
+    IDENTITY,
+    Access,
+    AuthenticationMiddleware,
+    Identity,
+    count_submissions,
+)
+from dh_grader.store.database import in_transaction, open_database
 from fastapi import Request
 from starlette.routing import Route
 
-from service.access.caller import NOBODY, Caller, Scope
-from service.access.key_ring import KeyRing
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.access.rates import Rates
-from service.api.http.problems import ProblemError
-from service.api.permissions.access import IDENTITY, Access, Identity
-from service.api.permissions.authentication import AuthenticationMiddleware, count_submissions
-from service.api.turns import CLIENT, Client
-from service.attempts.storage.database import in_transaction, open_database
 from tests.access.kept_services import SECRET
 from tests.together import together
 
@@ -168,11 +170,11 @@ def test_a_key_that_cannot_be_checked_gives_no_rights(
 
     nobody = Identity(NOBODY, by_key=True)
     assert outcome("dhg_x") == outcome(new_key_text()) == (nobody, "401 key-not-valid")
-    monkeypatch.setattr("service.access.key_lookups.MAX_WAITING", 0)
+    monkeypatch.setattr("dh_grader.access.key_ring.MAX_WAITING", 0)
     assert outcome(new_key_text()) == (nobody, "503 busy")
     monkeypatch.undo()
     # The database does not answer.
-    monkeypatch.setattr("service.access.key_lookups.TIMEOUT", 0.0)
+    monkeypatch.setattr("dh_grader.access.key_ring.TIMEOUT", 0.0)
     assert outcome(new_key_text()) == (nobody, "503 store-down")
 
 

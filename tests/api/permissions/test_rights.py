@@ -7,19 +7,24 @@ from pathlib import Path
 
 import httpx
 import pytest
+from dh_grader.access import Scope
+from dh_grader.api.application import WebPages, application
+from dh_grader.api.permissions import (
+    ACCESS_PROBLEMS,
+    RIGHTS,
+    Reach,
+    access_problem,
+    right_of,
+    scope_missing,
+)
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.load import Drafts
+from dh_grader.server import installed_app
+from dh_grader.settings import load_settings
 from fastapi import APIRouter, FastAPI, Request
 from fastapi.routing import iter_route_contexts
 from starlette.routing import Route
 
-from service.access.caller import Scope
-from service.api.application import application
-from service.api.permissions.access_problems import ACCESS_PROBLEMS, access_problem, scope_missing
-from service.api.permissions.rights import RIGHTS, Reach, right_of
-from service.api.web_pages import WebPages
-from service.catalogue import Exercise
-from service.catalogue.drafts import Drafts
-from service.server.installed import installed_app
-from service.settings import load_settings
 from tests.api.permissions.rights_table import PAGE, row, with_table
 
 # Values for the texts of all problems.

@@ -4,19 +4,19 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader import store as graded
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.formats.graded import with_texts
+from dh_grader.grading import Report
+from dh_grader.store import recorded_report
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.results import everything_of
+from dh_grader.store.tables import attempts
 from jsonschema import Draft202012Validator
 from sqlalchemy import select, text
 
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts import graded
-from service.attempts.learner_data import everything_of
-from service.attempts.results.recorded_report import recorded_report
-from service.attempts.storage.tables import attempts
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.formats.told_report import with_texts
-from service.grading import Report
 from tests.api.conftest import InProcess
 from tests.translations.german import as_sentence, messages_in, offer_german
 

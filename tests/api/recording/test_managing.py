@@ -10,17 +10,16 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise, load_catalogue, shipped_folder
+from dh_grader.store import AttemptFilter, GradesFormat, StoreDownError
+from dh_grader.store import regrades as regrade_steps
+from dh_grader.store import regrades as regrading
+from dh_grader.store import results as grades
+from dh_grader.store.attempt_store import AttemptStore
 from sqlalchemy import text
 
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.attempt import AttemptFilter, GradesFormat
-from service.attempts.errors import StoreDownError
-from service.attempts.regrades import outdated as regrading
-from service.attempts.regrades import steps as regrade_steps
-from service.attempts.results import grades
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, load_catalogue, shipped_folder
 from tests.api.conftest import InProcess
 from tests.attack.honest import watched
 from tests.attack.interface import with_key

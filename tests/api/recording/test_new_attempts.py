@@ -10,16 +10,15 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.contract import Learner
+from dh_grader.grading import GradedAnswers, Submission, graded_answers
+from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 from pydantic import TypeAdapter, ValidationError
 from sqlalchemy import text
-
-from service.api.application import application
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel
-from service.catalogue.attempts import AttemptsSpec
-from service.contract.attempts import Learner
-from service.grading import GradedAnswers, Submission, graded_answers
 
 RIGHT = {"table": "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
 WRONG = {"table": "a1 0 0 θ1\na2 0 0 θ2\n0 0 d3 0\n0 0 d4 θ4"}
@@ -130,7 +129,7 @@ def gradings(monkeypatch: pytest.MonkeyPatch) -> list[FeedbackLevel]:
         done.append(submission.feedback)
         return graded_answers(exercise, submission)
 
-    monkeypatch.setattr("service.attempts.graded.graded_answers", counted)
+    monkeypatch.setattr("dh_grader.store.graded_answers", counted)
     return done
 
 

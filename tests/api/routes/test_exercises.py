@@ -4,10 +4,10 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise, Robot, load_catalogue
 from fastapi import FastAPI
 
-from service.api.application import application
-from service.catalogue import Exercise, Robot, load_catalogue
 from tests.together import together
 
 # Its reference has the numbers 0.125, 0.75, 61 and 0.3125, which are nowhere else in it.

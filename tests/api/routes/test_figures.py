@@ -5,10 +5,9 @@ from collections.abc import Mapping
 
 import httpx
 import pytest
-
-from service.catalogue import Exercise
-from service.figures.drawing.style import Theme
-from service.figures.figure import exercise_figure
+from dh_grader.catalogue import Exercise
+from dh_grader.figures import exercise_figure
+from dh_grader.figures.drawing import Theme
 
 
 @pytest.mark.long

@@ -8,13 +8,12 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.robot import Robot
+from dh_grader.catalogue.schema_fields import AttemptsSpec, FeedbackLevel
+from dh_grader.contract.frames import MOST_CONFIGURATIONS
 
-from service.api.application import application
-from service.catalogue import Exercise
-from service.catalogue.attempts import AttemptsSpec
-from service.catalogue.feedback_level import FeedbackLevel
-from service.catalogue.robots.robot import Robot
-from service.contract.frames import MOST_CONFIGURATIONS
 from tests.api.conftest import InProcess
 from tests.shipped import sampled, shipped_exercises
 

@@ -7,13 +7,13 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise, FeedbackLevel, least
+from dh_grader.grading import Verdict
 from fastapi import FastAPI
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.api.application import application
-from service.catalogue import Exercise, FeedbackLevel, least
-from service.grading import Verdict
 from tests.grading.support.bare_numbers import BARE, BareExercise
 from tests.together import together
 

@@ -10,13 +10,13 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.catalogue import Exercise
+from dh_grader.store import StoreDownError
+from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 from sqlalchemy import event, text
 
-from service.api.application import application
-from service.attempts.errors import StoreDownError
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
 from tests.attempts.databases import new_file
 
 
@@ -72,12 +72,12 @@ def test_a_check_of_a_moment_ago_does_not_count_after_an_attempt_waited_in_vain(
     store: AttemptStore, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # Here a success counts for long; normally it counts for a second.
-    monkeypatch.setattr("service.attempts.store._CHECKED", 3600.0)
+    monkeypatch.setattr("dh_grader.store.attempt_store._CHECKED", 3600.0)
     reacts = threading.Event()
 
     async def wait_in_vain() -> None:
         await store.check()
-        monkeypatch.setattr("service.attempts.storage.writer._TIMEOUT", 0.2)
+        monkeypatch.setattr("dh_grader.store.database._TIMEOUT", 0.2)
         with pytest.raises(StoreDownError):
             await store.write(lambda _: reacts.wait())
         with pytest.raises(StoreDownError):

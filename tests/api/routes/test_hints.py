@@ -5,11 +5,10 @@ from typing import Any
 
 import httpx
 import pytest
-
-from service.catalogue import FeedbackLevel
-from service.figures.drawing.style import Theme
-from service.hints.picture import rule_picture
-from service.kinematics.dh import Convention
+from dh_grader.catalogue import FeedbackLevel
+from dh_grader.figures.drawing import Theme
+from dh_grader.hints import rule_picture
+from dh_grader.kinematics import Convention
 
 PATH = "/v1/exercises/planar-rr/hints"
 ASKED: Mapping[str, Any] = {

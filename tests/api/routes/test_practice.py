@@ -2,14 +2,19 @@
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.kinematics import Convention
+from dh_grader.variants.robots import (
+    MOST_ROBOTS,
+    CatalogueWithPractice,
+    PracticeId,
+    Situation,
+    _memoized,
+    has_situation,
+    practice_id,
+    robot_exercise,
+)
 
-from service.api.application import application
-from service.kinematics.dh import Convention
-from service.variants.robots.dealing import has_situation
-from service.variants.robots.difficulty import Situation
-from service.variants.robots.practice_catalogue import MOST_ROBOTS, CatalogueWithPractice, _memoized
-from service.variants.robots.practice_id import PracticeId, practice_id
-from service.variants.robots.robot_exercise import robot_exercise
 from tests.variants.robots.checks import lazy_share
 
 

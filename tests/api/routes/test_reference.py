@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import httpx
 import pytest
+from dh_grader.api.grading import FOLDER
 from playwright.sync_api import expect
 
-from service.api.routes.reference import FOLDER
 from tests.api.serving import Served
 from tests.browser.fixtures import Visit
 from tests.guards import ANSWER

@@ -11,14 +11,14 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.grading import _solved
+from dh_grader.api.http import MemoizedResults
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.schema_fields import AttemptsSpec
 from fastapi import FastAPI
 
-from service.api.application import application
-from service.api.http.memoized import MemoizedResults
-from service.api.permissions.access import Access
-from service.api.routes.solutions import _solved
-from service.catalogue import Exercise
-from service.catalogue.attempts import AttemptsSpec
 from tests.api.conftest import InProcess
 from tests.solutions.solved import solved
 
@@ -89,7 +89,7 @@ def test_a_changed_exercise_has_a_solution_of_its_own(
     catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch,
     client_of: Callable[[FastAPI], httpx.Client],
 ) -> None:  # fmt: skip
-    monkeypatch.setattr("service.api.routes.solutions._solved", lambda each: each.version.encode())
+    monkeypatch.setattr("dh_grader.api.grading._solved", lambda each: each.version.encode())
     live = {"scara": catalogue["scara"]}
     with client_of(application(live, access=Access(solutions=True))) as tutor:
         assert tutor.get(PATH.format("scara")).text == catalogue["scara"].version
@@ -121,8 +121,8 @@ def test_the_event_loop_runs_while_a_solution_is_computed(
 
 PROGRAM = r"""
 import sys
-import service.app, service.grading, service.cli.program
-print(sorted({"sympy", "service.solutions.solution"} & set(sys.modules)))
+import dh_grader.app, dh_grader.grading, dh_grader.cli
+print(sorted({"sympy", "dh_grader.solutions.answers"} & set(sys.modules)))
 """
 
 

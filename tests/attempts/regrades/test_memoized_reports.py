@@ -1,8 +1,7 @@
 import pytest
-
-from service.attempts.outcome import Outcome
-from service.attempts.regrades.memoized_reports import MemoizedReports, WrittenReport
-from service.catalogue import FeedbackLevel
+from dh_grader.catalogue import FeedbackLevel
+from dh_grader.store import Outcome
+from dh_grader.store.regrades import MemoizedReports, WrittenReport
 
 HINTS, SCORE = FeedbackLevel.HINTS, FeedbackLevel.SCORE
 

@@ -10,15 +10,15 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.store import regrades as regrading_module
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction, open_database
+from dh_grader.store.regrades import BATCH, Regrading
+from dh_grader.store.results import history
+from dh_grader.store.tables import attempts, earlier_reports
 from sqlalchemy import func, select, text
 
-from service.attempts.regrades import outdated as regrading_module
-from service.attempts.regrades.outdated import BATCH, Regrading
-from service.attempts.results.listing import history
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.tables import attempts, earlier_reports
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.recorded import (
     NO_TWIST,
     RIGHT,

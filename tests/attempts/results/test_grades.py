@@ -5,14 +5,14 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.schema_fields import AttemptsSpec
+from dh_grader.store import AttemptFilter, GradesFormat
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.results import Counting, counting_rules, graded_attempts, written
+from dh_grader.store.tables import attempts
 from sqlalchemy import update
 
-from service.attempts.attempt import AttemptFilter, GradesFormat
-from service.attempts.results.grades import Counting, counting_rules, graded_attempts, written
-from service.attempts.storage.tables import attempts
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.catalogue.attempts import AttemptsSpec
 from tests.attempts.recorded import RIGHT, new_attempt, recorded_all
 from tests.together import together
 

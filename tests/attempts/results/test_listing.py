@@ -2,23 +2,16 @@ from collections.abc import Mapping
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.contract.courses import NewAssignment, NewCourse
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import add_course
+from dh_grader.store import AttemptFilter, BadCursorError, ListedAttempt
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.results import earlier_than, history, later_than, page, place_of
+from dh_grader.store.tables import assignments, attempts, earlier_reports, overrides
 from sqlalchemy import ColumnElement, event, insert, select
 
-from service.attempts.attempt import AttemptFilter, ListedAttempt
-from service.attempts.errors import BadCursorError
-from service.attempts.results.listing import (
-    earlier_than,
-    history,
-    later_than,
-    page,
-    place_of,
-)
-from service.attempts.storage.tables import assignments, attempts, earlier_reports, overrides
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.contract.courses import NewAssignment, NewCourse
-from service.courses.assignments import add_assignment
-from service.courses.roll import add_course
 from tests.attempts.recorded import LAZY, NO_TWIST, NOON, RIGHT, new_attempt, recorded, recorded_all
 
 EVERY = AttemptFilter()

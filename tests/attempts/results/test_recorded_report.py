@@ -5,13 +5,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.formats.documents import read_report, rendered
+from dh_grader.formats.graded import report_in
+from dh_grader.grading import Correction, Feedback, Place, Report, Severity, Submission, grade
+from dh_grader.store import recorded_report, sentence_in, shown_report
+from dh_grader.translations import ENGLISH, Sentence, say, say_count
 
-from service.attempts.results.recorded_report import recorded_report, sentence_in, shown_report
-from service.catalogue import Exercise
-from service.formats.documents.json import read_report, rendered
-from service.formats.told_report import report_in
-from service.grading import Correction, Feedback, Place, Report, Severity, Submission, grade
-from service.translations import ENGLISH, Sentence, say, say_count
 from tests.translations.german import german
 
 GERMAN = german({

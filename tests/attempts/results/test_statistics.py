@@ -4,15 +4,14 @@ from datetime import timedelta
 from itertools import count
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.contract import ExerciseStatistics
+from dh_grader.store import AttemptFilter, NewAttempt, Outcome
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.results import exercise_statistics
+from dh_grader.store.tables import hints
 from sqlalchemy import insert
 
-from service.attempts.attempt import AttemptFilter, NewAttempt
-from service.attempts.outcome import Outcome
-from service.attempts.results.statistics import exercise_statistics
-from service.attempts.storage.tables import hints
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.contract.statistics import ExerciseStatistics
 from tests.attempts.recorded import NO_TWIST, NOON, RIGHT, new_attempt, recorded, recorded_all
 
 WRONG_LENGTH = NO_TWIST.replace("a2", "a1")

@@ -11,15 +11,19 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import (
+    LARGE_LOG,
+    LogCutter,
+    in_transaction,
+    open_database,
+    overwrite_deleted,
+)
+from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import forget, override
 from sqlalchemy import Engine
 
-from service.attempts.regrades.outdated import Regrading
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.database_file import LARGE_LOG
-from service.attempts.storage.erasure import LogCutter, overwrite_deleted
-from service.attempts.store import AttemptStore
-from service.attempts.tutoring import forget, override
-from service.catalogue import Exercise, FeedbackLevel
 from tests.attempts.erasure import files_with, reader
 from tests.attempts.recorded import NOON, new_attempt, recorded, recorded_all
 from tests.guards import ANSWER
@@ -65,7 +69,7 @@ def test_a_running_store_finishes_the_erasure_of_another_program(
     sqlite_url: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for name in ("_INTERVAL", "_LOOK"):
-        monkeypatch.setattr(f"service.attempts.storage.erasure.{name}", 0.05)
+        monkeypatch.setattr(f"dh_grader.store.database.{name}", 0.05)
     store = AttemptStore.open(sqlite_url)
     store.start()
     recorded(store, catalogue["scara"], "ada-4711", TABLE.format(WRITTEN))

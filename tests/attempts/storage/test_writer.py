@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from dh_grader.store import database as module
+from dh_grader.store.database import AttemptWriter, open_database
 from sqlalchemy import Connection, Engine, event
 
-from service.attempts.storage import writer as module
-from service.attempts.storage.database import open_database
-from service.attempts.storage.writer import AttemptWriter
 from tests.guards import ANSWER
 
 

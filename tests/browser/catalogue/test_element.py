@@ -159,11 +159,11 @@ def test_documented_properties_and_parts_style_the_element(
     for name in parts:
         piece = page.locator(f"dh-exercise [part={name}]").first
         assert piece.evaluate("each => getComputedStyle(each).outlineWidth") == "7px", name
-    sheet = (ROOT / "service/web/static/student/element.css").read_text(encoding="utf-8")
+    sheet = (ROOT / "service/dh_grader/web/static/student/element.css").read_text(encoding="utf-8")
     assert [name for name in properties if f"var({name})" not in sheet] == []
     for selector in (".outer", ".part", "figure", ".check"):
         assert colour(page, selector) == (1, 2, 3), selector
     # The exercise on the page says which properties exist: none of the colours is left out.
-    tokens = (ROOT / "service/web/static/shared/tokens.css").read_text(encoding="utf-8")
+    tokens = (ROOT / "service/dh_grader/web/static/shared/tokens.css").read_text(encoding="utf-8")
     colours = set(re.findall(r"(--[\w-]+): light-dark", tokens))
     assert {name for name in colours if not name.endswith("-tint")} <= {*properties}

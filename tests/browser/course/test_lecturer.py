@@ -8,14 +8,12 @@ from pathlib import Path
 from urllib.request import Request, urlopen
 
 import pytest
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.key_ring import add_key
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
 from playwright.sync_api import Page, expect
 
-from service.access.caller import Scope
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.attempts.storage.database import in_transaction
-from service.attempts.store import AttemptStore
 from tests.api.serving import served
 from tests.browser.fixtures import Visit
 from tests.browser.hostile import PICTURE

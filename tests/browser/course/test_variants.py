@@ -4,10 +4,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from dh_grader.client import GraderClient
+from dh_grader.contract.courses import LearnersRequest, LinksRequest, NewAssignment, NewCourse
 from playwright.sync_api import expect
 
-from service.client import GraderClient
-from service.contract.courses import LearnersRequest, LinksRequest, NewAssignment, NewCourse
 from tests.api.serving import served
 from tests.browser.course.test_lecturer import SECRET, administrator
 from tests.browser.fixtures import Visit

@@ -7,9 +7,9 @@ from pathlib import Path
 from zoneinfo import ZoneInfo
 
 import pytest
+from dh_grader.catalogue import shipped_folder
 from playwright.sync_api import Page, expect
 
-from service.catalogue import shipped_folder
 from tests.api.serving import served
 from tests.browser.course.test_lecturer import SECRET, administrator
 from tests.browser.fixtures import Visit

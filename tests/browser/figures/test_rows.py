@@ -5,9 +5,9 @@ import re
 from collections.abc import Callable
 
 import pytest
+from dh_grader.web.pages import FOLDER
 from playwright.sync_api import Page, expect
 
-from service.web.assets import FOLDER
 from tests.browser.figures.pace import MOST_SCRIPT_MS, pace
 from tests.browser.fixtures import Visit
 from tests.browser.maths.reading import typed_names

@@ -3,9 +3,9 @@
 from collections.abc import Callable
 
 import pytest
+from dh_grader.catalogue import load_catalogue, shipped_folder
 from playwright.sync_api import expect
 
-from service.catalogue import load_catalogue, shipped_folder
 from tests.browser.fixtures import Visit
 from tests.browser.steps import cells, open_exercise, right_answers
 from tests.browser.student.steps import PHONE, check

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Iterator
 
 import pytest
+from dh_grader.web.pages import TOPICS
 from playwright.sync_api import Page, expect
 
-from service.web.help.help_pages import TOPICS
 from tests.api.serving import served
 from tests.browser.conftest import Origin
 from tests.browser.fixtures import Visit

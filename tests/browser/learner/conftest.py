@@ -9,18 +9,16 @@ from http.server import ThreadingHTTPServer
 from typing import Any
 
 import pytest
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.key_ring import add_key
+from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import in_transaction
 from sqlalchemy import Connection
 
-from service.access.caller import Scope
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.attempts.storage.database import in_transaction
-from service.attempts.store import AttemptStore
-from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from service.courses import roll
-from service.courses.assignments import add_assignment
-from service.courses.links import issue_links
 from tests.api.serving import ROOT, served
 
 COURSE = "robotics-2026"

@@ -5,9 +5,9 @@ from collections.abc import Callable
 from contextlib import suppress
 
 import pytest
+from dh_grader.catalogue import load_exercise, shipped_folder
 from playwright.sync_api import Error, Page, Route, expect
 
-from service.catalogue import load_exercise, shipped_folder
 from tests.browser.fixtures import Visit
 from tests.browser.learner.conftest import Course
 from tests.browser.steps import cells

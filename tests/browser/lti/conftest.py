@@ -8,10 +8,10 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
+from dh_grader.lti.registrations import NewRegistration, add_registration
+from dh_grader.store.database import in_transaction, open_database
 from playwright.sync_api import BrowserContext, Page
 
-from service.attempts.storage.database import in_transaction, open_database
-from service.lti.registrations import NewRegistration, add_registration
 from tests.api.serving import served
 from tests.browser.chromium import OPTIONS, Chromium
 from tests.browser.fixtures import GUARD, Started, complaint

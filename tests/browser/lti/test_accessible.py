@@ -6,13 +6,11 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.key_ring import add_key
+from dh_grader.store.database import in_transaction, open_database
 from playwright.sync_api import Frame, Page, expect
 
-from service.access.caller import Scope
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.access.keys import Secret
-from service.attempts.storage.database import in_transaction, open_database
 from tests.browser.lti.conftest import SECRET, Course
 from tests.browser.test_pages import violations
 from tests.guards import ANSWER

@@ -4,9 +4,9 @@ import re
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 from playwright.sync_api import Page, expect
 
-from service.catalogue import Exercise
 from tests.browser.fixtures import Visit
 from tests.browser.steps import cells, open_exercise
 

@@ -4,9 +4,9 @@ import re
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 from playwright.sync_api import expect
 
-from service.catalogue import Exercise
 from tests.browser.fixtures import Visit
 from tests.browser.steps import cells, open_exercise, right_answers, type_with_tab
 from tests.browser.student.steps import check, part

@@ -4,9 +4,9 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Final
 
 import pytest
+from dh_grader.catalogue import Exercise, PartSpec
 from playwright.sync_api import Page
 
-from service.catalogue import Exercise, PartSpec
 from tests.browser.fixtures import Visit
 from tests.browser.steps import open_exercise, right_answers
 from tests.shipped import one_of_each_kind, shipped_exercises

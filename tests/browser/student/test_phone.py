@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 from playwright.sync_api import Locator, Page, expect
 
-from service.catalogue import Exercise
 from tests.browser.fixtures import Visit
 from tests.browser.steps import cells, open_exercise, right_answers
 from tests.browser.student.steps import PHONE, check, part

@@ -6,10 +6,10 @@ from pathlib import Path
 from time import monotonic
 
 import pytest
+from dh_grader.authoring import Level, examine
+from dh_grader.catalogue import load_exercise
 from playwright.sync_api import expect
 
-from service.authoring import Level, examine
-from service.catalogue import load_exercise
 from tests.api.serving import served
 from tests.browser.fixtures import Visit
 from tests.browser.test_pages import violations

@@ -5,9 +5,8 @@ import tomllib
 from pathlib import Path
 
 import pytest
-
-from service.catalogue import shipped_folder
-from service.catalogue.files.lines import line_of, value_lines
+from dh_grader.catalogue import shipped_folder
+from dh_grader.catalogue.files import line_of, value_lines
 
 TEXT = '''\
 title = "A # no comment" # a comment

@@ -3,9 +3,9 @@
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import CatalogueError, load_exercise
+from dh_grader.catalogue.kinds import SPECS
 
-from service.catalogue import CatalogueError, load_exercise
-from service.catalogue.parts import SPECS
 from tests.catalogue.test_faults import VALID, write
 
 *_FIRST, _LAST = map(repr, sorted(SPECS))

@@ -4,10 +4,10 @@ import re
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import CatalogueError, in_language, read_exercise
+from dh_grader.translations import ENGLISH, Language
+from dh_grader.variants import built
 
-from service.catalogue import CatalogueError, in_language, read_exercise
-from service.translations import ENGLISH, Language
-from service.variants.variant import built
 from tests.translations.german import german
 from tests.variants.varied_files import varied_text
 

@@ -4,10 +4,9 @@ from collections.abc import Callable, Mapping
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import CatalogueError, Exercise, Robot, ScrewRobot
+from dh_grader.kinematics import product_in_space, rot_z
 
-from service.catalogue import CatalogueError, Exercise, Robot, ScrewRobot
-from service.kinematics.screws import product_in_space
-from service.kinematics.transforms import rot_z
 from tests.grading.support.exercise_texts import ANGLES, HEAD, SPATIAL_RRR, one_part
 from tests.kinematics.constructions import trans
 from tests.together import together

@@ -5,9 +5,9 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.store.attempt_store import AttemptStore
 
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise, shipped_folder
 from tests.attempts.erasure import files_with, reader
 from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded_all
 from tests.attempts.test_upgrade import MIGRATIONS, make_old

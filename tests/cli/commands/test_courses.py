@@ -3,9 +3,8 @@
 from pathlib import Path
 
 import pytest
+from dh_grader.cli import program
 from typer.testing import CliRunner, Result
-
-from service.cli.program import program
 
 
 def run(*words: str) -> Result:

@@ -9,12 +9,12 @@ from typing import Any
 from urllib.parse import unquote
 
 import pytest
+from dh_grader.catalogue import shipped_folder
+from dh_grader.formats import FORMAT_NAMES, report_format
+from dh_grader.formats.documents import rendered
+from dh_grader.grading import Report, Submission, grade
 from typer.testing import Result
 
-from service.catalogue import shipped_folder
-from service.formats import FORMAT_NAMES, report_format
-from service.formats.documents.json import rendered
-from service.grading import Report, Submission, grade
 from tests.formats.submissions import CLASSROOM
 from tests.shipped import shipped_exercises
 from tests.translations.german import messages_in, offer_german
@@ -204,7 +204,7 @@ def test_an_interrupted_run_leaves_no_incomplete_file(
             raise KeyboardInterrupt
         return grade(*arguments)
 
-    monkeypatch.setattr("service.local_grading.grade", interrupted)
+    monkeypatch.setattr("dh_grader.formats.local_grading.grade", interrupted)
     result = table_only(run, answer, answer, "--format", "csv", "--output", target)
     assert result.exit_code != 0
     assert len(graded) == 2

@@ -7,13 +7,12 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.access import is_spelt_right
+from dh_grader.catalogue import shipped_folder
+from dh_grader.cli.operate import keys_commands as commands
+from dh_grader.server import installed_app
+from dh_grader.settings import Settings, SettingsError, load_settings
 from typer.testing import CliRunner, Result
-
-from service.access.key_text import is_spelt_right
-from service.catalogue import shipped_folder
-from service.cli.commands.keys import commands
-from service.server.installed import installed_app
-from service.settings import Settings, SettingsError, load_settings
 
 SECRET = "0123456789abcdef" * 4
 

@@ -7,9 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import shipped_folder
 from typer.testing import Result
-
-from service.catalogue import shipped_folder
 
 Run = Callable[..., Result]
 
@@ -135,7 +134,7 @@ def test_in_a_pipe_lines_are_plain_and_not_wrapped(arm: Path) -> None:
     # The continuous integration of a course reads the output in a pipe.
     changed(arm, ("range = [0.3, 0.9]", "range = [-0.3, 0.9]"))
     result = subprocess.run(
-        [sys.executable, "-m", "service", "exercises", "check", str(arm)],
+        [sys.executable, "-m", "dh_grader", "exercises", "check", str(arm)],
         capture_output=True, text=True, check=False, env=os.environ | {"CI": "true"},
     )  # fmt: skip
     assert result.returncode == 0

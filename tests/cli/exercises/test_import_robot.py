@@ -123,7 +123,7 @@ def test_a_terminal_is_asked(run: Run, tmp_path: Path, monkeypatch: pytest.Monke
     table = tmp_path / "arm.txt"
     table.write_text(OPEN, encoding="utf-8")
     answers = iter(["a alpha d theta", "mm", "degrees"])
-    monkeypatch.setattr("service.cli.exercises.import_robot.is_terminal", lambda: True)
+    monkeypatch.setattr("dh_grader.cli.exercises.is_terminal", lambda: True)
     monkeypatch.setattr("typer.prompt", lambda *_, **__: next(answers))
     made = run("exercises", "import", table, "--table", "--output", tmp_path)
     assert made.exit_code == 0

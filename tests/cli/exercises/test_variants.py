@@ -7,9 +7,9 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
+from dh_grader.variants import built
 from typer.testing import Result
 
-from service.variants.variant import built
 from tests.variants.shipped import shipped
 from tests.variants.varied_files import varied_text
 

@@ -5,10 +5,9 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-
-from service.cli.files.output_folder import UnusableFolderError, is_for_folder, write_folder
-from service.formats.earlier_outputs import WRITTEN
-from service.formats.shared.report_format import Document
+from dh_grader.cli.grade import UnusableFolderError, is_for_folder, write_folder
+from dh_grader.formats.class_page import WRITTEN
+from dh_grader.formats.graded import Document
 
 NEEDS_LINKS = pytest.mark.skipif(os.name == "nt", reason="needs symbolic links")
 

@@ -2,9 +2,9 @@ import json
 from pathlib import Path
 
 import pytest
+from dh_grader.lti.fetching import published_keys
+from dh_grader.store.database import in_transaction, open_database
 
-from service.attempts.storage.database import in_transaction, open_database
-from service.lti.own_keys import published_keys
 from tests.cli.conftest import Run
 from tests.lti.platform import Platform, running
 

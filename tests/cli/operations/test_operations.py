@@ -9,18 +9,17 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.cli import program
+from dh_grader.contract.courses import NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.server import installed_app
+from dh_grader.settings import SettingsError, load_settings
+from dh_grader.store.database import in_transaction, open_database
+from dh_grader.store.results import months_before
+from dh_grader.store.tables import assignments, attempts, extensions, outcomes, overrides
 from sqlalchemy import insert, update
 from typer.testing import CliRunner, Result
-
-from service.attempts.learner_data import months_before
-from service.attempts.storage.database import in_transaction, open_database
-from service.attempts.storage.tables import assignments, attempts, extensions, outcomes, overrides
-from service.cli.program import program
-from service.contract.courses import NewAssignment, NewCourse, NewLearner
-from service.courses import roll
-from service.courses.assignments import add_assignment
-from service.server.installed import installed_app
-from service.settings import SettingsError, load_settings
 
 NOW = datetime.now(UTC)
 SECRET = "0123456789abcdef" * 4

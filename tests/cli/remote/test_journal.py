@@ -2,10 +2,9 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
-
-from service.catalogue import Exercise
-from service.cli.remote.journal import Journal, digest, journal_beside
-from service.grading import Report, Submission, grade
+from dh_grader.catalogue import Exercise
+from dh_grader.cli.remote_grading import Journal, digest, journal_beside
+from dh_grader.grading import Report, Submission, grade
 
 ONE, OTHER, THIRD = digest(["θ", 1]), digest(["θ", 2]), digest(["θ", "1"])
 

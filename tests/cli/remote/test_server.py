@@ -8,9 +8,9 @@ from random import Random
 
 import httpx
 import pytest
+from dh_grader.cli.remote_grading import Journal
+from dh_grader.grading import Report
 
-from service.cli.remote.journal import Journal
-from service.grading import Report
 from tests.api.serving import Served, served
 from tests.cli.conftest import Run
 from tests.client.scripted import http, scripted
@@ -86,7 +86,7 @@ def test_after_a_kill_the_next_run_requests_exactly_the_rest(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     # Do not wait before retries.
-    monkeypatch.setattr("service.client.retries.random.uniform", lambda *_: 0.0)
+    monkeypatch.setattr("dh_grader.client.random.uniform", lambda *_: 0.0)
     kept: list[str] = []
     add = Journal.add
 

@@ -6,8 +6,7 @@ import sys
 from collections.abc import Callable, Iterator
 
 import pytest
-
-from service.cli.running.interrupts import TERMINATED, interruptible
+from dh_grader.cli.terminal import TERMINATED, interruptible
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="has no signals between processes")
 

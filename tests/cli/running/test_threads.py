@@ -1,8 +1,8 @@
 import threading
 
 import pytest
+from dh_grader.cli.running import mapped_in_threads
 
-from service.cli.running.threads import mapped_in_threads
 from tests.guards import ANSWER
 
 

@@ -10,14 +10,14 @@ from datetime import UTC, datetime
 from itertools import count
 from typing import Any, Final
 
+from dh_grader.access import Secret
+from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.assignments import add_assignment
+from dh_grader.courses.roll import issue_links
+from dh_grader.store.database import in_transaction, open_database
 from sqlalchemy import Connection
 
-from service.access.keys import Secret
-from service.attempts.storage.database import in_transaction, open_database
-from service.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
-from service.courses import roll
-from service.courses.assignments import add_assignment
-from service.courses.links import issue_links
 from tests.guards import ANSWER
 
 COURSE: Final = "robots"

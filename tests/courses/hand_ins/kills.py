@@ -11,10 +11,10 @@ from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from dh_grader.store.database import open_database
+from dh_grader.store.tables import assignments, attempts
 from sqlalchemy import select
 
-from service.attempts.storage.database import open_database
-from service.attempts.storage.tables import assignments, attempts
 from tests.courses.hand_ins.class_of_learners import (
     SECRET,
     HandIn,

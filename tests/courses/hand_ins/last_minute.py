@@ -22,8 +22,9 @@ from itertools import product
 from pathlib import Path
 from typing import Final
 
-from service.attempts.storage.database import open_database
-from service.courses.results.gradebook import gradebook
+from dh_grader.courses.gradebook import gradebook
+from dh_grader.store.database import open_database
+
 from tests.attempts.databases import KINDS
 from tests.courses.hand_ins.class_of_learners import (
     COURSE,

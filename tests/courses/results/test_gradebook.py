@@ -4,12 +4,12 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.contract.courses import Gradebook, GradebookFormat
+from dh_grader.courses.gradebook import gradebook, written_gradebook
+from dh_grader.store.tables import assignments
 from sqlalchemy import Connection, event, select
 
-from service.attempts.storage.tables import assignments
-from service.catalogue import Exercise
-from service.contract.courses import Gradebook, GradebookFormat
-from service.courses.results.gradebook import gradebook, written_gradebook
 from tests.attempts.databases import KINDS
 from tests.attempts.recorded import NO_TWIST, new_attempt, recorded_all
 from tests.courses.conftest import Class

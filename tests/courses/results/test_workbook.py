@@ -14,16 +14,15 @@ from xml.etree import ElementTree
 from zoneinfo import ZoneInfo
 
 import pytest
+from dh_grader.access import Scope, new_key_text
+from dh_grader.access.key_ring import add_key
+from dh_grader.catalogue import Exercise
+from dh_grader.cli import program
+from dh_grader.contract.courses import NewLearner
+from dh_grader.courses import roll
+from dh_grader.courses.gradebook import gradebook_workbook
 from typer.testing import CliRunner
 
-from service.access.caller import Scope
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.catalogue import Exercise
-from service.cli.program import program
-from service.contract.courses import NewLearner
-from service.courses import roll
-from service.courses.results.workbook import gradebook_workbook
 from tests.access.kept_services import SECRET
 from tests.courses.conftest import NOW, Class, days
 from tests.courses.results.test_gradebook import fill

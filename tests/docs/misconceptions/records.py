@@ -17,7 +17,8 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Final
 
-from service.grading.misconception import Example, Record, all_records
+from dh_grader.grading.misconception import Example, Record, all_records
+
 from tests.docs.sentences import code_span, shown
 from tests.grading.diagnosis.traces import trace_of
 

@@ -3,8 +3,9 @@
 from collections import Counter
 from pathlib import Path
 
-from service.grading.diagnosis.lists.position import WrongPosition
-from service.grading.misconception import all_records
+from dh_grader.grading.diagnosis.lists import WrongPosition
+from dh_grader.grading.misconception import all_records
+
 from tests.docs.misconceptions.records import DOCS, PAGES, kinds_in, records_in, written
 from tests.together import together
 

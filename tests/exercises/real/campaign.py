@@ -9,9 +9,9 @@ from collections import Counter
 from dataclasses import dataclass, field
 
 import numpy as np
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import DhTableSpec
 
-from service.catalogue import Exercise
-from service.catalogue.parts.dh_table import DhTableSpec
 from tests.frame_choice import oracle
 from tests.frame_choice.generator import Table, reassignment
 from tests.frame_choice.robots import POLICIES, Policy, Robot

@@ -10,7 +10,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from service.kinematics.dh import Convention
+from dh_grader.kinematics import Convention
+
 from tests.exercises.real.urdf_comparison import Difference, difference
 from tests.shipped import shipped_exercises
 

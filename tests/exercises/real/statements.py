@@ -5,9 +5,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from dh_grader.catalogue import Exercise
 from numpy.typing import NDArray
-
-from service.catalogue import Exercise
 
 Vector = NDArray[np.float64]
 

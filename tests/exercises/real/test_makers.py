@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 
 import pytest
+from dh_grader.kinematics import Convention
 
-from service.kinematics.dh import Convention
 from tests.exercises.real.makers import ARMS, MAKERS, ROUNDED_MM, differences
 from tests.exercises.real.urdf_comparison import Difference, difference
 from tests.shipped import REAL_ROBOTS, shipped_exercises

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
 from numpy.typing import NDArray
 
-from service.catalogue import Exercise
 from tests.shipped import REAL_ROBOTS, shipped_exercises
 
 Numbers = NDArray[np.float64]

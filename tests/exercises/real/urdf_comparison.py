@@ -6,10 +6,9 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
+from dh_grader.catalogue import Exercise
+from dh_grader.kinematics import Convention
 from numpy.typing import NDArray
-
-from service.catalogue import Exercise
-from service.kinematics.dh import Convention
 
 Numbers = NDArray[np.float64]
 POSES = 100

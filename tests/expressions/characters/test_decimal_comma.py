@@ -1,7 +1,6 @@
 import pytest
-
-from service.expressions import ExpressionError, Symbol, Vocabulary, read
-from service.expressions.characters.decimal_comma import with_points
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, read
+from dh_grader.expressions.characters import with_points
 
 SYMBOLS = [Symbol("l1", "length"), Symbol("theta1", "angle", joint=1)]
 WITH_COMMA = Vocabulary(SYMBOLS, decimal_comma=True)

@@ -1,6 +1,6 @@
 """Read Greek letters and their names."""
 
-from service.expressions import Symbol, Vocabulary, read
+from dh_grader.expressions import Symbol, Vocabulary, read
 
 
 def test_a_greek_letter_is_not_replaced_by_its_name_inside_a_word() -> None:

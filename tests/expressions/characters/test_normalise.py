@@ -1,8 +1,7 @@
 """Read LaTeX commands next to letters and digits."""
 
 import pytest
-
-from service.expressions import Symbol, Vocabulary, read
+from dh_grader.expressions import Symbol, Vocabulary, read
 
 
 @pytest.mark.parametrize(

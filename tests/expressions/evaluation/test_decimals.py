@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-
-from service.expressions import Vocabulary, decimals_of, joint_variable, read
+from dh_grader.expressions import Vocabulary, decimals_of, joint_variable, read
 
 ARM = Vocabulary([joint_variable(1)])
 

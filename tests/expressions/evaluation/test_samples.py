@@ -4,8 +4,8 @@ from math import cos, isinf, isnan
 
 import numpy as np
 import pytest
+from dh_grader.expressions import Symbol, Vocabulary, evaluate_all, read
 
-from service.expressions import Symbol, Vocabulary, evaluate_all, read
 from tests.expressions.conftest import Values
 from tests.expressions.corpus_files import ROBOT
 

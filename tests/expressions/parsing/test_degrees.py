@@ -4,9 +4,9 @@ from math import cos, pi, sin
 
 import numpy as np
 import pytest
+from dh_grader.expressions import Kind, Vocabulary, read
 from numpy.typing import NDArray
 
-from service.expressions import Kind, Vocabulary, read
 from tests.together import together
 
 Values = dict[str, NDArray[np.float64]]

@@ -11,12 +11,10 @@ from typing import Literal
 from unittest.mock import Mock
 
 import pytest
-
-from service.expressions import LIMITS, ExpressionError, Vocabulary, read
-from service.expressions.errors import UnreadableError
-from service.expressions.parsing import parser
-from service.expressions.parsing.lexing.tokens import END, Token
-from service.expressions.parsing.tree_builder import Builder
+from dh_grader.expressions import LIMITS, ExpressionError, Vocabulary, parser, read
+from dh_grader.expressions.errors import UnreadableError
+from dh_grader.expressions.parser import Builder
+from dh_grader.expressions.words import END, Token
 
 # A part of a rule: ("", symbol), or a bracket with alternatives, each a sequence of parts.
 Part = tuple[str, "str | list[list[Part]]"]

@@ -4,8 +4,7 @@ import re
 import xml.etree.ElementTree as ET
 
 import pytest
-
-from service.expressions import Vocabulary, read
+from dh_grader.expressions import Vocabulary, read
 
 
 @pytest.mark.parametrize(

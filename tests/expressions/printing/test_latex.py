@@ -1,8 +1,8 @@
 """Print formulas as LaTeX."""
 
 import pytest
+from dh_grader.expressions import Symbol, Vocabulary, read
 
-from service.expressions import Symbol, Vocabulary, read
 from tests.expressions.printing.formulas import FORMULAS
 
 

@@ -3,8 +3,8 @@
 import xml.etree.ElementTree as ET
 
 import pytest
+from dh_grader.expressions import Symbol, Vocabulary, read
 
-from service.expressions import Symbol, Vocabulary, read
 from tests.expressions.printing.formulas import FORMULAS
 
 

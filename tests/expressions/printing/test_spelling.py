@@ -1,11 +1,15 @@
 """Print formulas in the student's notation."""
 
 import pytest
-
-from service.expressions import AngleUnit, Symbol, Vocabulary, joint_variable, read
-from service.expressions.printing.latex import to_latex
-from service.expressions.printing.spelling import Spelling, habits_of, spelling_for, spelling_of
-from service.expressions.printing.text import to_text
+from dh_grader.expressions import AngleUnit, Symbol, Vocabulary, joint_variable, read
+from dh_grader.expressions.printing import (
+    Spelling,
+    habits_of,
+    spelling_for,
+    spelling_of,
+    to_latex,
+    to_text,
+)
 
 ARM = Vocabulary(
     [

@@ -1,8 +1,8 @@
 """Print formulas as plain text."""
 
 import pytest
+from dh_grader.expressions import Vocabulary, read
 
-from service.expressions import Vocabulary, read
 from tests.expressions.printing.formulas import FORMULAS
 
 

@@ -1,7 +1,7 @@
 """Test the corrections that the reader suggests for unreadable texts."""
 
-# The cases of `service/expressions/repairs/<name>.py` are in `corpus/repairs/<name>.txt`, one on
-# each line, with the names of `ROBOT`:
+# The cases of the rule `repair_<name>` of `dh_grader.expressions.repairs` are in
+# `corpus/repairs/<name>.txt`, one on each line, with the names of `ROBOT`:
 #
 #     text that is refused | code | from-to and the text there | repaired text, or -
 #     text that is read | its meaning as normal text
@@ -9,19 +9,21 @@
 import re
 from functools import partial
 from itertools import pairwise
-from pathlib import Path
-from pkgutil import resolve_name
 
 import pytest
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, read
+from dh_grader.expressions.repairs import RULES, names, numbers, texts
 
-from service.expressions import ExpressionError, Symbol, Vocabulary, read, repairs
-from service.expressions.repairs import RULES
 from tests.expressions import corpus_files
 from tests.expressions.corpus_files import ROBOT, RepairCase, repair_cases
 from tests.together import together
 
-MODULES = {file.stem for file in Path(repairs.__file__).parent.glob("*.py")}
-HELPERS = {"__init__", "failure", "nearest_name"}
+DEFINED = {
+    name.removeprefix("repair_"): rule
+    for module in (names, numbers, texts)
+    for name, rule in vars(module).items()
+    if name.startswith("repair_")
+}
 NAMES = corpus_files.repairs()
 CASES = [(name, case) for name in NAMES for case in repair_cases(name)]
 REFUSED = [(name, case) for name, case in CASES if case.code]
@@ -35,10 +37,9 @@ def vocabulary(repair: str) -> Vocabulary:
 
 
 def test_every_rule_is_registered_once_and_has_cases() -> None:
-    rules = [resolve_name(f"{repairs.__name__}.{name}:repair_{name}") for name in MODULES - HELPERS]
-    assert len(RULES) == len(rules)
-    assert set(RULES) == set(rules)
-    assert sorted(MODULES - HELPERS) == NAMES
+    assert len(RULES) == len(DEFINED)
+    assert set(RULES) == set(DEFINED.values())
+    assert sorted(DEFINED) == NAMES
     assert {name for name, case in CASES if case.code} == set(NAMES)
     assert {name for name, case in CASES if not case.code} == set(NAMES)
     assert len(CASES) > 560

@@ -1,9 +1,8 @@
 """Test vocabularies: the symbols that an exercise declares."""
 
 import pytest
-
-from service.expressions import Symbol, Vocabulary, joint_variable
-from service.expressions.vocabulary.symbols import normal_form
+from dh_grader.expressions import Symbol, Vocabulary, joint_variable
+from dh_grader.expressions.vocabulary import normal_form
 
 
 @pytest.mark.parametrize(

@@ -7,15 +7,12 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.robot import Robot, ScrewRobot
+from dh_grader.figures.mechanism import drawing_numbers, mechanism_of
+from dh_grader.kinematics import Convention, Numbers
 from scipy.linalg import expm
 
-from service.catalogue import Exercise
-from service.catalogue.robots.robot import Robot
-from service.catalogue.robots.screw_robot import ScrewRobot
-from service.figures.geometry.mechanism import mechanism_of
-from service.figures.geometry.symbol_numbers import drawing_numbers
-from service.kinematics.dh import Convention
-from service.kinematics.transforms import Numbers
 from tests.shipped import shipped_exercises
 
 POSES = 5

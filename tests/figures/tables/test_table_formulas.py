@@ -4,14 +4,10 @@ from collections.abc import Iterable
 
 import numpy as np
 import pytest
-
-from service.expressions import Expression, evaluate_all
-from service.figures.tables.scope import free_scope
-from service.figures.tables.table_formulas import TableFormulas, table_formulas
-from service.figures.tables.table_frames import table_to_draw
-from service.grading.work_budget import WorkBudget
-from service.kinematics.chain import Table, pose
-from service.kinematics.dh import Convention
+from dh_grader.expressions import Expression, evaluate_all
+from dh_grader.figures.table_figure import TableFormulas, free_scope, table_formulas, table_to_draw
+from dh_grader.grading.report import WorkBudget
+from dh_grader.kinematics import Convention, Table, pose
 
 TABLES = {
     "planar": ("RR", [["a1", "0", "0", "theta1"], ["a2", "0", "0", "theta2"]]),

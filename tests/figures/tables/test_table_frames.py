@@ -2,12 +2,15 @@
 
 import numpy as np
 import pytest
-
-from service.figures.tables.scope import DrawingScope, free_scope
-from service.figures.tables.table_frames import TableFrames, table_frames, table_to_draw
-from service.grading.feedback import UnreadableAnswerError
-from service.grading.work_budget import WorkBudget
-from service.kinematics.dh import Convention
+from dh_grader.figures.table_figure import (
+    DrawingScope,
+    TableFrames,
+    free_scope,
+    table_frames,
+    table_to_draw,
+)
+from dh_grader.grading.report import UnreadableAnswerError, WorkBudget
+from dh_grader.kinematics import Convention
 
 STANDARD, MODIFIED = Convention
 

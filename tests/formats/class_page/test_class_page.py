@@ -8,11 +8,11 @@ from pathlib import Path
 from urllib.parse import unquote
 
 import pytest
+from dh_grader.formats import report_format
+from dh_grader.formats.graded import GradedSubmission
+from dh_grader.grading import FeedbackLevel
 from playwright.sync_api import expect
 
-from service.formats import report_format
-from service.formats.shared.graded import GradedSubmission
-from service.grading import FeedbackLevel
 from tests.browser.fixtures import APPEARANCES, Visit
 from tests.formats.class_of_seven import class_of_seven
 from tests.formats.html_reader import ALLOWED, PageReader

@@ -1,8 +1,7 @@
 import re
 
 import pytest
-
-from service.formats.class_page.file_names import LONGEST, distinct_file_names, file_stem
+from dh_grader.formats.class_page import LONGEST, distinct_file_names, file_stem
 
 
 @pytest.mark.parametrize(

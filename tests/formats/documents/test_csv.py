@@ -2,8 +2,8 @@ import csv
 import io
 
 import pytest
+from dh_grader.formats import texts as spreadsheet
 
-from service.formats.shared import spreadsheet
 from tests.formats.submissions import HOSTILE, cases, document
 
 COLUMNS = [

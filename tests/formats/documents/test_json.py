@@ -1,9 +1,8 @@
 import json
 
 import pytest
-
-from service.formats.documents.json import rendered
-from service.grading import (
+from dh_grader.formats.documents import rendered
+from dh_grader.grading import (
     CellReport,
     Correction,
     Feedback,
@@ -15,6 +14,7 @@ from service.grading import (
     Severity,
     Verdict,
 )
+
 from tests.formats.submissions import HOSTILE, WRITTEN, cases, document
 
 MESSAGE = Feedback(

@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 
 import pytest
+from dh_grader.formats.texts import escaped, sentence
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 
-from service.formats.shared.markdown_text import escaped, sentence
 from tests.formats.submissions import HOSTILE, cases, document
 
 READER = MarkdownIt("commonmark", {"html": True}).enable(["table", "strikethrough"])

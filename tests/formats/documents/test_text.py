@@ -5,11 +5,9 @@
 import io
 
 import pytest
-from rich.console import Console
-
-from service.formats.documents.text import write
-from service.formats.shared.plain_text import points, visible
-from service.grading import (
+from dh_grader.formats.terminal import write
+from dh_grader.formats.texts import points, visible
+from dh_grader.grading import (
     CellReport,
     Correction,
     Feedback,
@@ -22,6 +20,8 @@ from service.grading import (
     Severity,
     Verdict,
 )
+from rich.console import Console
+
 from tests.formats.submissions import cases, document
 
 V = Verdict

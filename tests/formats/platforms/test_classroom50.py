@@ -1,6 +1,6 @@
 import pytest
+from dh_grader.formats.graded import UnusableSettingError
 
-from service.formats.shared.report_format import UnusableSettingError
 from tests.formats.submissions import CLASSROOM, cases, checked_json, document
 
 

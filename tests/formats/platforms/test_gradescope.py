@@ -1,6 +1,6 @@
 import pytest
+from dh_grader.formats.graded import Visibility
 
-from service.formats.shared.graded import Visibility
 from tests.formats.submissions import cases, checked_json
 
 

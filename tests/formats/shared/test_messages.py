@@ -4,12 +4,10 @@ from gettext import NullTranslations
 from typing import Any
 
 import pytest
-
-from service.formats.shared.messages import marks, messages, places_in_words
-from service.grading import Correction, Feedback, PartReport, Place, Severity, Verdict
-from service.grading.lost_points import CELLS, WHOLE, lost_in_row, lost_points
-from service.grading.report import CellReport, RowReport
-from service.translations import say
+from dh_grader.formats.texts import marks, messages, places_in_words
+from dh_grader.grading import Correction, Feedback, PartReport, Place, Severity, Verdict
+from dh_grader.grading.report import CELLS, WHOLE, CellReport, RowReport, lost_in_row, lost_points
+from dh_grader.translations import say
 
 GERMAN = {
     "row {rows} {columns}": "Zeile {rows} {columns}",

@@ -1,8 +1,7 @@
 """Write fractions and scores in per cent."""
 
 import pytest
-
-from service.formats.shared.plain_text import whole_percent, whole_score
+from dh_grader.formats.texts import whole_percent, whole_score
 
 
 @pytest.mark.parametrize(

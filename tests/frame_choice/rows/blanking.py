@@ -16,8 +16,8 @@ from dataclasses import dataclass, field
 from multiprocessing import get_context
 
 import numpy as np
+from dh_grader.grading import PartReport, Verdict
 
-from service.grading import PartReport, Verdict
 from tests.frame_choice import misconceptions
 from tests.frame_choice.generator import reassignment
 from tests.frame_choice.robots import POLICIES, Policy, Robot, conventions, exercise

@@ -17,8 +17,8 @@ from functools import cache
 from multiprocessing import get_context
 
 import numpy as np
+from dh_grader.grading import PartReport, Verdict
 
-from service.grading import PartReport, Verdict
 from tests.frame_choice.generator import reassignment
 from tests.frame_choice.oracle import is_equivalent
 from tests.frame_choice.repairs import Place, can_repair

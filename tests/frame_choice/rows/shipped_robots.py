@@ -3,7 +3,8 @@
 import re
 from functools import cache
 
-from service.catalogue import Exercise
+from dh_grader.catalogue import Exercise
+
 from tests.frame_choice.robots import Robot, TextRow
 from tests.shipped import shipped_exercises, without_most_real_robots
 

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 
-from service.catalogue import Exercise
 from tests.frame_choice.robots import GIVEN, Robot, exercise
 from tests.frame_choice.rows.one_row import (
     Found,

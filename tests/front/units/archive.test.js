@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { archiveOf, bytesOf, entries, textOf } from "../../../service/web/static/tutor/zip.js";
+import { archiveOf, bytesOf, entries, textOf } from "../../../service/dh_grader/web/static/tutor/zip.js";
 
 // Made by Python's zipfile: index.html is stored, zoë/report.html is deflated ("right " fifty times).
 const ARCHIVE = [

@@ -1,17 +1,17 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { layoutOf } from "../../../service/web/static/student/kinds.js";
-import { face, keysOf } from "../../../service/web/static/student/form/key_bar.js";
+import { layoutOf } from "../../../service/dh_grader/web/static/student/kinds.js";
+import { face, keysOf } from "../../../service/dh_grader/web/static/student/form/key_bar.js";
 import {
   filled,
   isTouched,
   sentTexts,
   shownTexts,
   together,
-} from "../../../service/web/static/student/form/part_progress.js";
-import { proposedUnit, reordered, writtenOrder } from "../../../service/web/static/student/form/proposals.js";
-import { shortNames } from "../../../service/web/static/student/form/rail.js";
-import { nextTab } from "../../../service/web/static/student/form/tabs.js";
+} from "../../../service/dh_grader/web/static/student/form/part_progress.js";
+import { proposedUnit, reordered, writtenOrder } from "../../../service/dh_grader/web/static/student/form/proposals.js";
+import { shortNames } from "../../../service/dh_grader/web/static/student/form/rail.js";
+import { nextTab } from "../../../service/dh_grader/web/static/student/form/tabs.js";
 
 const DH = ["a", "alpha", "d", "theta"];
 const cells = (...texts) => texts.map((text, i) => ({ text, prefill: i === 1 ? "0" : undefined }));

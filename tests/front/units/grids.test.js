@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { target, undoKey } from "../../../service/web/static/shared/keyboard.js";
-import { blockOf, placedFrom } from "../../../service/web/static/shared/pasted_block.js";
-import { cellsInWords } from "../../../service/web/static/student/report/places.js";
-import { cellsOf } from "../../../service/web/static/student/handin/answer_cells.js";
+import { target, undoKey } from "../../../service/dh_grader/web/static/shared/keyboard.js";
+import { blockOf, placedFrom } from "../../../service/dh_grader/web/static/shared/pasted_block.js";
+import { cellsInWords } from "../../../service/dh_grader/web/static/student/report/places.js";
+import { cellsOf } from "../../../service/dh_grader/web/static/student/handin/answer_cells.js";
 
 test("a block from a spreadsheet has rows and columns", () => {
   assert.deepEqual(blockOf("a1\t0\r\na2\tpi/2\r\n"), [["a1", "0"], ["a2", "pi/2"]]);

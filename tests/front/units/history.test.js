@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { History } from "../../../service/web/static/shared/history.js";
+import { History } from "../../../service/dh_grader/web/static/shared/history.js";
 
 /** A cell that notes its changes in a history. */
 class Cell {

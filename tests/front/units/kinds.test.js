@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { layoutOf } from "../../../service/web/static/student/kinds.js";
+import { layoutOf } from "../../../service/dh_grader/web/static/student/kinds.js";
 
 const DH = ["a", "alpha", "d", "theta"];
 const table = (convention) => ({

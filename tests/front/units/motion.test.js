@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { between, column, dot, pictureOf, Sweep } from "../../../service/web/static/robot/motion.js";
+import { between, column, dot, pictureOf, Sweep } from "../../../service/dh_grader/web/static/robot/motion.js";
 
 // A frame turned by `angle` about z, at (x, y, 0).
 const turned = (angle, x = 0, y = 0) => {

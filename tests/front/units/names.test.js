@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { pieces } from "../../../service/web/static/typeset/names.js";
+import { pieces } from "../../../service/dh_grader/web/static/typeset/names.js";
 import file from "../../typeset/names.json" with { type: "json" };
 
 const GREEK = new Map(

@@ -1,10 +1,10 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { gapBetween, gapText, isClosed, missText } from "../../../service/web/static/robot/frames/gap.js";
-import { takePlace } from "../../../service/web/static/robot/frames/label_places.js";
-import { directionText, nearestAxes } from "../../../service/web/static/robot/placing/axis_words.js";
-import { leftOutText } from "../../../service/web/static/robot/placing/placed_words.js";
-import { viewText } from "../../../service/web/static/robot/frames/view_text.js";
+import { gapBetween, gapText, isClosed, missText } from "../../../service/dh_grader/web/static/robot/frames/gap.js";
+import { takePlace } from "../../../service/dh_grader/web/static/robot/frames/label_places.js";
+import { directionText, nearestAxes } from "../../../service/dh_grader/web/static/robot/placing/axis_words.js";
+import { leftOutText } from "../../../service/dh_grader/web/static/robot/placing/placed_words.js";
+import { viewText } from "../../../service/dh_grader/web/static/robot/frames/view_text.js";
 
 const IDENTITY = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 // Turned by 90 degrees about z, at (3, 4, 0).

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { matches, wordsOf } from "../../../service/web/static/catalogue/search.js";
+import { matches, wordsOf } from "../../../service/dh_grader/web/static/catalogue/search.js";
 
 const STANFORD = wordsOf("stanford-arm Stanford arm spherical wrist standard distal RRPRRR 6dof revolute prismatic");
 const BAXTER = wordsOf("Baxter's left arm RRRRRRR 7dof 7R revolute");

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { answersIn, fragment, packed, Store, unpacked } from "../../../service/web/static/shared/storage.js";
+import { answersIn, fragment, packed, Store, unpacked } from "../../../service/dh_grader/web/static/shared/storage.js";
 
 const ANSWERS = { unit: "degrees", parts: { table: { cells: ["a1", "θ₁ + π/2"], choice: "standard" } } };
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { decimal, message, number, points, visible } from "../../../service/web/static/shared/dom.js";
+import { decimal, message, number, points, visible } from "../../../service/dh_grader/web/static/shared/dom.js";
 import {
   attemptsInWords,
   dayName,
@@ -8,7 +8,7 @@ import {
   percent,
   query,
   startOf,
-} from "../../../service/web/static/tutor/records/records.js";
+} from "../../../service/dh_grader/web/static/tutor/records/records.js";
 
 test("invisible characters are shown as code points", () => {
   assert.equal(visible("a\u202eb\u200bc"), "a[U+202E]b[U+200B]c");

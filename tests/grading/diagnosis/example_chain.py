@@ -3,11 +3,9 @@
 from functools import reduce
 
 import numpy as np
+from dh_grader.grading.diagnosis.motions import Chain, MatrixCase
+from dh_grader.kinematics import Convention, Numbers
 
-from service.grading.diagnosis.matrices.matrix_case import MatrixCase
-from service.grading.diagnosis.motions.link_products import Chain
-from service.kinematics.dh import Convention
-from service.kinematics.transforms import Numbers
 from tests.frame_choice.kinematics import screw_x, screw_z
 
 # The number of samples at which whole matrices are compared.

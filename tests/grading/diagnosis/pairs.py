@@ -5,9 +5,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 import pytest
-
-from service.grading.feedback import Finding
-from service.grading.misconception import Explained, Record, all_records, explained_by_one
+from dh_grader.grading.misconception import Explained, Record, all_records, explained_by_one
+from dh_grader.grading.report import Finding
 
 
 class Pair(NamedTuple):

@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from functools import cache
 
 import pytest
+from dh_grader.grading import misconception as engine
+from dh_grader.grading.diagnosis.lists import WrongPosition
+from dh_grader.grading.diagnosis.slips_of_the_table import Slip
+from dh_grader.grading.misconception import Record, Written, all_records, records_of, register
+from dh_grader.kinematics import Numbers
 
-from service.grading import misconception as engine
-from service.grading.diagnosis.lists.position import WrongPosition
-from service.grading.diagnosis.upstream.slip import Slip
-from service.grading.misconception import Record, Written, all_records, records_of, register
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.traces import Trace, trace_of
 from tests.together import together
 
@@ -82,8 +82,8 @@ def test_no_two_records_of_a_kind_have_one_rank() -> None:
 )
 def test_the_order_of_imports_changes_no_record(first: str) -> None:
     program = (
-        f"import service.grading.{first}\n"
-        "from service.grading.misconception import all_records\n"
+        f"import dh_grader.grading.{first}\n"
+        "from dh_grader.grading.misconception import all_records\n"
         "print(*sorted(f'{r.of.__name__} {r.rank} {r.name}' for r in all_records()), sep='\\n')"
     )
     done = subprocess.run(
@@ -139,7 +139,7 @@ def test_a_record_that_no_engine_asks_is_named() -> None:
 def test_a_record_that_another_one_hides_is_named() -> None:
     complaint = complaint_about_signs(WrongPosition, 35, -1)
     assert complaint.startswith("signed: on its example it is hidden by ")
-    assert "position.reversed_position" in complaint
+    assert "lists.reversed_position" in complaint
 
 
 @pytest.mark.usefixtures("known")

@@ -1,8 +1,7 @@
 """Test phrases that several kinds of messages contain."""
 
 import pytest
-
-from service.grading.diagnosis.wording import axes_of_row
+from dh_grader.grading.misconception import axes_of_row
 
 
 @pytest.mark.parametrize(

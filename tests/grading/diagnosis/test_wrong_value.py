@@ -3,13 +3,18 @@
 from dataclasses import replace
 
 import numpy as np
-
-from service.expressions import Symbol, Vocabulary, read
-from service.grading.diagnosis.wrong_value import WrongNumbers, WrongValue, differs
-from service.grading.feedback import Finding
-from service.grading.misconception import Hypothesis, Repaired, Written
-from service.grading.numerics.samples import SAMPLES, Samples
-from service.kinematics.transforms import Numbers
+from dh_grader.expressions import Symbol, Vocabulary, read
+from dh_grader.grading.misconception import (
+    Hypothesis,
+    Repaired,
+    Written,
+    WrongNumbers,
+    WrongValue,
+    differs,
+)
+from dh_grader.grading.numbers import SAMPLES, Samples
+from dh_grader.grading.report import Finding
+from dh_grader.kinematics import Numbers
 
 FINDING = Finding("code", "Hint.")
 ONES = np.ones(SAMPLES)

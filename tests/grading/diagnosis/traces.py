@@ -11,11 +11,12 @@ from tempfile import TemporaryDirectory
 from typing import Any, cast
 from unittest.mock import patch
 
-from service.catalogue import Exercise, load_catalogue
-from service.expressions import AngleUnit
-from service.grading import FeedbackLevel, Submission, grade
-from service.grading.misconception import Hypothesis, Record
-from service.solutions import solve
+from dh_grader.catalogue import Exercise, load_catalogue
+from dh_grader.expressions import AngleUnit
+from dh_grader.grading import FeedbackLevel, Submission, grade
+from dh_grader.grading.misconception import Hypothesis, Record
+from dh_grader.solutions import solve
+
 from tests.grading.support.exercise_texts import all_codes
 from tests.shipped import shipped_exercises
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Severity, Verdict
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Severity, Verdict
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part, table
 
 ANTHROPOMORPHIC = """

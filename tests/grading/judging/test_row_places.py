@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Submission, Verdict, grade
 
-from service.catalogue import Exercise
-from service.grading import Submission, Verdict, grade
 from tests.grading.support.robots import SCARA, Row
 from tests.grading.support.submitting import graded_table
 

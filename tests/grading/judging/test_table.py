@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Place, Severity, Verdict
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Place, Severity, Verdict
 from tests.grading.support.robots import EXACT, PLANAR_RRR, ROBOTS, STANFORD, Robot, Row
 from tests.grading.support.submitting import (
     full_marks,

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.exercise_texts import Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 from tests.together import together

@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Correction, PartReport
+from dh_grader.grading.report import MAX_REPAIRS
 
-from service.catalogue import Exercise
-from service.grading import Correction, PartReport
-from service.grading.work_budget import MAX_REPAIRS
 from tests.grading.support.robots import EXACT, STANFORD
 from tests.grading.support.submitting import graded_table, handed_in, not_correct, part, table
 

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Correction, FeedbackLevel, Verdict
+from dh_grader.grading.kinds.motions import nearest_triple
+from dh_grader.kinematics import PROPER, SEQUENCES
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from service.catalogue import Exercise
-from service.grading import Correction, FeedbackLevel, Verdict
-from service.grading.kinds.euler_angles import nearest_triple
-from service.kinematics.rotations import PROPER, SEQUENCES
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 

@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import CatalogueError, Exercise, FeedbackLevel
+from dh_grader.grading import PartReport, Verdict
+from dh_grader.grading.kinds.tables import shown_shape
 
-from service.catalogue import CatalogueError, Exercise, FeedbackLevel
-from service.grading import PartReport, Verdict
-from service.grading.kinds.find_slip import shown_shape
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part, table
 

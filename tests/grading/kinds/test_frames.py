@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.grading import PartReport, Verdict
 
-from service.catalogue import Exercise, FeedbackLevel
-from service.grading import PartReport, Verdict
 from tests.grading.support.exercise_texts import Make, all_codes
 from tests.grading.support.placing import broken, drawn_arm, drawn_frames, home_of, is_valid
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part

@@ -4,9 +4,9 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.scara import (
     A1,
     A3,

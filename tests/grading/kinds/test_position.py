@@ -1,8 +1,8 @@
 """Grade the coordinates of a point."""
 
 import pytest
+from dh_grader.grading import Verdict
 
-from service.grading import Verdict
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import cell, full_marks, not_correct
 

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Verdict
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Verdict
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 

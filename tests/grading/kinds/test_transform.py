@@ -5,9 +5,9 @@ from typing import Any
 
 import pytest
 import sympy as sp
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.submitting import cell, full_marks, handed_in, not_correct, part
 
 TASK = ["a1 c1 + a2 c12", "a1 s1 + a2 s12"]

@@ -6,16 +6,16 @@ from functools import partial
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
-
-from service.catalogue import Exercise
-from service.expressions import read
-from service.grading.numerics.comparison import (
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import read
+from dh_grader.grading.numbers import (
+    SAMPLES,
     Match,
+    Samples,
     SharedDecimals,
     difference,
     difference_steps,
+    draw,
     entry_matches,
     fitted_shifts,
     fitted_unknowns,
@@ -25,7 +25,9 @@ from service.grading.numerics.comparison import (
     rounding_slack,
     same,
 )
-from service.grading.numerics.samples import SAMPLES, Samples, draw
+from hypothesis import given
+from hypothesis import strategies as st
+
 from tests.together import together
 
 # The most decimals of an entry, and of all entries together, that may be rounded.

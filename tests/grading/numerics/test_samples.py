@@ -6,11 +6,10 @@ from datetime import date, time
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.numbers import HALF, SAMPLES, draw
 from hypothesis import given
 from hypothesis import strategies as st
-
-from service.catalogue import Exercise
-from service.grading.numerics.samples import HALF, SAMPLES, draw
 
 ANSWERS = st.recursive(
     st.none() | st.booleans() | st.integers() | st.text(),

@@ -4,19 +4,23 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.judging import Grading, StudentChain
+from dh_grader.grading.kinds.motions import nearest_triple
+from dh_grader.grading.marks import can_carry, stands_still
+from dh_grader.grading.misconception import multiples, number_formula
+from dh_grader.grading.numbers import HALF, SAMPLES, Samples, draw, joint_counts, moves_with
+from dh_grader.grading.reading.entries import Reader
+from dh_grader.kinematics import (
+    Convention,
+    Matrices,
+    Numbers,
+    from_angles,
+    links,
+    other_triple,
+    products,
+)
 
-from service.catalogue import Exercise
-from service.grading.follow_through import can_carry, stands_still
-from service.grading.formula_text import multiples, number_formula
-from service.grading.kinds.euler_angles import nearest_triple
-from service.grading.numerics.joint_motion import joint_counts, moves_with
-from service.grading.numerics.samples import HALF, SAMPLES, Samples, draw
-from service.grading.part import Grading, StudentChain
-from service.grading.reading.entry import Reader
-from service.kinematics.chain import links, products
-from service.kinematics.dh import Convention
-from service.kinematics.rotations import from_angles, other_triple
-from service.kinematics.transforms import Matrices, Numbers
 from tests.grading.support.submitting import graded_table
 from tests.together import together
 

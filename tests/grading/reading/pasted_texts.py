@@ -15,8 +15,7 @@ from random import Random
 from typing import Any, Final, Literal, NamedTuple
 
 import numpy as np
-
-from service.expressions import (
+from dh_grader.expressions import (
     AngleUnit,
     Expression,
     ExpressionError,
@@ -26,14 +25,13 @@ from service.expressions import (
     joint_variable,
     read,
 )
-from service.grading.feedback import UnreadableAnswerError
-from service.grading.numerics.samples import Samples
-from service.grading.reading.entry import Entry, Reader
-from service.grading.reading.lists.component_names import names_of_coordinates
-from service.grading.reading.lists.value_list import read_list
-from service.grading.reading.pasted import pasted_grid
-from service.grading.reading.tables.pasted_table import entries_of, read_pasted_table
-from service.grids import GridError
+from dh_grader.grading.numbers import Samples
+from dh_grader.grading.reading.entries import Entry, Reader, pasted_grid
+from dh_grader.grading.reading.lists import names_of_coordinates, read_list
+from dh_grader.grading.reading.pasted_table import entries_of, read_pasted_table
+from dh_grader.grading.report import UnreadableAnswerError
+from dh_grader.pasting import GridError
+
 from tests.expressions.reference import worth
 
 FOLDER: Final = Path(__file__).with_name("pasted_texts")

@@ -1,9 +1,8 @@
 """Test joint variables that a robot does not have."""
 
 import pytest
-
-from service.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
-from service.grading.reading.absent_variables import joint_counted, with_absent_variables
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
+from dh_grader.grading.reading.entries import joint_counted, with_absent_variables
 
 # An RPR arm with a length that has the usual name of a joint variable.
 WORDS = Vocabulary(

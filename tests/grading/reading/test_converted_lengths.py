@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
-
-from service.catalogue import Exercise
-from service.grading.reading.converted_lengths import converted
-from service.grading.reading.preview import preview_entries
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.reading import preview_entries
+from dh_grader.grading.reading.entries import converted
 
 
 @pytest.mark.parametrize(

@@ -4,15 +4,13 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-
-from service.catalogue import Exercise, shipped_folder
-from service.expressions import Vocabulary, joint_variable
-from service.grading import Submission, grade
-from service.grading.numerics.samples import Samples
-from service.grading.reading.entry import Reader
-from service.grading.reading.pasted import pasted_grid
-from service.grading.report import Verdict
-from service.grids import GridError, read_grid
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.expressions import Vocabulary, joint_variable
+from dh_grader.grading import Submission, grade
+from dh_grader.grading.numbers import Samples
+from dh_grader.grading.reading.entries import Reader, pasted_grid
+from dh_grader.grading.report import Verdict
+from dh_grader.pasting import GridError, read_grid
 
 
 def cells(text: str) -> list[str]:

@@ -4,9 +4,9 @@ from collections import Counter
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.reading import preview_pasted
 
-from service.catalogue import Exercise
-from service.grading.reading.preview import preview_pasted
 from tests.grading.reading.pasted_texts import languages, reading_of, texts
 
 LEAST_TEXTS = 500

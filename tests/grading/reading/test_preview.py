@@ -3,11 +3,10 @@
 from collections.abc import Mapping
 
 import pytest
-
-from service.catalogue import Exercise
-from service.expressions import Kind
-from service.grading.reading.preview import preview_entries, preview_pasted
-from service.translations import Sentence
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import Kind
+from dh_grader.grading.reading import preview_entries, preview_pasted
+from dh_grader.translations import Sentence
 
 TABLE = "\n".join(
     [

@@ -3,11 +3,11 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import AngleUnit
+from dh_grader.grading import PartReport, Severity, Verdict
+from dh_grader.grading.reading import preview_pasted
 
-from service.catalogue import Exercise
-from service.expressions import AngleUnit
-from service.grading import PartReport, Severity, Verdict
-from service.grading.reading.preview import preview_pasted
 from tests.grading.reading.robot_scripts import (
     by_column,
     by_name,

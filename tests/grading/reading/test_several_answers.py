@@ -4,12 +4,11 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 import pytest
-
-from service.catalogue import Exercise
-from service.grading import PartReport, Submission, Verdict, grade
-from service.local_grading import GradingTerms, graded
-from service.submissions.assignment import of_one
-from service.submissions.handed_in import all_handed_in
+from dh_grader.catalogue import Exercise
+from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.grading import PartReport, Submission, Verdict, grade
+from dh_grader.submissions import of_one
+from dh_grader.submissions.files import all_handed_in
 
 Rows = tuple[tuple[str, ...], ...]
 

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
 
-from service.catalogue import Exercise
-from service.grading import Verdict
 from tests.grading.support.submitting import handed_in, part
 
 POSE = "[1 0 0 400; 0 1 0 0; 0 0 1 300; 0 0 0 1]"

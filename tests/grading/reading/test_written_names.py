@@ -4,9 +4,9 @@ import time
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Severity, Verdict
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Severity, Verdict
 from tests.grading.support.exercise_texts import SPATIAL_RRR, Make, all_codes, graded, one_part
 from tests.grading.support.submitting import cell, full_marks, handed_in, not_correct, part
 

@@ -2,8 +2,9 @@
 
 from collections.abc import Callable
 
-from service.catalogue import Exercise
-from service.grading import PartReport
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport
+
 from tests.grading.support.robots import AngleUnit
 from tests.grading.support.submitting import handed_in, part
 

@@ -3,8 +3,8 @@
 from collections.abc import Sequence
 from typing import Any
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Submission, Verdict, grade
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Submission, Verdict, grade
 
 SCARA = """
 title = "SCARA"

@@ -4,9 +4,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.catalogue import Exercise, PartSpec
-from service.catalogue.parts.find_slip import FindSlipSpec
-from service.grading.kinds.find_slip import slip_of
+from dh_grader.catalogue import Exercise, PartSpec
+from dh_grader.catalogue.kinds import FindSlipSpec
+from dh_grader.grading.kinds.tables import slip_of
+
 from tests.grading.support.robots import COLUMNS
 
 Grid = list[list[str]]

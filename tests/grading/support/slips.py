@@ -3,7 +3,8 @@
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from service.grading import Verdict
+from dh_grader.grading import Verdict
+
 from tests.grading.support.robots import COLUMNS, EXACT, AngleUnit, Robot
 
 A, ALPHA, D, THETA = range(4)

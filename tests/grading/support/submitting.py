@@ -4,8 +4,8 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from service.catalogue import Exercise
-from service.grading import (
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import (
     CellReport,
     FeedbackLevel,
     PartReport,
@@ -15,7 +15,8 @@ from service.grading import (
     Verdict,
     grade,
 )
-from service.grading.report import messages_of
+from dh_grader.grading.report import messages_of
+
 from tests.grading.support.robots import COLUMNS, AngleUnit
 
 

@@ -6,11 +6,12 @@ from dataclasses import asdict, dataclass, field
 from functools import lru_cache
 from typing import Any
 
-from service.catalogue import Exercise, FeedbackLevel, PartSpec
-from service.expressions import ExpressionError, Vocabulary, read
-from service.grading import PartReport, Submission, Verdict, grade, report_on_part
-from service.grading.report import messages_of
-from service.hints.steps import STEPS, Topic, hint_step
+from dh_grader.catalogue import Exercise, FeedbackLevel, PartSpec
+from dh_grader.expressions import ExpressionError, Vocabulary, read
+from dh_grader.grading import PartReport, Submission, Verdict, grade, report_on_part
+from dh_grader.grading.report import messages_of
+from dh_grader.hints import STEPS, Topic, hint_step
+
 from tests.grading.support.sheets import Grid, Sheet, sheet_of
 
 ROUNDS = 10

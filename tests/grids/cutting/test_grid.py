@@ -1,8 +1,7 @@
 """The size of a grid, such as 2 × 2, and its empty rows."""
 
 import pytest
-
-from service.grids import read_grid
+from dh_grader.pasting import read_grid
 
 
 def test_size_is_rows_by_columns() -> None:

@@ -1,8 +1,7 @@
 """Limits on pasted texts."""
 
 import pytest
-
-from service.grids import GRID_LIMITS, GridError, read_grid
+from dh_grader.pasting import GRID_LIMITS, GridError, read_grid
 
 
 @pytest.mark.parametrize(

@@ -3,8 +3,7 @@
 from itertools import product
 
 import pytest
-
-from service.grids import read_grid
+from dh_grader.pasting import read_grid
 
 ROWS = [["a", "alpha", "d", "theta"], ["l1", "0", "0", "q1"], ["l2", "pi/2", "d2", "q2"]]
 SEPARATORS = {"commas": ",", "semicolons": ";", "tabs": "\t", "bars": " | "}

@@ -1,8 +1,7 @@
 """Read tags and entities in a Markdown cell."""
 
 import pytest
-
-from service.grids import read_grid
+from dh_grader.pasting import read_grid
 
 
 @pytest.mark.parametrize(

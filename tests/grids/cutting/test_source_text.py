@@ -1,6 +1,7 @@
 """Find the positions of cells in a pasted text."""
 
-from service.grids import read_grid
+from dh_grader.pasting import read_grid
+
 from tests.grids.writers import FORMATS, POSE
 from tests.together import together
 

@@ -1,8 +1,7 @@
 """Read data frames as programs print them."""
 
 import pytest
-
-from service.grids import GridError, read_grid
+from dh_grader.pasting import GridError, read_grid
 
 
 def cells(text: str) -> list[list[str]]:

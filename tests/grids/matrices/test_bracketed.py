@@ -1,8 +1,7 @@
 """Each line may be one row in round brackets."""
 
 import pytest
-
-from service.grids import GridError, read_grid
+from dh_grader.pasting import GridError, read_grid
 
 ROWS = [["l1", "atan2(0, 1)", "0", "q1"], ["l2", "0", "0", "q2"]]
 

@@ -1,8 +1,7 @@
 """A matrix of Eigen is read row by row, unless other statements may change it."""
 
 import pytest
-
-from service.grids import GridError, read_grid
+from dh_grader.pasting import GridError, read_grid
 
 VALUES = "1, 0, 0,\n     0, cos(q1), -sin(q1),\n     0, sin(q1), cos(q1)"
 ROWS = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos(q1)"]]

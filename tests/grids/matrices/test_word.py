@@ -1,8 +1,7 @@
 """Read Word's one-line matrices: @ separates rows, & separates values."""
 
 import pytest
-
-from service.grids import GridError, read_grid
+from dh_grader.pasting import GridError, read_grid
 
 
 @pytest.mark.parametrize(

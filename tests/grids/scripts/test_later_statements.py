@@ -1,8 +1,7 @@
 """Later statements of a script are left out only if they cannot change its table."""
 
 import pytest
-
-from service.grids import GridError, read_grid, read_robot
+from dh_grader.pasting import GridError, read_grid, read_robot
 
 MATLAB = "DH = [a1 pi/2 0 q1; a2 0 d2 q2];"
 PYTHON = "import numpy as np\nDH = np.array([[a1, pi/2, 0, q1], [a2, 0, d2, q2]])"

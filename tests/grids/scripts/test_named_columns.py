@@ -1,8 +1,7 @@
 """Named lists, objects and data frames are tables if no other statement can change them."""
 
 import pytest
-
-from service.grids import GridError, read_grid, read_robot
+from dh_grader.pasting import GridError, read_grid, read_robot
 
 LISTS = "a = [0 l2]; alpha = [0 pi/2]; d = [0 0]; theta = [q1 q2];"
 ROWS = [["a", "alpha", "d", "theta"], ["0", "0", "0", "q1"], ["l2", "pi/2", "0", "q2"]]

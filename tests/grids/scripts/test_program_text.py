@@ -1,8 +1,7 @@
 """The matrix that one function returns is read."""
 
 import pytest
-
-from service.grids import GridError, read_grid
+from dh_grader.pasting import GridError, read_grid
 
 MATRIX = "[1 0 0; 0 cos(q1) -sin(q1); 0 sin(q1) cos(q1)]"
 ROWS = [["1", "0", "0"], ["0", "cos(q1)", "-sin(q1)"], ["0", "sin(q1)", "cos(q1)"]]

@@ -3,8 +3,7 @@
 from collections.abc import Sequence
 
 import pytest
-
-from service.grids import GridError, read_grid, read_robot
+from dh_grader.pasting import GridError, read_grid, read_robot
 
 DH = "dh = Matrix([[l1, 0, 0, t1], [l2, pi, 0, t2]])"
 MEANT = [["l1", "0", "0", "q1"], ["l2", "pi", "0", "q2"]]

@@ -6,8 +6,8 @@ from random import Random
 from typing import Final
 
 import pytest
+from dh_grader.pasting import GridError, RobotTable, read_robot
 
-from service.grids import GridError, RobotTable, read_robot
 from tests.grids.scripts.drawn_scripts import draw_script
 
 SCRIPTS: Final = tomllib.loads(

@@ -1,9 +1,9 @@
 r"""Bullets, bold type, ``\boxed`` and "T matrix" before a matrix change nothing."""
 
 import pytest
+from dh_grader.grading import FeedbackLevel, Submission, grade
+from dh_grader.pasting import GridError, read_grid, read_grids
 
-from service.grading import FeedbackLevel, Submission, grade
-from service.grids import GridError, read_grid, read_grids
 from tests.shipped import shipped_exercises
 
 ROWS = [["c1", "-s1", "0"], ["s1", "c1", "0"], ["0", "0", "1"]]

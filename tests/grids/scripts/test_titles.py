@@ -1,8 +1,7 @@
 """Remove sentences around a pasted table."""
 
 import pytest
-
-from service.grids import GridError, read_grid
+from dh_grader.pasting import GridError, read_grid
 
 TABLE = "i\ta\talpha\td\ttheta\n1\tl1\t0\t0\tq1\n2\tl2\t0\t0\tq2"
 

@@ -1,8 +1,7 @@
 """Read the table of a robot that a toolbox prints."""
 
 import pytest
-
-from service.grids import GridError, read_robot
+from dh_grader.pasting import GridError, read_robot
 
 HEAD = "| j |     theta |         d |         a |     alpha |    offset |\n"
 ROWS = "|  1|         q1|          0|         a1|     1.5708|     0.5236|\n"

@@ -7,14 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
+from dh_grader.importing import ImportedRobot, ImportOptions, RefusedRobotError, imported_table
+from dh_grader.kinematics import Convention
 
-from service.importing.robot_import import (
-    ImportedRobot,
-    ImportOptions,
-    RefusedRobotError,
-    imported_table,
-)
-from service.kinematics.dh import Convention
 from tests.importing.tables.drawn import COLUMNS, Cell, Drawn, pose, terms
 from tests.importing.tables.styles import Typed
 

@@ -4,8 +4,8 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from dh_grader.importing import ImportedRobot
 
-from service.importing.robot_import import ImportedRobot
 from tests.importing.tables.__main__ import outcomes
 from tests.importing.tables.campaign import faults, greatest_difference, outcome, snapped
 from tests.importing.tables.drawn import Cell, Drawn, pose, random_table, real_table, terms

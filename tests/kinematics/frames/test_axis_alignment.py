@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
+from dh_grader.kinematics import Matrices, rot_x, rot_z
+from dh_grader.kinematics.frame_choice import align_axes
 
-from service.kinematics.frames.axis_alignment import align_axes
-from service.kinematics.transforms import Matrices, rot_x, rot_z
 from tests.kinematics.constructions import trans
 
 SAMPLES = 3

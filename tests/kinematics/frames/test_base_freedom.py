@@ -1,10 +1,9 @@
 """Test how each joint axis restricts the choice of a base frame."""
 
 import numpy as np
+from dh_grader.kinematics import Matrices, rot_x
+from dh_grader.kinematics.frame_choice import BaseFreedom, TargetKind
 
-from service.kinematics.frames.base_freedom import BaseFreedom
-from service.kinematics.frames.candidate_rows import TargetKind
-from service.kinematics.transforms import Matrices, rot_x
 from tests.kinematics.constructions import trans
 
 SAMPLES = 2

@@ -2,17 +2,24 @@
 
 import numpy as np
 import pytest
-
-from service.kinematics.dh import standard_link
-from service.kinematics.dh_row import is_unreachable
-from service.kinematics.frames.candidate_rows import (
+from dh_grader.kinematics import (
+    Matrices,
+    Numbers,
+    inverse,
+    is_unreachable,
+    rot_x,
+    rot_y,
+    rot_z,
+    standard_link,
+)
+from dh_grader.kinematics.frame_choice import (
     AxisRelation,
     TargetKind,
     axis_relations,
     candidate_rows,
     written_or,
 )
-from service.kinematics.transforms import Matrices, Numbers, inverse, rot_x, rot_y, rot_z
+
 from tests.kinematics.constructions import trans
 
 SAMPLES = 4

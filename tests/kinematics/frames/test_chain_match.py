@@ -6,17 +6,16 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-
-from service.kinematics.dh import standard_link
-from service.kinematics.frames.candidate_rows import TargetKind
-from service.kinematics.frames.chain_match import (
+from dh_grader.kinematics import Numbers, rot_x, standard_link
+from dh_grader.kinematics.frame_choice import (
     RowConstants,
     Target,
+    TargetKind,
     joint_signs_of,
     match_as_written,
     match_tables,
 )
-from service.kinematics.transforms import Numbers, rot_x
+
 from tests.kinematics.constructions import trans
 
 Rows = Sequence[tuple[float, float, float, float]]

@@ -4,18 +4,18 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-
-from service.kinematics.dh import standard_link
-from service.kinematics.frames.candidate_rows import TargetKind
-from service.kinematics.frames.chain_match import RowConstants, Target
-from service.kinematics.frames.frame_choice import (
+from dh_grader.kinematics import Numbers, identity, rot_x, standard_link
+from dh_grader.kinematics.frame_choice import (
     MOVED,
     TURNED_OVER,
     WRONG_CELL,
+    RowConstants,
+    Target,
+    TargetKind,
     departure,
     nearest_table,
 )
-from service.kinematics.transforms import Numbers, identity, rot_x
+
 from tests.kinematics.constructions import trans
 
 SAMPLES = 3

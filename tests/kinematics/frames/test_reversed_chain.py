@@ -3,14 +3,17 @@
 from collections.abc import Sequence
 
 import numpy as np
-
-from service.kinematics.chain import compound, z_links
-from service.kinematics.dh import standard_link
-from service.kinematics.frames.candidate_rows import TargetKind
-from service.kinematics.frames.chain_match import RowConstants, Target, match_tables
-from service.kinematics.frames.frame_choice import nearest_table
-from service.kinematics.frames.reversed_chain import reversed_cells, reversed_rows, reversed_targets
-from service.kinematics.transforms import Numbers, inverse
+from dh_grader.kinematics import Numbers, compound, inverse, standard_link, z_links
+from dh_grader.kinematics.frame_choice import (
+    RowConstants,
+    Target,
+    TargetKind,
+    match_tables,
+    nearest_table,
+    reversed_cells,
+    reversed_rows,
+    reversed_targets,
+)
 
 Rows = Sequence[tuple[float, float, float, float]]
 

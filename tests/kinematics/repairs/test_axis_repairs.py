@@ -2,12 +2,9 @@
 
 import numpy as np
 import pytest
+from dh_grader.kinematics import Convention, Factors, Numbers, Table, factors_of, inverse, pose
+from dh_grader.kinematics.frame_choice_repairs import repairs_by_axes, reversed_factors
 
-from service.kinematics.chain import Table, pose
-from service.kinematics.dh import Convention
-from service.kinematics.factors import Factors, factors_of
-from service.kinematics.repairs.axis_repairs import repairs_by_axes, reversed_factors
-from service.kinematics.transforms import Numbers, inverse
 from tests.together import together
 
 SAMPLES = 3

@@ -2,15 +2,13 @@
 
 import numpy as np
 import pytest
-
-from service.kinematics.chain import Table, pose
-from service.kinematics.dh import Convention
-from service.kinematics.factors import CellIndex, factors_of
-from service.kinematics.repairs.cell_repairs import (
+from dh_grader.kinematics import CellIndex, Convention, Table, factors_of, pose
+from dh_grader.kinematics.frame_choice_repairs import (
     one_factor_repairs,
     repaired_values,
     two_factor_repairs,
 )
+
 from tests.together import together
 
 SAMPLES = 4

@@ -10,21 +10,19 @@ from typing import Any
 import httpx
 import jwt
 import pytest
+from dh_grader.access import Scope, new_key_text
+from dh_grader.access.key_ring import add_key
+from dh_grader.catalogue import Exercise
+from dh_grader.lti import handed_files as queue
+from dh_grader.lti.fetching import published_keys
+from dh_grader.lti.handed_files import FileReporting, missing_counts, missing_reports
+from dh_grader.lti.outbox import BackgroundSending
+from dh_grader.lti.registrations import registration, remove_registration
+from dh_grader.store.results import forget
+from dh_grader.store.tables import contexts, handed_files
+from dh_grader.translations import ENGLISH
 from sqlalchemy import select
 
-from service.access.caller import Scope
-from service.access.key_table import add_key
-from service.access.key_text import new_key_text
-from service.attempts.storage.lti_tables import contexts, handed_files
-from service.attempts.tutoring import forget
-from service.catalogue import Exercise
-from service.lti.handed_files import queue
-from service.lti.handed_files.file_reporting import FileReporting
-from service.lti.handed_files.overview import missing_counts, missing_reports
-from service.lti.own_keys import published_keys
-from service.lti.registrations import registration, remove_registration
-from service.lti.scores.sending import BackgroundSending
-from service.translations import ENGLISH
 from tests.access.kept_services import SECRET
 from tests.lti.conftest import Tool, hidden
 from tests.lti.handed_files.file_store import LTI, FileStore
@@ -209,7 +207,7 @@ def test_hostile_names_and_contents_do_no_harm(course: Course) -> None:
     names = (
         "../../etc/passwd",
         "/etc",
-        "service",
+        "dh_grader",
         "..",
         "a\0b.csv",
         "x" * 3000,

@@ -5,11 +5,10 @@ from dataclasses import dataclass
 from datetime import UTC, datetime
 
 import pytest
+from dh_grader.lti.roster import ask_for_roster, enrol_members, read_roster
+from dh_grader.store.tables import course_learners, registrations
 from sqlalchemy import select, update
 
-from service.attempts.storage.lti_tables import registrations
-from service.attempts.storage.tables import course_learners
-from service.lti.roster.enrolment import ask_for_roster, enrol_members, read_roster
 from tests.access.kept_services import SECRET
 from tests.lti.conftest import Tool, token_of
 from tests.lti.library.services import Configuration, Launch, OtherPlatform, Preflight

@@ -23,10 +23,10 @@ from pathlib import Path
 from typing import Any, Final
 
 import httpx
+from dh_grader.lti.registrations import NewRegistration, add_registration
+from dh_grader.store.database import in_transaction, open_database
 from rich.console import Console
 
-from service.attempts.storage.database import in_transaction, open_database
-from service.lti.registrations import NewRegistration, add_registration
 from tests.access.kept_services import SECRET_TEXT
 from tests.attempts.databases import KINDS
 from tests.guards import ANSWER

@@ -7,13 +7,13 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
+from dh_grader.lti.fetching import published_keys
+from dh_grader.lti.launch import pseudonym
+from dh_grader.lti.outbox import ScoreSender
+from dh_grader.store import tables
+from dh_grader.store.results import everything_of
 from sqlalchemy import Row, select
 
-from service.attempts.learner_data import everything_of
-from service.attempts.storage import lti_tables as tables
-from service.lti.linking import pseudonym
-from service.lti.own_keys import published_keys
-from service.lti.scores.sender import ScoreSender
 from tests.access.kept_services import SECRET
 from tests.lti.conftest import Tool, token_of
 from tests.lti.gradebook import Gradebook
@@ -106,9 +106,8 @@ class Journey:
         return found
 
     def tutor(self) -> dict[str, str]:
-        from service.access.caller import Scope
-        from service.access.key_table import add_key
-        from service.access.key_text import new_key_text
+        from dh_grader.access import Scope, new_key_text
+        from dh_grader.access.key_ring import add_key
 
         if "tutor" not in self.tokens:
             text, now = new_key_text(), datetime.now(UTC)

@@ -14,9 +14,9 @@ import time
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from service.access.keys import Secret
-from service.attempts.storage.database import open_database
-from service.lti.scores.sender import ScoreSender
+from dh_grader.access import Secret
+from dh_grader.lti.outbox import ScoreSender
+from dh_grader.store.database import open_database
 
 
 def main(url: str, file: str, secret: str) -> None:

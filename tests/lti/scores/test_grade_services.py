@@ -6,10 +6,10 @@ from functools import partial
 from typing import Any
 
 import pytest
+from dh_grader.lti.grade_services import scores_address
+from dh_grader.store import tables
 from sqlalchemy import Connection, update
 
-from service.attempts.storage import lti_tables as tables
-from service.lti.scores.grade_services import scores_address
 from tests.lti.gradebook import AGS, Item
 from tests.lti.scores.conftest import Journey
 

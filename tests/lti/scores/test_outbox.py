@@ -4,11 +4,10 @@ from collections.abc import Callable
 from datetime import UTC, datetime
 
 import pytest
+from dh_grader.store.database import Priority, queue_scores
+from dh_grader.store.tables import attempts, learners
 from sqlalchemy import insert, select
 
-from service.attempts.storage.lti_tables import learners
-from service.attempts.storage.score_queue import Priority, queue_scores
-from service.attempts.storage.tables import attempts
 from tests.lti.scores.conftest import Journey
 
 # 20 scores in ten seconds.

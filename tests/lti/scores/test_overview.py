@@ -1,10 +1,10 @@
 """Test the tutors' list of sent scores."""
 
 import pytest
+from dh_grader.lti.fetching import FetchError
+from dh_grader.lti.grade_services import LaterError, told
+from dh_grader.translations import ENGLISH, language_named, say
 
-from service.lti.fetching import FetchError
-from service.lti.scores.score_problems import LaterError, told
-from service.translations import ENGLISH, language_named, say
 from tests.cli.conftest import Run
 from tests.cli.conftest import run as run
 from tests.lti.scores.conftest import Journey

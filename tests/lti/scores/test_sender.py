@@ -4,9 +4,9 @@ import json
 from datetime import UTC, datetime, timedelta
 
 import pytest
+from dh_grader.store.tables import attempts
 from sqlalchemy import select, update
 
-from service.attempts.storage.tables import attempts
 from tests.lti.gradebook import AGS
 from tests.lti.platform import LTI
 from tests.lti.scores.conftest import RIGHT, WRONG, Journey

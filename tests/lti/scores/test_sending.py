@@ -10,16 +10,15 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
+from dh_grader.access import OPEN_HERE, Secret
+from dh_grader.access.key_ring import KeyRing
+from dh_grader.api.application import application
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise
+from dh_grader.lti.outbox import BackgroundSending
+from dh_grader.store.attempt_store import AttemptStore
+from dh_grader.store.database import QUEUED
 
-from service.access.key_ring import KeyRing
-from service.access.keys import Secret
-from service.access.open_access import OPEN_HERE
-from service.api.application import application
-from service.api.permissions.access import Access
-from service.attempts.storage.score_queue import QUEUED
-from service.attempts.store import AttemptStore
-from service.catalogue import Exercise
-from service.lti.scores.sending import BackgroundSending
 from tests.access.kept_services import SECRET_TEXT
 from tests.attempts.databases import new_file
 from tests.guards import ANSWER
@@ -139,7 +138,7 @@ def test_the_service_sends_what_it_has_committed(
     journey: Journey, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     # A commit wakes the sending thread, long before its next regular look at the queue.
-    monkeypatch.setattr("service.lti.scores.sending._LOOK", 3600)
+    monkeypatch.setattr("dh_grader.lti.outbox._LOOK", 3600)
     # A closed one takes no note away.
     closed = BackgroundSending(journey.tool.store.engine, journey.sender, QUEUED)
     closed.start()

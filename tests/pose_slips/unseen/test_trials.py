@@ -4,9 +4,9 @@ from collections.abc import Callable, Sequence
 from functools import cache
 
 import pytest
+from dh_grader.grading import FeedbackLevel, Submission, Verdict, grade
+from dh_grader.grading.report import messages_of
 
-from service.grading import FeedbackLevel, Submission, Verdict, grade
-from service.grading.report import messages_of
 from tests.pose_slips.unseen.arms import Arm, arms
 from tests.pose_slips.unseen.slips import CELL, CLASSES, PRODUCT, slips_of
 from tests.pose_slips.unseen.trials import (

@@ -9,10 +9,10 @@ from random import Random
 from typing import Any
 
 import numpy as np
+from dh_grader.catalogue import Exercise, load_exercise
+from dh_grader.grading import Severity, Submission, grade
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise, load_exercise
-from service.grading import Severity, Submission, grade
-from service.grading.report import messages_of
 from tests.pose_slips.unseen.algebra import Matrix, link, numeric_link, product, text
 from tests.pose_slips.unseen.arms import Arm
 from tests.pose_slips.unseen.slips import (

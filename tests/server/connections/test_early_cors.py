@@ -1,8 +1,7 @@
 """Web pages of allowed origins can read the responses that refuse their requests."""
 
 import pytest
-
-from service.server.connections.early_cors import cors_headers, origin_in
+from dh_grader.server.connections import cors_headers, origin_in
 
 COURSE, OTHER = "https://course.example.edu", "https://other.example.edu"
 

@@ -3,12 +3,10 @@
 from http import HTTPStatus
 
 import pytest
+from dh_grader.api.http import ProblemError
+from dh_grader.server.connections import MAX_FRAME, MAX_HEADERS, MAX_URL, Framing
 from hypothesis import given
 from hypothesis import strategies as st
-
-from service.api.http.problems import ProblemError
-from service.server.connections.framing import Framing
-from service.server.limits import MAX_FRAME, MAX_HEADERS, MAX_URL
 
 GET = b"GET /healthz HTTP/1.1\r\nHost: x\r\n\r\n"
 SIZED = b"POST /v1/preview HTTP/1.1\r\nContent-Length: 5\r\n\r\n"

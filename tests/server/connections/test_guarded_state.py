@@ -1,6 +1,5 @@
-from service.server.connections.guarded_state import GuardedState
-from service.server.refusals import too_busy
-from service.server.watching.metrics import Metrics
+from dh_grader.server.connections import GuardedState, too_busy
+from dh_grader.server.metrics import Metrics
 
 
 def test_a_refusal_is_counted_and_a_page_may_read_it() -> None:

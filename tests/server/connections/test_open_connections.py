@@ -6,14 +6,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 
 import pytest
-
-from service.server.connections import open_connections as module
-from service.server.connections.open_connections import (
-    ConnectionLimits,
-    OpenConnections,
-    allowed_here,
-)
-from service.server.limits import RESERVE
+from dh_grader.server import connections as module
+from dh_grader.server.connections import RESERVE, ConnectionLimits, OpenConnections, allowed_here
 
 
 @dataclass(eq=False)

@@ -11,9 +11,9 @@ from contextlib import ExitStack
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import shipped_folder
+from dh_grader.server.connections import MAX_CONNECTIONS
 
-from service.catalogue import shipped_folder
-from service.server.limits import MAX_CONNECTIONS
 from tests.attack.floods import many_costly
 from tests.guards import ANSWER
 from tests.server.raw import HEALTH, Service, answers, preview, received, service, until, workers

@@ -9,14 +9,14 @@ from datetime import UTC, datetime, timedelta
 from typing import Any
 
 import pytest
+from dh_grader.api import http as turns
+from dh_grader.api.http import ARRIVED, CLIENT, COURSE_SITE, ONE_STUDENT, give_way
+from dh_grader.server import turns as admission
+from dh_grader.server.turns import OF_ALL, OF_ONE, FairAdmission, Metered
+from dh_grader.slices import SLICE
+from dh_grader.submissions.bodies import MAX_BODY_SIZE
 from starlette.requests import ClientDisconnect, Request
 
-from service.api import turns
-from service.api.turns import ARRIVED, CLIENT, COURSE_SITE, ONE_STUDENT, give_way
-from service.server.turns import admission
-from service.server.turns.admission import OF_ALL, OF_ONE, FairAdmission, Metered
-from service.submissions.strict_json import MAX_BODY_SIZE
-from service.time_slices import SLICE
 from tests.server.simulated import simulate_speed
 
 Messages = list[dict[str, Any]]

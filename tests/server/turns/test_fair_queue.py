@@ -4,9 +4,8 @@ import math
 from collections import Counter
 
 import pytest
-
-from service.api.turns import Client
-from service.server.turns.fair_queue import ALLOWANCE, CREDIT, FIRST, FairQueue, Ticket
+from dh_grader.api.http import Client
+from dh_grader.server.turns import ALLOWANCE, CREDIT, FIRST, FairQueue, Ticket
 
 SHARES = 8.0
 STEP = 0.004

@@ -3,9 +3,8 @@
 from collections.abc import Iterator
 
 import pytest
-
-from service.server.turns import speed
-from service.server.turns.speed import Speed
+from dh_grader.server import turns as speed
+from dh_grader.server.turns import Speed
 
 
 @pytest.fixture

@@ -10,11 +10,11 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.server import installed_app
+from dh_grader.settings import Settings
+from dh_grader.submissions.bodies import MAX_BODY_SIZE
 from prometheus_client.parser import text_string_to_metric_families
 
-from service.server.installed import installed_app
-from service.settings import Settings
-from service.submissions.strict_json import MAX_BODY_SIZE
 from tests.attempts.databases import new_file
 from tests.attempts.recorded import NO_TWIST, RIGHT
 from tests.server.raw import Service, service, until, workers

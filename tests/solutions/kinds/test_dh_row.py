@@ -3,9 +3,8 @@
 from collections.abc import Callable, Mapping
 
 import pytest
-
-from service.catalogue import Exercise
-from service.solutions import solve
+from dh_grader.catalogue import Exercise
+from dh_grader.solutions import solve
 
 # The link transform of row (l, −90°, h, φ) in each convention, multiplied by hand.
 LINKS = {

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
+from dh_grader.grading import Submission, grade
 
-from service.grading import Submission, grade
 from tests.shipped import shipped_exercises
 
 EXERCISES: Final = Path(__file__).parents[3] / "exercises"

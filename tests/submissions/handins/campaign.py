@@ -184,7 +184,7 @@ def _written(school_class: SchoolClass, students: Sequence[Student], folder: Pat
 
 def _command(path: Path, school_class: SchoolClass, output_format: str) -> bytes:
     command = [
-        sys.executable, "-m", "service", "grade", str(path), "--exercise", school_class.exercise,
+        sys.executable, "-m", "dh_grader", "grade", str(path), "--exercise", school_class.exercise,
         "--format", output_format, "--jobs", "1",
     ]  # fmt: skip
     if school_class.part is not None:

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
+from dh_grader.catalogue import Exercise
 
-from service.catalogue import Exercise
 from tests.shipped import shipped_exercises
 from tests.submissions.handins.answers import COLUMNS, Answer, Cells
 

@@ -5,10 +5,9 @@ import sys
 import time
 from collections import Counter
 
-from service.kinematics.dh import Convention
-from service.variants.robots.dealing import asks_enough
-from service.variants.robots.practice_id import PracticeId
-from service.variants.robots.robot_exercise import robot_exercise
+from dh_grader.kinematics import Convention
+from dh_grader.variants.robots import PracticeId, asks_enough, robot_exercise
+
 from tests.variants.robots.checks import (
     form,
     is_the_robot_of_its_statement,

@@ -6,15 +6,14 @@ from itertools import combinations
 from math import cos, sin, sqrt
 
 import numpy as np
+from dh_grader.authoring import lazy_shares
+from dh_grader.catalogue import Exercise
+from dh_grader.figures import exercise_figure
+from dh_grader.grading.grade import Submission, grade
+from dh_grader.kinematics import Convention
+from dh_grader.solutions import solve
+from dh_grader.variants.robots import PracticeId, robot_exercise
 
-from service.authoring.lazy import lazy_shares
-from service.catalogue import Exercise
-from service.figures.figure import exercise_figure
-from service.grading.grade import Submission, grade
-from service.kinematics.dh import Convention
-from service.solutions import solve
-from service.variants.robots.practice_id import PracticeId
-from service.variants.robots.robot_exercise import robot_exercise
 from tests.importing.statement_reader import JOINT, TOOL, point, pose, way
 
 SVG = "{http://www.w3.org/2000/svg}"

@@ -1,6 +1,6 @@
 from hashlib import sha256
 
-from service.variants.robots.draws import Draws
+from dh_grader.variants.robot_geometry import Draws
 
 
 def test_draws_are_the_words_of_a_hash() -> None:

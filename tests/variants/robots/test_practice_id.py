@@ -1,7 +1,6 @@
 import pytest
-
-from service.kinematics.dh import Convention
-from service.variants.robots.practice_id import ALL_NUMBERS, PracticeId, practice_id
+from dh_grader.kinematics import Convention
+from dh_grader.variants.robots import ALL_NUMBERS, PracticeId, practice_id
 
 
 @pytest.mark.parametrize("number", [0, 35, 36, 1295, 10**9, ALL_NUMBERS - 1])

@@ -11,11 +11,11 @@ from dataclasses import replace
 from itertools import pairwise
 
 import pytest
+from dh_grader.catalogue import Exercise, in_language
+from dh_grader.kinematics import Convention
+from dh_grader.translations import ENGLISH, LANGUAGES
+from dh_grader.variants.robots import generated
 
-from service.catalogue import Exercise, in_language
-from service.kinematics.dh import Convention
-from service.translations import ENGLISH, LANGUAGES
-from service.variants.robots.generate import generated
 from tests.translations.pseudo import PSEUDO
 from tests.variants.robots.checks import (
     drawn,

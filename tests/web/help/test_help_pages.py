@@ -8,15 +8,14 @@ from functools import cache
 
 import httpx
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.http import LANGUAGE_COOKIE
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import ExpressionError, read
+from dh_grader.translations import ENGLISH, LANGUAGES, Language
+from dh_grader.web import web_routes
+from dh_grader.web.pages import TOPICS, help_page, load_assets
 
-from service.api.application import application
-from service.api.http.language import LANGUAGE_COOKIE
-from service.catalogue import Exercise
-from service.expressions import ExpressionError, read
-from service.translations import ENGLISH, LANGUAGES, Language
-from service.web import web_routes
-from service.web.assets import load_assets
-from service.web.help.help_pages import TOPICS, help_page
 from tests.expressions.corpus_files import ROBOT
 from tests.grading.support.submitting import full_marks, handed_in, part
 

@@ -11,11 +11,9 @@ from http import HTTPStatus
 from pathlib import Path
 
 import pytest
-
-from service.api.http.problems import ProblemError
-from service.catalogue import shipped_folder
-from service.web.tutor.checking import Checking
-from service.web.tutor.exercise_check import CheckRequest
+from dh_grader.api.http import ProblemError
+from dh_grader.catalogue import shipped_folder
+from dh_grader.web.tutor_checks import Checking, CheckRequest
 
 SCARA = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
 POSE = '\n[[parts]]\nid = "p{}"\nkind = "transform"\ntitle = "Pose"\n'
@@ -26,8 +24,8 @@ COSTLY = (shipped_folder() / "baxter-left-arm.toml").read_text(encoding="utf-8")
 QUICK = CheckRequest(id="scara", text="title = 1")
 STARTS_A_CHECK = """
 import sys
-from service.web.tutor.checking import Checking
-from service.web.tutor.exercise_check import CheckRequest
+from dh_grader.web.tutor_checks import Checking
+from dh_grader.web.tutor_checks import CheckRequest
 checking = Checking(600)
 checking.checked(CheckRequest(id="a", text="title = 1"))
 print(checking._process.pid, flush=True)

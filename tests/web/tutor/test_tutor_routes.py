@@ -14,16 +14,15 @@ from typing import Any
 import httpx
 import openpyxl
 import pytest
+from dh_grader.api.application import application
+from dh_grader.api.http import WAITING
+from dh_grader.api.permissions import Access
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.catalogue.load import Drafts
+from dh_grader.cli.grade import grade_commands as commands
+from dh_grader.web import Tutoring, web_routes
+from dh_grader.web.tutor_checks import MAX_UPLOAD
 from typer.testing import CliRunner
-
-from service.api.application import application
-from service.api.http.bounded_work import WAITING
-from service.api.permissions.access import Access
-from service.catalogue import Exercise, shipped_folder
-from service.catalogue.drafts import Drafts
-from service.cli.commands.grade import commands
-from service.web import Tutoring, web_routes
-from service.web.tutor.class_report import MAX_UPLOAD
 
 SCARA = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
 ROUTES = [

@@ -1,8 +1,8 @@
 """Test the notes on ambiguous formulas."""
 
 import pytest
+from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, read
 
-from service.expressions import ExpressionError, Symbol, Vocabulary, read
 from tests.together import together
 
 CASES = [

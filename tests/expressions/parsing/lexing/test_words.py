@@ -1,8 +1,7 @@
 """Read words of letters and digits: names, functions and abbreviations."""
 
 import numpy as np
-
-from service.expressions import Symbol, Vocabulary, read
+from dh_grader.expressions import Symbol, Vocabulary, read
 
 
 def test_a_declared_symbol_comes_before_the_shorthand() -> None:

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { bareRadians, inRadians } from "../../../../service/web/static/student/reading/bare_radians.js";
+import { bareRadians, inRadians } from "../../../../service/dh_grader/web/static/student/reading/bare_radians.js";
 
 test("a plain number of 7 or more in an angle cell may be meant in degrees", () => {
   const found = ["90", "-90", "−180", " 22.5 ", "7"].map((text) => bareRadians(text, "angle", "radians"));

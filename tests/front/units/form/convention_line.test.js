@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { opened } from "../../../../service/web/static/student/convention_line.js";
+import { opened } from "../../../../service/dh_grader/web/static/student/convention_line.js";
 
 test("the convention before is that of the exercise before, also after a reload", () => {
   const first = opened(null, "scara", "standard");

@@ -1,7 +1,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { fragmentOf, placeIn } from "../../../../service/web/static/learner/link_key.js";
-import { momentIn } from "../../../../service/web/static/student/handin/dates.js";
+import { fragmentOf, placeIn } from "../../../../service/dh_grader/web/static/learner/link_key.js";
+import { momentIn } from "../../../../service/dh_grader/web/static/student/handin/dates.js";
 import {
   attemptName,
   attemptPoints,
@@ -11,8 +11,8 @@ import {
   pointsInWords,
   refusalInWords,
   whyClosed,
-} from "../../../../service/web/static/student/handin/own_state.js";
-import { newKey, pauseAfter } from "../../../../service/web/static/student/handin/pending.js";
+} from "../../../../service/dh_grader/web/static/student/handin/own_state.js";
+import { newKey, pauseAfter } from "../../../../service/dh_grader/web/static/student/handin/pending.js";
 
 const COURSE = { id: "robots", zone: "Europe/Berlin" };
 const DUE = "2026-10-15T21:59:00Z";

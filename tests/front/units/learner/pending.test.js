@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
-import { PendingHandIn } from "../../../../service/web/static/student/handin/pending.js";
+import { PendingHandIn } from "../../../../service/dh_grader/web/static/student/handin/pending.js";
 
 const pending = (key) => ({ key, body: { exercise: "scara", answers: { table: key } } });
 

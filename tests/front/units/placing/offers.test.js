@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { offersOf } from "../../../../service/web/static/robot/placing/offers.js";
+import { offersOf } from "../../../../service/dh_grader/web/static/robot/placing/offers.js";
 
 // Joint 1 is along z, joint 2 is along y at x = a. The tool is at x = a + b, in a direction that depends on b.
 const linesAt = (a, b) => [

@@ -5,7 +5,7 @@ import {
   sumOf,
   sumText,
   xDirections,
-} from "../../../../service/web/static/robot/placing/place_choices.js";
+} from "../../../../service/dh_grader/web/static/robot/placing/place_choices.js";
 
 const isNear = (found, expected) => Math.hypot(...found.map((value, i) => value - expected[i])) < 1e-9;
 

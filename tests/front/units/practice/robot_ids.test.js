@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { inConvention, robotOf, slipIn } from "../../../../service/web/static/student/practice/robot_ids.js";
+import { inConvention, robotOf, slipIn } from "../../../../service/dh_grader/web/static/student/practice/robot_ids.js";
 
 test("the id of a robot has its level and its convention", () => {
   assert.deepEqual(robotOf("practice-2-modified~k3f9"), { level: 2, convention: "modified" });

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { beforeEach, test } from "node:test";
 
-import { favoured, noteDealt, noteGraded } from "../../../../service/web/static/student/practice/spaced.js";
+import { favoured, noteDealt, noteGraded } from "../../../../service/dh_grader/web/static/student/practice/spaced.js";
 
 const BASE = "http://service/";
 

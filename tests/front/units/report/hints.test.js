@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { hasHints, verdictAt } from "../../../../service/web/static/student/hints/hints.js";
+import { hasHints, verdictAt } from "../../../../service/dh_grader/web/static/student/hints/hints.js";
 
 const error = { code: "sign", severity: /** @type {const} */ ("error"), message: "" };
 

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { lostLines } from "../../../../service/web/static/student/report/lost_points.js";
+import { lostLines } from "../../../../service/dh_grader/web/static/student/report/lost_points.js";
 
 const lost = (code, points, message, row) => ({ code, points, message, row });
 

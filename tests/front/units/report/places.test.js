@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import test from "node:test";
-import { matrixOf, placesInWords } from "../../../../service/web/static/student/report/places.js";
+import { matrixOf, placesInWords } from "../../../../service/dh_grader/web/static/student/report/places.js";
 
 const CELLS = ["1", "2", "3", "4"];
 const at = (row, cells = []) => cells.length ? cells.map((cell) => ({ row, cell })) : [{ row }];

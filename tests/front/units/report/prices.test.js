@@ -3,8 +3,8 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 
-import { attemptPoints, hintsInWords } from "../../../../service/web/static/student/handin/own_state.js";
-import { priceInWords, pricesOf, tryFirst } from "../../../../service/web/static/student/hints/prices.js";
+import { attemptPoints, hintsInWords } from "../../../../service/dh_grader/web/static/student/handin/own_state.js";
+import { priceInWords, pricesOf, tryFirst } from "../../../../service/dh_grader/web/static/student/hints/prices.js";
 
 const TOPIC = { part: "table", code: "sign", row: "2", cell: "alpha" };
 const taken = [{ attempt: "x", at: "", price: 0.05, step: 2, ...TOPIC }];

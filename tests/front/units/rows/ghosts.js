@@ -1,7 +1,7 @@
 // Reads rows from the standard input, as JSON: each row has a frame, numbers, a convention, and places between 0
 // and 4. Writes the ghost frame at each place.
 
-import { frameAt, movesOf } from "../../../../service/web/static/robot/rows/row_moves.js";
+import { frameAt, movesOf } from "../../../../service/dh_grader/web/static/robot/rows/row_moves.js";
 
 const rows = JSON.parse(await new Response(Deno.stdin.readable).text());
 const ghosts = rows.map(({ frame, values, convention, places }) => {

@@ -1,9 +1,9 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { axisGap, jointAfter } from "../../../../service/web/static/robot/rows/axis_gap.js";
-import { Playback } from "../../../../service/web/static/robot/rows/playback.js";
-import { movesOf } from "../../../../service/web/static/robot/rows/row_moves.js";
-import { axisText, captionText } from "../../../../service/web/static/robot/rows/row_words.js";
+import { axisGap, jointAfter } from "../../../../service/dh_grader/web/static/robot/rows/axis_gap.js";
+import { Playback } from "../../../../service/dh_grader/web/static/robot/rows/playback.js";
+import { movesOf } from "../../../../service/dh_grader/web/static/robot/rows/row_moves.js";
+import { axisText, captionText } from "../../../../service/dh_grader/web/static/robot/rows/row_words.js";
 
 // z along the base's z, at (1, 2, 3).
 const FRAME = [[1, 0, 0, 1], [0, 1, 0, 2], [0, 0, 1, 3], [0, 0, 0, 1]];

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { language, placed, worded, wordedFor } from "../../../../service/web/static/shared/words/words.js";
+import { language, placed, worded, wordedFor } from "../../../../service/dh_grader/web/static/shared/words/words.js";
 
 test("without a dictionary, everything is English", () => {
   assert.equal(language, "en");

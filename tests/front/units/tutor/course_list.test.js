@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { pieces, textOf } from "../../../../service/web/static/tutor/courses/course_forms.js";
+import { pieces, textOf } from "../../../../service/dh_grader/web/static/tutor/courses/course_forms.js";
 
 /** @param {number[]} bytes */
 const read = (...bytes) => textOf(new Uint8Array(bytes).buffer);

@@ -3,7 +3,7 @@
 import assert from "node:assert/strict";
 import test from "node:test";
 
-import { doneBy, faultsIn } from "../../../../service/web/static/tutor/courses/course_words.js";
+import { doneBy, faultsIn } from "../../../../service/dh_grader/web/static/tutor/courses/course_words.js";
 
 const NOW = Date.parse("2026-10-10T12:00:00Z");
 const [PAST, LATER] = ["2026-10-10T13:59:59+02:00", "2026-10-10T14:00:01+02:00"];

@@ -1,6 +1,6 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
-import { inWords } from "../../../../service/web/static/tutor/courses/deletion.js";
+import { inWords } from "../../../../service/dh_grader/web/static/tutor/courses/deletion.js";
 
 const nothing = { deleted: false, assignments: 0, learners: 0, extensions: 0, keys: 0, attempts: 0 };
 

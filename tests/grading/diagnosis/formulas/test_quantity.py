@@ -1,9 +1,8 @@
 """Recognise whether a formula is a length, an angle or a number."""
 
 import pytest
-
-from service.expressions import Symbol, Vocabulary, joint_variable, read
-from service.grading.diagnosis.formulas.quantity import quantity_of
+from dh_grader.expressions import Symbol, Vocabulary, joint_variable, read
+from dh_grader.grading.diagnosis.formulas import quantity_of
 
 WORDS = Vocabulary([joint_variable(1), joint_variable(2), Symbol("l1", "length")])
 

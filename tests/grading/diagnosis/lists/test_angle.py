@@ -1,13 +1,13 @@
 """Test the misconceptions about a single angle."""
 
 import numpy as np
+from dh_grader.expressions import Symbol, Vocabulary, read
+from dh_grader.grading.diagnosis import lists as angle
+from dh_grader.grading.diagnosis.lists import diagnose_angle
+from dh_grader.grading.misconception import WrongValue, undefined
+from dh_grader.grading.numbers import SAMPLES, Samples
+from dh_grader.grading.report import Correction
 
-from service.expressions import Symbol, Vocabulary, read
-from service.grading.diagnosis.lists import angle
-from service.grading.diagnosis.lists.angle import diagnose_angle
-from service.grading.diagnosis.wrong_value import WrongValue, undefined
-from service.grading.numerics.samples import SAMPLES, Samples
-from service.grading.report import Correction
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(8)

@@ -5,15 +5,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import Symbol, Vocabulary, read
+from dh_grader.grading import FeedbackLevel
+from dh_grader.grading.diagnosis import lists as angle_sum
+from dh_grader.grading.diagnosis.lists import WrongSum, diagnose_angle
+from dh_grader.grading.misconception import WrongValue
+from dh_grader.grading.numbers import SAMPLES, Samples
 
-from service.catalogue import Exercise
-from service.expressions import Symbol, Vocabulary, read
-from service.grading import FeedbackLevel
-from service.grading.diagnosis.lists import angle_sum
-from service.grading.diagnosis.lists.angle import diagnose_angle
-from service.grading.diagnosis.lists.angle_sum import WrongSum
-from service.grading.diagnosis.wrong_value import WrongValue
-from service.grading.numerics.samples import SAMPLES, Samples
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.support.exercise_texts import HEAD, Make, all_codes
 from tests.grading.support.submitting import handed_in, part

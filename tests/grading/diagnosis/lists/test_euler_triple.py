@@ -4,12 +4,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.grading.diagnosis import lists as euler_triple
+from dh_grader.grading.diagnosis.lists import WrongTriple, explain_triple
+from dh_grader.grading.numbers import SAMPLES
+from dh_grader.kinematics import Numbers
 from scipy.spatial.transform import Rotation
 
-from service.grading.diagnosis.lists import euler_triple
-from service.grading.diagnosis.lists.euler_triple import WrongTriple, explain_triple
-from service.grading.numerics.samples import SAMPLES
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 Q1, Q2 = np.random.default_rng(8).uniform(-3, 3, (2, SAMPLES))

@@ -1,14 +1,13 @@
 """Test the misconceptions about the coordinates of a point."""
 
 import numpy as np
+from dh_grader.grading.diagnosis import lists as position
+from dh_grader.grading.diagnosis.lists import WrongPosition
+from dh_grader.grading.diagnosis.motions import Chain
+from dh_grader.grading.misconception import diagnosed
+from dh_grader.grading.numbers import SAMPLES
+from dh_grader.kinematics import Convention, Numbers
 
-from service.grading.diagnosis.lists import position
-from service.grading.diagnosis.lists.position import WrongPosition
-from service.grading.diagnosis.motions.link_products import Chain
-from service.grading.misconception import diagnosed
-from service.grading.numerics.samples import SAMPLES
-from service.kinematics.dh import Convention
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(11)

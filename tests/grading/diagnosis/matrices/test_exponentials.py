@@ -3,12 +3,12 @@
 from functools import reduce
 
 import numpy as np
+from dh_grader.grading.diagnosis import products as exponentials
+from dh_grader.grading.diagnosis.motions import MatrixCase
+from dh_grader.grading.diagnosis.products import Exponentials
+from dh_grader.kinematics import Numbers
 from scipy.linalg import expm
 
-from service.grading.diagnosis.matrices import exponentials
-from service.grading.diagnosis.matrices.exponentials import Exponentials
-from service.grading.diagnosis.matrices.matrix_case import MatrixCase
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import COUNT, wrong_matrix
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 

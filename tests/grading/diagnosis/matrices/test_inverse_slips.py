@@ -4,12 +4,12 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import FeedbackLevel, PartReport
+from dh_grader.grading.diagnosis import matrices as inverse_slips
+from dh_grader.grading.diagnosis.motions import MatrixCase
+from dh_grader.kinematics import Numbers
 
-from service.catalogue import Exercise
-from service.grading import FeedbackLevel, PartReport
-from service.grading.diagnosis.matrices import inverse_slips
-from service.grading.diagnosis.matrices.matrix_case import MatrixCase
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import POSE, wrong_matrix
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.support.exercise_texts import Make, all_codes, one_part

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.diagnosis import products as link_slips
+from dh_grader.grading.diagnosis.products import LinkAmongOthers
+from dh_grader.kinematics import Convention
 
-from service.catalogue import Exercise
-from service.grading.diagnosis.matrices import link_slips
-from service.grading.diagnosis.matrices.link_slips import LinkAmongOthers
-from service.kinematics.dh import Convention
 from tests.frame_choice.kinematics import screw_x, screw_z
 from tests.grading.diagnosis.example_chain import A1, A2, A3, COUNT, TABLE, wrong_matrix
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair

@@ -5,14 +5,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.expressions import AngleUnit, Symbol, Vocabulary, read
+from dh_grader.grading.diagnosis import matrices as matrix_entry
+from dh_grader.grading.diagnosis.formulas import WrongEntry
+from dh_grader.grading.misconception import Hypothesis, records_of, undefined
+from dh_grader.grading.numbers import SAMPLES, Samples
+from dh_grader.grading.report import Correction
 
-from service.expressions import AngleUnit, Symbol, Vocabulary, read
-from service.grading.diagnosis.formulas.formula_repair import WrongEntry
-from service.grading.diagnosis.matrices import matrix_entry
-from service.grading.diagnosis.wrong_value import undefined
-from service.grading.misconception import Hypothesis, records_of
-from service.grading.numerics.samples import SAMPLES, Samples
-from service.grading.report import Correction
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair, explained
 from tests.together import together
 

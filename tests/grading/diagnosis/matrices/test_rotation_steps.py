@@ -4,13 +4,13 @@ from functools import reduce
 
 import numpy as np
 import pytest
+from dh_grader.grading.diagnosis import products as rotation_steps
+from dh_grader.grading.diagnosis.motions import MatrixCase
+from dh_grader.grading.diagnosis.products import Step
+from dh_grader.grading.misconception import explanation
+from dh_grader.kinematics import Numbers
 from scipy.spatial.transform import Rotation
 
-from service.grading.diagnosis.matrices import rotation_steps
-from service.grading.diagnosis.matrices.matrix_case import MatrixCase
-from service.grading.diagnosis.matrices.rotation_steps import Step
-from service.grading.misconception import explanation
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.example_chain import COUNT, wrong_matrix
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 

@@ -4,13 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from dh_grader.grading.diagnosis import matrices as line_signs
+from dh_grader.grading.diagnosis import matrices as whole_matrix
+from dh_grader.grading.diagnosis.matrices import WrongAxes, explain
+from dh_grader.grading.diagnosis.motions import Chain, MatrixCase
+from dh_grader.kinematics import Convention, Numbers, inverse
 
-from service.grading.diagnosis.matrices import line_signs, whole_matrix
-from service.grading.diagnosis.matrices.matrix_case import MatrixCase
-from service.grading.diagnosis.matrices.whole_matrix import WrongAxes, explain
-from service.grading.diagnosis.motions.link_products import Chain
-from service.kinematics.dh import Convention
-from service.kinematics.transforms import Numbers, inverse
 from tests.grading.diagnosis.example_chain import A1, A2, POSE, product, wrong_matrix, wrong_pose
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 

@@ -4,13 +4,13 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
+from dh_grader.grading.diagnosis import motions as link_products
+from dh_grader.grading.diagnosis.motions import Chain, LinkPose, named
+from dh_grader.grading.misconception import Written
+from dh_grader.grading.report import Finding
+from dh_grader.kinematics import Numbers
+from dh_grader.translations import say
 
-from service.grading.diagnosis.motions import link_products
-from service.grading.diagnosis.motions.link_products import Chain, LinkPose, named
-from service.grading.feedback import Finding
-from service.grading.misconception import Written
-from service.kinematics.transforms import Numbers
-from service.translations import say
 from tests.grading.diagnosis.example_chain import A1, A2, A3, A4, CHAIN, POSE, X, Z, product
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 

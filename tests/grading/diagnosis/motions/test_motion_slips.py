@@ -4,15 +4,14 @@ from collections.abc import Mapping
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import Symbol, Vocabulary, read
+from dh_grader.grading import FeedbackLevel, PartReport
+from dh_grader.grading.diagnosis import products as motion_slips
+from dh_grader.grading.diagnosis.motions import GivenMotion
+from dh_grader.grading.misconception import WrongNumbers
+from dh_grader.kinematics import Matrices, Numbers, about
 
-from service.catalogue import Exercise
-from service.expressions import Symbol, Vocabulary, read
-from service.grading import FeedbackLevel, PartReport
-from service.grading.diagnosis.motions import motion_slips
-from service.grading.diagnosis.motions.given_motion import GivenMotion
-from service.grading.diagnosis.wrong_value import WrongNumbers
-from service.kinematics.rotations import about
-from service.kinematics.transforms import Matrices, Numbers
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.support.exercise_texts import Make, all_codes, one_part
 from tests.grading.support.submitting import full_marks, handed_in, part

@@ -5,12 +5,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import FeedbackLevel, PartReport, Verdict
+from dh_grader.grading.diagnosis import screws_and_placements as all_screws
+from dh_grader.grading.diagnosis.screws_and_placements import WrongScrews, explain_screws
+from dh_grader.kinematics import Numbers
 
-from service.catalogue import Exercise
-from service.grading import FeedbackLevel, PartReport, Verdict
-from service.grading.diagnosis.screws import all_screws
-from service.grading.diagnosis.screws.all_screws import WrongScrews, explain_screws
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.grading.diagnosis.screws.test_screw_axis import LENGTH, PITCH, axis
 from tests.grading.support.exercise_texts import HEAD, Make, all_codes
@@ -47,9 +47,10 @@ def with_velocities(factor: Numbers) -> Numbers:
 ACROSS = np.array([[-1, -1, -1], [1, 1, 1], [1, -1, -1]])
 PAIRS = [
     Pair(
-        all_screws.exchanged_halves,
+        all_screws.all_screws_exchanged_halves,
         case(SPACE[:, [3, 4, 5, 0, 1, 2]]),
         case(SPACE[:, [3, 4, 5, 0, 2, 1]]),
+        "exchanged_halves",
     ),
     Pair(all_screws.axes_reversed, case(-SPACE), case(-BODY), "axis_reversed"),
     Pair(
@@ -58,7 +59,7 @@ PAIRS = [
         case(with_velocities(-np.ones((3, 3)))),
         "moment_sign",
     ),
-    Pair(all_screws.other_frame, case(BODY), case(-BODY), "body_for_space"),
+    Pair(all_screws.all_screws_other_frame, case(BODY), case(-BODY), "body_for_space"),
 ]
 
 

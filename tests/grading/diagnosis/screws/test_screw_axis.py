@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
+from dh_grader.grading.diagnosis import screws_and_placements as screw_axis
+from dh_grader.grading.diagnosis.screws_and_placements import WrongScrew, explain_screw
+from dh_grader.grading.numbers import SAMPLES
+from dh_grader.kinematics import Numbers
 
-from service.grading.diagnosis.screws import screw_axis
-from service.grading.diagnosis.screws.screw_axis import WrongScrew, explain_screw
-from service.grading.numerics.samples import SAMPLES
-from service.kinematics.transforms import Numbers
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(9)
@@ -34,7 +34,7 @@ def case(actual: Numbers, expected: Numbers = TURN, elsewhere: Numbers | None = 
 ELSEWHERE = axis(0, 0, 1, 0.2, LENGTH, 0)
 PAIRS = [
     Pair(
-        screw_axis.other_frame,
+        screw_axis.screw_axis_other_frame,
         case(ELSEWHERE, TURN, ELSEWHERE),
         case(axis(0, 0, 1, 0.3, 0, 0), TURN, ELSEWHERE),
         "body_for_space",
@@ -65,7 +65,7 @@ PAIRS = [
         "infinite_pitch",
     ),
     Pair(
-        screw_axis.exchanged_halves,
+        screw_axis.screw_axis_exchanged_halves,
         case(axis(0, -LENGTH, 0, 0, 0, 1)),
         case(axis(0, LENGTH, 0, 0, 0, 1)),
         "exchanged_halves",

@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from itertools import permutations
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise
-from service.grading import PartReport
-from service.grading.report import messages_of
 from tests.grading.support.submitting import handed_in, part
 
 SYMBOLS = ("a", "α", "d", "θ")

@@ -2,14 +2,12 @@
 
 import numpy as np
 import pytest
+from dh_grader.grading.diagnosis import table_cells as dh_row
+from dh_grader.grading.diagnosis.table_cells import WrongRow, violated
+from dh_grader.grading.misconception import diagnosed
+from dh_grader.grading.numbers import SAMPLES
+from dh_grader.kinematics import Convention, Matrices, Numbers, link_transforms, rot_x, rot_y, row
 
-from service.grading.diagnosis.tables import dh_row
-from service.grading.diagnosis.tables.dh_row import WrongRow, violated
-from service.grading.misconception import diagnosed
-from service.grading.numerics.samples import SAMPLES
-from service.kinematics.dh import Convention, link_transforms
-from service.kinematics.dh_row import row
-from service.kinematics.transforms import Matrices, Numbers, rot_x, rot_y
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 from tests.kinematics.constructions import trans
 

@@ -3,18 +3,17 @@
 from collections.abc import Iterator, Mapping, Sequence
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import DhTableSpec
+from dh_grader.grading import PartReport, Verdict
+from dh_grader.grading.diagnosis.table_readings import by_other_numbering
+from dh_grader.grading.judging import Grading
+from dh_grader.grading.kinds.tables import read_dh_table_answer
+from dh_grader.grading.numbers import draw
+from dh_grader.grading.reading.entries import Reader
+from dh_grader.grading.report import messages_of
+from dh_grader.learning import ModelTable, changes_of, model_table
 
-from service.catalogue import Exercise
-from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading import PartReport, Verdict
-from service.grading.diagnosis.tables.joint_numbering import by_other_numbering
-from service.grading.kinds.dh_table import read_dh_table_answer
-from service.grading.numerics.samples import draw
-from service.grading.part import Grading
-from service.grading.reading.entry import Reader
-from service.grading.report import messages_of
-from service.learning.slips import changes_of
-from service.learning.table_texts import ModelTable, model_table
 from tests.grading.support.submitting import graded_table, handed_in, not_correct, table
 from tests.grading.support.submitting import part as report_part
 from tests.shipped import shipped_exercises

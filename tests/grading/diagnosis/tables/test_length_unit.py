@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
-
-from service.catalogue import Exercise
-from service.grading import Submission, grade
-from service.grading.report import PartReport, Verdict
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Submission, grade
+from dh_grader.grading.report import PartReport, Verdict
 
 # The lengths of the UR5e: a2, a3, d1, d4, d5 and d6.
 METRES = (-0.425, -0.3922, 0.1625, 0.1333, 0.0997, 0.0996)

@@ -2,16 +2,16 @@
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Joint
+from dh_grader.expressions import Symbol, Vocabulary, read
+from dh_grader.grading.diagnosis import table_cells as cell_variables
+from dh_grader.grading.diagnosis import table_cells as table_cell
+from dh_grader.grading.diagnosis.table_cells import diagnose
+from dh_grader.grading.misconception import WrongCell, undefined
+from dh_grader.grading.numbers import HALF, SAMPLES, Samples, coefficients
+from dh_grader.grading.report import Correction
+from dh_grader.kinematics import COLUMNS
 
-from service.catalogue import Joint
-from service.expressions import Symbol, Vocabulary, read
-from service.grading.diagnosis.tables import cell_variables, table_cell
-from service.grading.diagnosis.tables.table_cell import diagnose
-from service.grading.diagnosis.wrong_value import WrongCell, undefined
-from service.grading.numerics.joint_motion import coefficients
-from service.grading.numerics.samples import HALF, SAMPLES, Samples
-from service.grading.report import Correction
-from service.kinematics.chain import COLUMNS
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 
 RNG = np.random.default_rng(5)

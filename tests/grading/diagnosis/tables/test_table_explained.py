@@ -3,10 +3,10 @@
 from collections.abc import Callable, Mapping, Sequence
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Verdict
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Verdict
-from service.grading.report import messages_of
 from tests.grading.support.submitting import graded_table, handed_in, part, table
 
 SKEW_RPR = """

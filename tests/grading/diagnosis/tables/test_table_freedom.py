@@ -4,13 +4,12 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise, Robot
+from dh_grader.grading.diagnosis.table_readings import lost_freedom
+from dh_grader.grading.numbers import SAMPLES, Samples, draw
+from dh_grader.grading.report import Finding
+from dh_grader.kinematics import ALPHA, THETA, A, Convention, D, Table
 
-from service.catalogue import Exercise, Robot
-from service.grading.diagnosis.tables.table_freedom import lost_freedom
-from service.grading.feedback import Finding
-from service.grading.numerics.samples import SAMPLES, Samples, draw
-from service.kinematics.chain import ALPHA, THETA, A, D, Table
-from service.kinematics.dh import Convention
 from tests.shipped import shipped_exercises
 from tests.together import together
 

@@ -6,17 +6,16 @@
 from dataclasses import replace
 
 import numpy as np
+from dh_grader.catalogue import Joint
+from dh_grader.grading import frames as written_table
+from dh_grader.grading.diagnosis import whole_tables as whole_table
+from dh_grader.grading.diagnosis.whole_tables import WrongTable, explaining
+from dh_grader.grading.frames import WrittenTable
+from dh_grader.grading.misconception import hypotheses_of, records_of
+from dh_grader.grading.numbers import HALF, SAMPLES, Samples
+from dh_grader.kinematics import ALPHA, THETA, A, Convention, D, Table
 from numpy.typing import NDArray
 
-from service.catalogue import Joint
-from service.grading.diagnosis.tables import whole_table
-from service.grading.diagnosis.tables.whole_table import WrongTable, explaining
-from service.grading.judging.own_frames import written_table
-from service.grading.judging.own_frames.written_table import WrittenTable
-from service.grading.misconception import hypotheses_of, records_of
-from service.grading.numerics.samples import HALF, SAMPLES, Samples
-from service.kinematics.chain import ALPHA, THETA, A, D, Table
-from service.kinematics.dh import Convention
 from tests.frame_choice.kinematics import screw_x, screw_z
 from tests.grading.diagnosis.pairs import Pair, assert_explains_only_the_first, each_pair
 

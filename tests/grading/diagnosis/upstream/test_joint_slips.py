@@ -3,10 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
-
-from service.catalogue import Exercise
-from service.grading.diagnosis.upstream.joint_slips import axis_direction
-from service.grading.numerics.samples import draw
+from dh_grader.catalogue import Exercise
+from dh_grader.grading.diagnosis.slips_of_the_table import axis_direction
+from dh_grader.grading.numbers import draw
 
 
 @pytest.mark.parametrize(

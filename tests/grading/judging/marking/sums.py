@@ -16,10 +16,9 @@ from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
-
-from service.catalogue import Exercise, load_catalogue, shipped_folder
-from service.grading import PartReport, Submission, Verdict, grade
-from service.solutions import solve
+from dh_grader.catalogue import Exercise, load_catalogue, shipped_folder
+from dh_grader.grading import PartReport, Submission, Verdict, grade
+from dh_grader.solutions import solve
 
 WRONG = ("", "0", "1", "0.37", "(", "q1", "-({})", "{} + 0.371", "2*({})", "{} + pi")
 # The kinds whose points come in quarters in every shipped exercise.

@@ -6,24 +6,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import DhTableSpec
+from dh_grader.grading.judging import Content, Grading, Judged
+from dh_grader.grading.judging_table import FairPoints
+from dh_grader.grading.marks import least_lost, steps_lost
+from dh_grader.grading.numbers import SAMPLES, draw
+from dh_grader.grading.reading.entries import Entry, Reader
+from dh_grader.grading.reading.table import COMPUTED, EMPTY, GIVEN_UP, StudentRow, StudentTable
+from dh_grader.grading.report import Verdict, WorkBudget
+from dh_grader.kinematics import Convention
 
-from service.catalogue import Exercise
-from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading.judging.marking.fair_points import FairPoints
-from service.grading.judging.marking.marks import least_lost, steps_lost
-from service.grading.numerics.samples import SAMPLES, draw
-from service.grading.part import Content, Grading, Judged
-from service.grading.reading.entry import Entry, Reader
-from service.grading.reading.tables.table import (
-    COMPUTED,
-    EMPTY,
-    GIVEN_UP,
-    StudentRow,
-    StudentTable,
-)
-from service.grading.report import Verdict
-from service.grading.work_budget import WorkBudget
-from service.kinematics.dh import Convention
 from tests.grading.judging.marking.test_marks import KNOWN, ONE, RIGHT, TWO, judged
 from tests.grading.support.exercise_texts import one_part
 from tests.together import together

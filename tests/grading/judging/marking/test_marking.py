@@ -7,11 +7,11 @@ from copy import deepcopy
 from typing import Any, Final
 
 import pytest
+from dh_grader.api.http import validated
+from dh_grader.catalogue import Exercise, PartSpec
+from dh_grader.grading import PartReport, grade
+from dh_grader.submissions.bodies import GradeRequest
 
-from service.api.http.bodies import validated
-from service.catalogue import Exercise, PartSpec
-from service.grading import PartReport, grade
-from service.submissions.body import GradeRequest
 from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
 

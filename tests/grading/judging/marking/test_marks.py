@@ -5,19 +5,12 @@ from dataclasses import replace
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise, PartSpec
+from dh_grader.grading import CellReport, Feedback, PartReport, RowReport, Severity, Verdict
+from dh_grader.grading.judging import Content, Judged
+from dh_grader.grading.marks import has_earned, least_lost, part_report, steps_lost, unjudged_report
+from dh_grader.grading.report import combined, little_worth, lost_in_row, without_places
 
-from service.catalogue import Exercise, PartSpec
-from service.grading import CellReport, Feedback, PartReport, RowReport, Severity, Verdict
-from service.grading.judging.marking.marks import (
-    has_earned,
-    least_lost,
-    part_report,
-    steps_lost,
-    unjudged_report,
-)
-from service.grading.lost_points import little_worth, lost_in_row, without_places
-from service.grading.part import Content, Judged
-from service.grading.report import combined
 from tests.grading.support.robots import COLUMNS, EXACT, SCARA, STANFORD, Row
 from tests.grading.support.submitting import graded_table, handed_in, not_correct, part
 from tests.grading.support.worth import worth_of_rows

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 
-from service.catalogue import Exercise
 from tests.grading.judging.marking.sums import run
 
 

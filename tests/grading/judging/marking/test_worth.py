@@ -1,12 +1,12 @@
 """Compute by hand the points of cells and rows."""
 
 import pytest
+from dh_grader.catalogue.schema_fields import Marking
+from dh_grader.grading.judging import Content
+from dh_grader.grading.marks import CellWorth, apportioned, evenly, worth_of
 from hypothesis import given
 from hypothesis import strategies as st
 
-from service.catalogue.files.fields import Marking
-from service.grading.judging.marking.worth import CellWorth, apportioned, evenly, worth_of
-from service.grading.part import Content
 from tests.together import together
 
 

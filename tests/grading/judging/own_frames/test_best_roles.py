@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from service.catalogue import Exercise
+from dh_grader.catalogue import Exercise
+
 from tests.grading.support.submitting import graded_table, not_correct
 
 

@@ -3,9 +3,9 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Severity
 
-from service.catalogue import Exercise
-from service.grading import Severity
 from tests.grading.support.robots import Row
 from tests.grading.support.submitting import full_marks, graded_table
 

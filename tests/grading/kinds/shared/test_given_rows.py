@@ -1,9 +1,9 @@
 """Rows that an exercise gives earn nothing and cannot be changed."""
 
 import pytest
+from dh_grader.grading.grade import Submission, grade
+from dh_grader.grading.report import PartReport, Verdict
 
-from service.grading.grade import Submission, grade
-from service.grading.report import PartReport, Verdict
 from tests.shipped import shipped_exercises
 
 OWN = [["l2", "0", "0", "q3"], ["l3", "0", "0", "0"]]

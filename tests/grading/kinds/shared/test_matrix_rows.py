@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Place, Verdict
+from dh_grader.grading.report import messages_of
 
-from service.catalogue import Exercise
-from service.grading import Place, Verdict
-from service.grading.report import messages_of
 from tests.grading.support.robots import PLANAR_RRR
 from tests.grading.support.submitting import (
     cell,

@@ -7,11 +7,11 @@ from typing import Any
 
 import pytest
 import sympy as sp
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Verdict
+from dh_grader.pasting import read_grid
 from sympy.printing.numpy import NumPyPrinter
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Verdict
-from service.grids import read_grid
 from tests.grading.support.robots import PLANAR_RRR, ROBOTS, Robot
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
 from tests.grids.writers import FORMATS

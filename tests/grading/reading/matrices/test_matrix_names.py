@@ -1,13 +1,8 @@
 """Find the link to which the name of a matrix refers."""
 
 import pytest
+from dh_grader.grading.reading.matrices import indices_of, is_changed, is_product, places_of
 
-from service.grading.reading.matrices.matrix_names import (
-    indices_of,
-    is_changed,
-    is_product,
-    places_of,
-)
 from tests.together import together
 
 

@@ -4,10 +4,10 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
+from dh_grader.grading.reading import preview_pasted
 
-from service.catalogue import Exercise
-from service.grading import Verdict
-from service.grading.reading.preview import preview_pasted
 from tests.grading.support.exercise_texts import all_codes
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
 from tests.grading.support.wrist import WRIST

@@ -4,15 +4,14 @@ from collections.abc import Mapping
 from typing import Any
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import AngleUnit
+from dh_grader.grading.numbers import draw
+from dh_grader.grading.reading import table_cells as reading_cells
+from dh_grader.grading.reading.entries import Entry, Reader
+from dh_grader.grading.reading.table_cells import canonical_table, memoized_row, read_row
+from dh_grader.grading.report import Finding, WorkBudget
 
-from service.catalogue import Exercise
-from service.expressions import AngleUnit
-from service.grading.feedback import Finding
-from service.grading.numerics.samples import draw
-from service.grading.reading.entry import Entry, Reader
-from service.grading.reading.tables import cells as reading_cells
-from service.grading.reading.tables.cells import canonical_table, memoized_row, read_row
-from service.grading.work_budget import WorkBudget
 from tests.grading.support.submitting import table
 
 # Craig, Introduction to Robotics, the planar two-link arm in the standard convention.

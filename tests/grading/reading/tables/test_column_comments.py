@@ -3,10 +3,10 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import Verdict
+from dh_grader.grading.reading import PastedPreview, preview_pasted
 
-from service.catalogue import Exercise
-from service.grading import Verdict
-from service.grading.reading.preview import PastedPreview, preview_pasted
 from tests.grading.support.submitting import handed_in, part
 
 CAPTION = r"""\caption{Parameters (mm)}

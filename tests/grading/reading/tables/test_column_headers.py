@@ -1,8 +1,8 @@
 """Read the headers of table columns."""
 
 import pytest
+from dh_grader.grading.reading.headers import Header, read_header
 
-from service.grading.reading.tables.column_headers import Header, read_header
 from tests.together import together
 
 SPELLINGS = {

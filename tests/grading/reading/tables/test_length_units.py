@@ -3,14 +3,14 @@
 from collections.abc import Callable, Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.expressions import AngleUnit
+from dh_grader.grading import Verdict
+from dh_grader.grading.numbers import draw
+from dh_grader.grading.reading.entries import Reader
+from dh_grader.grading.reading.table import StudentTable, read_table
+from dh_grader.grading.report import UnreadableAnswerError
 
-from service.catalogue import Exercise
-from service.expressions import AngleUnit
-from service.grading import Verdict
-from service.grading.feedback import UnreadableAnswerError
-from service.grading.numerics.samples import draw
-from service.grading.reading.entry import Reader
-from service.grading.reading.tables.table import StudentTable, read_table
 from tests.grading.support.submitting import full_marks, handed_in, part
 
 ARM = """

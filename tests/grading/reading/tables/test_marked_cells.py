@@ -1,7 +1,6 @@
 import pytest
-
-from service.grading.reading.tables.marked_cells import MAX_CHARACTERS, MAX_MARKS, read_marks
-from service.grading.report import Verdict
+from dh_grader.grading.reading.pasted_table import MAX_CHARACTERS, MAX_MARKS, read_marks
+from dh_grader.grading.report import Verdict
 
 LABELS = ("4", "5", "6", "e")
 

@@ -3,9 +3,9 @@
 from collections.abc import Callable, Mapping, Sequence
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport, Severity, Verdict
 
-from service.catalogue import Exercise
-from service.grading import PartReport, Severity, Verdict
 from tests.grading.support.robots import ROBOTS, RRRP, Robot, in_pi, with_unit
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
 from tests.grading.support.worth import about, points

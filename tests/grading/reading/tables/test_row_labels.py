@@ -1,6 +1,7 @@
 """Read row labels such as 1, Link 2, 0→1 or TCP."""
 
-from service.grading.reading.tables.row_labels import LAST, label_place
+from dh_grader.grading.reading.headers import LAST, label_place
+
 from tests.together import together
 
 

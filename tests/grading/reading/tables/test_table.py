@@ -4,13 +4,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.catalogue.kinds import DhTableSpec
+from dh_grader.grading import PartReport, Verdict
+from dh_grader.grading.numbers import draw
+from dh_grader.grading.reading.entries import Reader
+from dh_grader.grading.reading.table import read_table
 
-from service.catalogue import Exercise
-from service.catalogue.parts.dh_table import DhTableSpec
-from service.grading import PartReport, Verdict
-from service.grading.numerics.samples import draw
-from service.grading.reading.entry import Reader
-from service.grading.reading.tables.table import read_table
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part, table
 
 SCARA = [

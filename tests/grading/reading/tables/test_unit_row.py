@@ -1,9 +1,8 @@
 """Read a row of units below the column headers."""
 
 import pytest
-
-from service.grading.reading.tables.unit_row import with_units_in_headers
-from service.grids import read_grid
+from dh_grader.grading.reading.pasted_table import with_units_in_headers
+from dh_grader.pasting import read_grid
 
 HEADERS = "i;a;alpha;d;theta"
 ROW = "1;0.3;90;0;q1"

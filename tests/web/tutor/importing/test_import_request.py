@@ -4,10 +4,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.cli.exercises import exercises_commands as commands
 from typer.testing import CliRunner
 
-from service.catalogue import Exercise
-from service.cli.commands.exercises import commands
 from tests.importing.test_arms import file_of
 from tests.importing.test_pasted_robot import PASTED
 from tests.importing.test_urdf import REFUSED

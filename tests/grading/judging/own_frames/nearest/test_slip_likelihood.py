@@ -7,9 +7,9 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
+from dh_grader.grading import PartReport
 
-from service.catalogue import Exercise
-from service.grading import PartReport
 from tests.grading.support.submitting import cell, graded_table, not_correct
 
 BLAMED: dict[str, tuple[tuple[str, str, str], str, str]] = {

@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 
 import pytest
+from dh_grader.catalogue import Exercise
 
-from service.catalogue import Exercise
 from tests.grading.support.submitting import codes_at, graded_table, not_correct
 
 # The Stanford arm with z2 reversed, so that the cells do not follow from the reference's.

@@ -1,1 +1,0 @@
-"""Authorization and rate limits: API keys with scopes, and tokens of learners."""

@@ -1,1 +1,0 @@
-"""The HTTP interface: routes that read requests and send responses."""

@@ -1,1 +1,0 @@
-"""The routes of courses: for tutors, and for learners with a link or a token."""

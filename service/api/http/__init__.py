@@ -1,1 +1,0 @@
-"""Code that all routes share: request bodies, error responses and middleware."""

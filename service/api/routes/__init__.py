@@ -1,1 +1,0 @@
-"""The routes that need no database."""

@@ -1,1 +1,0 @@
-"""Regrading of outdated attempts."""

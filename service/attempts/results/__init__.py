@@ -1,1 +1,0 @@
-"""Recorded attempts as lists, grades and statistics."""

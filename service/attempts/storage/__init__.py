@@ -1,1 +1,0 @@
-"""The database of attempts and the thread that writes to it."""

@@ -1,1 +1,0 @@
-"""Exercise files: their fields and schema, and the line of each fault."""

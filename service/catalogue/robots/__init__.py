@@ -1,1 +1,0 @@
-"""The reference robot of an exercise, from which right answers are computed."""

@@ -1,1 +1,0 @@
-"""The table ``[vary]`` of an exercise file, which gives students different numbers."""

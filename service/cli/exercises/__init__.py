@@ -1,1 +1,0 @@
-"""The subcommands of `dh-grader exercises`: check, import and export."""

@@ -1,1 +1,0 @@
-"""The commands `dh-grader lti`."""

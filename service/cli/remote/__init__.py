@@ -1,1 +1,0 @@
-"""Let a server grade instead of this program."""

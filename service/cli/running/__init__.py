@@ -1,1 +1,0 @@
-"""Long runs: several processes or threads, progress, interrupts."""

@@ -1,1 +1,0 @@
-"""The HTTP bodies besides submissions and reports, for the API and its clients."""

@@ -1,1 +1,0 @@
-"""Courses: learners, assignments, extensions, personal links and the gradebook."""

@@ -1,1 +1,0 @@
-"""The gradebook of a course, also as a workbook for spreadsheet programs."""

@@ -1,0 +1,993 @@
+"""The text of programs around an answer: statements, titles, sessions, later uses.
+
+Programs are never run; they are cut into statements with the place of each character.
+"""
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+from dh_grader.pasting.source import (
+    BRACKET,
+    CLOSES,
+    GRID_LIMITS,
+    Grid,
+    GridError,
+    SourceText,
+    joined,
+    once,
+    split,
+    strict_pairs,
+    too_many_rows,
+)
+from dh_grader.regex import regex
+from dh_grader.translations import say
+
+# --- Names of a script for symbols with other names: ``t1 = symbols('theta1')``
+#
+# The symbols are those of the exercise, so each name is replaced by its symbol wherever it stands.
+# Declarations without another name, such as ``q1, q2 = symbols('q1 q2')``, are left to the readers.
+
+
+_RENAMED_SYMBOLS_NAME: Final = r"[A-Za-z_θα]\w{0,30}"
+_DECLARES: Final = regex(
+    rf"(?:^|(?<=;))[ \t]{{0,40}}(?:>>>?[ \t]?|In ?\[\d{{1,4}}\]: ?)?"
+    rf"(?P<statement>\(?(?P<names>{_RENAMED_SYMBOLS_NAME}"
+    rf"(?:[ \t]{{0,4}},[ \t]{{0,4}}{_RENAMED_SYMBOLS_NAME}){{0,23}})"
+    r"[ \t]{0,4},?\)?[ \t]{0,8}=[ \t]{0,8}"
+    r"(?:\w{1,20}\.){0,2}(?P<function>(?:dynamic)?symbols|Symbol|var|sym)"
+    r"\([ \t]{0,4}[rRuU]?(?P<quote>['\"])(?P<symbols>[^'\"\n]{1,300})(?P=quote)"
+    r"(?P<options>[^()\n]{0,100})\)[ \t]{0,40})(?=[;\r\n#%]|\Z)",
+    re.MULTILINE,
+)
+# One of these is in the name of each function.
+_FUNCTIONS: Final = ("ym", "var")
+# A name in a formula, perhaps with an index. Names of arguments, and names in strings and comments,
+# are no symbols.
+_USE: Final = regex(
+    r"(?<![\w)\]}'])'[^'\n]*'|\"[^\"\n]*\"|[#%][^\n]*"
+    rf"|(?<![\w.\\])(?P<name>{_RENAMED_SYMBOLS_NAME})(?!\w)(?!\s{{0,4}}=(?!=))(?P<index>\[\s?\d{{1,2}}\s?\])?"
+)
+# A numbered list of symbols in SymPy: q1:4 is q1, q2, q3, and q:3 is q0, q1, q2.
+_RANGE: Final = regex(r"(?P<stem>[^\W\d]\w*?)(?P<first>\d{0,2}):(?P<end>\d{1,2})")
+_SYMBOL: Final = regex(r"\\{0,2}[^\W\d]\w{0,30}(?:\{\w{1,6}\})?")
+_SIZE: Final = regex(r"\s*,\s*[\[\d]")
+_MOST: Final = 60
+
+
+def with_own_symbols(source: SourceText) -> SourceText:
+    """Return a script with its symbols instead of other names for them.
+
+    Raises GridError if it is not certain which symbol a name means.
+    """
+    if not any(word in source.text for word in _FUNCTIONS):
+        return source
+    declared = [each for each in _DECLARES.finditer(source.text) if _is_other(each)][:_MOST]
+    if not declared:
+        return source
+    meant: dict[str, str] = {}
+    for each in declared:
+        for name, symbol in _meanings(source, each):
+            if meant.setdefault(name, symbol) != symbol:
+                raise _uncertain(source, each)
+    pieces, start = [], 0
+    for each in declared:
+        pieces += [source.cut(start, each.start("statement"))]
+        start = each.end("statement")
+    pieces.append(source.cut(start, len(source.text)))
+    return joined([named for piece in pieces for named in _renamed(piece, meant)], source.at)
+
+
+def _is_other(declaration: re.Match[str]) -> bool:
+    # True if a name has another symbol than itself.
+    # In MATLAB, sym('q', [1 3]) is the vector of q1, q2, q3.
+    is_vector = _SIZE.match(declaration["options"]) is not None
+    return not is_vector and _names(declaration) != _symbols(declaration)
+
+
+def _names(declaration: re.Match[str]) -> list[str]:
+    return [name.strip() for name in declaration["names"].split(",")]
+
+
+def _symbols(declaration: re.Match[str]) -> list[str]:
+    written = declaration["symbols"]
+    if declaration["function"] in {"Symbol", "sym"}:
+        return [written.strip()]
+    words = re.split(r"[\s,]+", written.strip(" ,"))
+    return [symbol for word in words for symbol in _numbered(word)]
+
+
+def _numbered(word: str) -> list[str]:
+    numbers = _RANGE.fullmatch(word.replace("(", "").replace(")", ""))
+    if numbers is None:
+        return [word]
+    first = int(numbers["first"] or 0)
+    return [f"{numbers['stem']}{i}" for i in range(first, int(numbers["end"]))]
+
+
+def _meanings(source: SourceText, declaration: re.Match[str]) -> Iterator[tuple[str, str]]:
+    names, symbols = _names(declaration), _symbols(declaration)
+    if not all(map(_SYMBOL.fullmatch, symbols)):
+        raise _uncertain(source, declaration)
+    symbols = [symbol.replace("\\\\", "\\") for symbol in symbols]
+    if len(names) == 1 and len(symbols) > 1:
+        # The name of a tuple, whose indices count from 0.
+        yield from ((f"{names[0]}[{i}]", symbol) for i, symbol in enumerate(symbols))
+    elif len(names) == len(symbols):
+        yield from zip(names, symbols, strict=True)
+    else:
+        raise _uncertain(source, declaration)
+
+
+def _renamed(piece: SourceText, meant: Mapping[str, str]) -> Sequence[SourceText]:
+    found, start = [], 0
+    for use in _USE.finditer(piece.text):
+        name = use["name"] or ""
+        index = "".join((use["index"] or "").split())
+        symbol = meant.get(name + index)
+        end = use.end()
+        if symbol is None and name in meant:
+            symbol, end = meant[name], use.end("name")
+        if symbol is not None:
+            found += [piece.cut(start, use.start()), piece.cut(use.start(), end).spelled(symbol)]
+            start = end
+    return [*found, piece.cut(start, len(piece.text))]
+
+
+def _uncertain(source: SourceText, declaration: re.Match[str]) -> GridError:
+    line = source.cut(*declaration.span("statement")).strip()
+    message = say(
+        "`{line}` gives symbols other names in a way that is not followed here. Write the symbols "
+        "of the exercise into the table or matrix itself.",
+        line=line.text[:60],
+    )
+    return GridError("given_value", message, line.whole)
+
+
+# --- Remove the style of names before values: ``- **T** =``, ``\boxed{T = …}``, ``T matrix``
+
+
+_STYLED_NAMES_NAME: Final = r"\\?[^\W\d]\w{0,11}(?:\{\w{1,6}\})?"
+# A bullet or bold type before a name and its sign; elsewhere "-" and "*" may belong to a value.
+_STYLED: Final = regex(
+    rf"^[ \t]*(?:[-*•‣◦][ \t]{{1,4}})?(?P<bold>\*\*|__)?(?P<name>{_STYLED_NAMES_NAME})[ \t]{{0,4}}"
+    r"(?P<closed>(?P=bold))?[ \t]{0,4}(?P<sign>[=:])(?!=)(?P<open>(?P=bold))?"
+    r"(?P<value>[^\n]*)",
+    re.MULTILINE,
+)
+_BEGINS_VALUE: Final = regex(r"[*_\s]{0,8}(?:[\[(\\$]|\w{1,8}\.\w{1,8}\(|\Z)")
+_BULLET: Final = regex(r"[ \t]*[-*•‣◦][ \t]")
+_BOXED: Final = regex(
+    r"^[ \t]*(?P<dollars>\${0,2})[ \t]*\\boxed[ \t]*\{(?P<inner>[^\n]*)\}[ \t]*(?P=dollars)[ \t]*$",
+    re.MULTILINE,
+)
+# A matrix may begin on the line below its heading.
+_MATRIX: Final = regex(
+    r"^[ \t]*(?:(?:the|homogeneous|transformation|rotation)[ \t]){0,3}"
+    r"(?:(?P<before>[A-Z]_?\w{0,5})[ \t]matrix|matrix[ \t](?P<after>[A-Z]_?\w{0,5}))"
+    r"[ \t]*(?:\r?\n)?[ \t]*(?=\[|\\begin\{[bpv]?matrix\}|(?:\w{1,8}\.)?(?:array|[mM]atrix)\()",
+    re.MULTILINE | re.IGNORECASE,
+)
+
+
+def without_styles(source: SourceText) -> SourceText:
+    """Return the text with plain names: ``- **T** = [`` and ``T matrix [`` become ``T = [``."""
+    return _named_matrices(_unstyled(_unboxed(source)))
+
+
+def _unboxed(source: SourceText) -> SourceText:
+    if "\\boxed" not in source.text:
+        return source
+    pieces, start = [], 0
+    for box in _BOXED.finditer(source.text):
+        inner = box["inner"]
+        if "=" in inner and _is_balanced(inner):
+            pieces += [source.cut(start, box.start()), source.cut(*box.span("inner"))]
+            start = box.end()
+    return joined([*pieces, source.cut(start, len(source.text))], source.at)
+
+
+def _is_balanced(text: str) -> bool:
+    depth = 0
+    for letter in text:
+        depth += (letter == "{") - (letter == "}")
+        if depth < 0:
+            return False
+    return depth == 0
+
+
+def _unstyled(source: SourceText) -> SourceText:
+    pieces, start = [], 0
+    for found in _STYLED.finditer(source.text):
+        value = found.span("value")
+        if found["sign"] == ":" and not _BEGINS_VALUE.match(found["value"]):
+            # A sentence after its heading.
+            continue
+        if found["bold"]:
+            if found["closed"] is None and found["open"] is None:
+                # The whole line is bold.
+                stripped = found["value"].rstrip()
+                if not stripped.endswith(found["bold"]):
+                    continue
+                value = value[0], value[0] + len(stripped) - len(found["bold"])
+        elif not _BULLET.match(found[0]):
+            continue
+        pieces += [source.cut(start, found.start()), source.cut(*found.span("name"))]
+        pieces += [source.cut(*found.span("sign")), source.cut(*value)]
+        start = found.end()
+    return joined([*pieces, source.cut(start, len(source.text))], source.at) if pieces else source
+
+
+def _named_matrices(source: SourceText) -> SourceText:
+    pieces, start = [], 0
+    for found in _MATRIX.finditer(source.text):
+        name = source.cut(*found.span("before" if found["before"] else "after"))
+        pieces += [source.cut(start, found.start()), name, name.spelled(" = ")]
+        start = found.end()
+    return joined([*pieces, source.cut(start, len(source.text))], source.at) if pieces else source
+
+
+# --- Read the outputs of an interpreter session
+#
+# Prompts and labels of outputs are ``>> A1``, ``Out[3]//MatrixForm=``, ``(%o4)`` and the like.
+#
+# Inputs that have no output are kept, too.
+
+
+_MARK: Final = regex(
+    r"^[ \t]*(?:(?P<input>(?:Trial|EDU)?>>>?|In ?\[\d{0,5}\] ?:=?|\(?%i\d{1,5}\)?|octave:\d{1,5}>"
+    r"|sage:|julia>)"
+    r"|Out ?\[\d{0,5}\] ?(?://\w{1,20})?[=:]|\(?%o\d{1,5}\)?)[ \t]*",
+    re.MULTILINE,
+)
+# Python's prompt before the second and later lines of an input.
+_CONTINUED: Final = regex(r"^[ \t]*\.\.\.(?:[ \t]|$)", re.MULTILINE)
+
+
+# An input that shows the value of a name: A1, print(A1), A1 // MatrixForm.
+_ASKED: Final = regex(r"\s*(?:\w{1,20}[(\[]\s*)?([A-Za-z_]{1,10}\d{1,4})(?![\w.*@+-])")
+
+
+def session_outputs(source: SourceText, *, named: bool = False) -> SourceText:
+    """Return the outputs of a session, and the matrices in inputs without an output."""
+    # With ``named``, the name in an input such as ``A1`` or ``simplify(A1)`` becomes a line above
+    # the output.
+    marks = list(_MARK.finditer(source.text))
+    if not marks:
+        return source
+    pieces = [source.cut(0, marks[0].start())]
+    for i, mark in enumerate(marks):
+        following = marks[i + 1] if i + 1 < len(marks) else None
+        region = source.cut(mark.end(), following.start() if following else len(source.text))
+        line_end = source.cut(mark.start(), mark.start() + 1).spelled("\n")
+        if mark["input"]:
+            end = _statement_end(region.text)
+            output = region.cut(end, len(region.text))
+            has_output = output.text.strip() or (following and not following["input"])
+            if has_output and named and (asked := _ASKED.match(region.cut(0, end).text)):
+                pieces += [line_end, region.cut(*asked.span(1)), line_end]
+            if has_output:
+                region = output
+            elif "[" not in region.text and "{" not in region.text:
+                continue
+            elif mark["input"] == ">>>":
+                region = _without_continuation(region)
+        pieces += [line_end, region]
+    return joined(pieces, source.whole[0])
+
+
+def without_prompts(source: SourceText) -> SourceText:
+    """Return the inputs and outputs of a session without the prompts."""
+    if not _MARK.search(source.text):
+        return source
+    plain = joined(source.split(_MARK), source.at)
+    return _without_continuation(plain) if ">>>" in source.text else plain
+
+
+def _statement_end(text: str) -> int:
+    # Return the end of the first line, or of the line that closes the first line's brackets.
+    depth = 0
+    for i, letter in enumerate(text):
+        if letter in CLOSES:
+            depth += 1
+        elif letter in ")]}":
+            depth -= 1
+        elif letter == "\n" and depth <= 0:
+            return i
+    return len(text)
+
+
+def _without_continuation(statement: SourceText) -> SourceText:
+    return joined(statement.split(_CONTINUED), statement.at)
+
+
+# --- Remove the program text around a matrix: comments, line continuations, assignments, calls
+
+
+# Functions that make a matrix of their argument without changing its values.
+MAKERS: Final = frozenset(
+    {"array", "asarray", "mat", "matrix", "Matrix", "ImmutableMatrix", "MutableDenseMatrix"}
+    | {"ImmutableDenseMatrix", "Array", "list", "tuple", "sym", "simplify", "trigsimp", "expand"}
+    | {"trigreduce", "ratsimp", "SE3"}
+)
+# Imports, and declarations of symbols.
+_STATEMENT: Final = (
+    r"[ \t]*(?:(?:import|from|syms|clc|clear|close|format|pkg|load|with)\b.*"
+    r"|def \w{1,40}\([^()\n]{0,100}\)[^()\n:]{0,40}:[ \t]*"
+    r"|(?:\w{1,12}\.)?(?:print|pprint|disp|display)\([^()\n]{0,100}\)[ \t;]*"
+    r"|[\w, \t]{1,80}=[ \t]*(?:\w{1,20}\.)?(?:(?:dynamic)?symbols|Symbol|var|sym)"
+    r"\([^()\[\]{}]{0,200}\)[ \t;]*)"
+)
+_HARMLESS: Final = regex(rf"(?:{_STATEMENT}|[ \t]*)(?:\n|\Z)")
+_HARMLESS_LINE: Final = regex(rf"^{_STATEMENT}$", re.MULTILINE)
+# The left sides of an equation or assignment: T = A1*A2 = …, A1(q1) := …, A1 : …
+_PROGRAM_TEXT_NAMES: Final = regex(
+    r"\s*(?:return\s|(?:const )?std::vector<[\w:<>, ]{1,60}>\s)?"
+    r"(?:(?!\d+[.*\s])[\w\\](?:[\w.{}^\\'*@→ \t]|\([\w,:→ ]{0,40}\)|\[\d{1,2}\]){0,80}"
+    r"(?::=?|=)(?!=)\s*){0,4}"
+    r"(?:\(sym \d+ ?[x×] ?\d+ matrix\)\s*)?"
+)
+# A function of MATLAB, Octave or Julia: function R = rotx(phi) … end.
+_FUNCTION: Final = regex(
+    r"\s*function\s+(?:\[?(?P<output>\w{1,40})\]?\s*=\s*)?\w{1,40}\s*"
+    r"(?:\([\w, ~]{0,100}\))?[ \t]*[\n;,](?P<body>(?s:.)*?)(?:(?<=[\s;])end(?:function)?[\s;]*)?"
+)
+# A function of Python: its first line, its last line, and lines below it that only call it.
+_DEF: Final = regex(r"def \w{1,40}\([^()\n]{0,200}\)[^()\n]{0,60}:[ \t]*(?:#.*)?\r?$")
+_RETURN: Final = regex(r"[ \t]+return[ \t]+\(?([A-Za-z]\w{0,40})\)?[ \t;]*(?:#.*)?\r?")
+_CALLS: Final = regex(
+    r"[ \t]*(?:#.*|(?:[A-Za-z]\w{0,40}[ \t]*=[ \t]*)?(?:\w{1,20}\.)?\w{1,40}\([^@*/+\n]*\)"
+    r"|if __name__ ?== ?['\"]__main__['\"]:.*)?\s*"
+)
+_PROGRAM_TEXT_ASSIGNED: Final = regex(r"[ \t]*([A-Za-z]\w{0,40})[ \t]*=(?!=)")
+_UNPACKED: Final = regex(
+    r"[ \t]*[(\[]?(?P<names>[A-Za-z]\w{0,20}(?:[ \t]{0,4},[ \t]{0,4}[A-Za-z]\w{0,20}){1,11})[)\]]?"
+    r"[ \t]*=[ \t]*\w{1,20}[ \t;]*(?:#.*)?\r?"
+)
+_LAST_NUMBER: Final = regex(r"(\d{1,2})\Z")
+_RETURNS: Final = regex(r"[ \t]+return(?!\w)")
+# A name on a line of its own above its value: MATLAB's ``ans =``.
+_TITLE: Final = regex(
+    r"\s*(?:[^\W\d][\w{}^]{0,20}(?:\([\w,: ]{0,40}\))?[ \t]*:?=[ \t]*\r?\n\s*){1,3}"
+)
+_PROGRAM_TEXT_CALL: Final = regex(
+    r"\s*([A-Za-z_][\w.]{0,60})[ \t]*\(\s*(?=[\[({\d]|[A-Za-z_][\w.]{0,60}\()"
+)
+# Classes of the Robotics Toolboxes for MATLAB and for Python.
+_ROBOT_CLASSES: Final = frozenset(
+    {"Link", "Revolute", "Prismatic", "RevoluteDH", "PrismaticDH", "RevoluteMDH", "PrismaticMDH"}
+    | {"SerialLink", "DHRobot"}
+)
+_MOST_FORMS: Final = 3
+_NESTED: Final = regex(r"[({]\s*[\[({]|\[|\{\s*['\"]")
+_KEYWORD: Final = regex(r"\s*(?:dtype|order|copy|ndmin|storage|shape|datatype)\s*=")
+# A comment after % or #. In Maxima, % begins the name of a constant.
+_REMARK: Final = regex(
+    r"\.\.\.[^\n]*(?:\n|$)|//[^\n]*|%(?!(?:pi|theta|alpha)(?![A-Za-z]))[^\n]*|#[^\n]*"
+)
+_COMMENTS: Final = {"(*": "*)", "/*": "*/"}
+_REMARK_SIGNS: Final = ("...", "%", "#", "//", *_COMMENTS)
+# What begins a remark or a string. In Scilab, // begins a comment after a statement or on a line of
+# its own; elsewhere it is a division.
+_SIGN: Final = regex(
+    r"""(?:['"%#]|\.\.\.|(?:\A[ \t]{0,40}|(?<=[;\n])[ \t]{0,39})(?P<slashes>//)|[(/]\*)"""
+)
+# A string, which ends with its line if its quotation mark is missing.
+_STRINGS: Final = {
+    quote: regex(rf"{quote}(?:[^\\{quote}\n]|\\.)*(?:{quote}|\n|\\?\Z)", re.DOTALL)
+    for quote in ("'", '"')
+}
+# Mathematica's functions that leave a matrix equal, written before it or after it.
+_FORM: Final = regex(
+    r"(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\["
+)
+_FORM_AFTER: Final = regex(
+    r"//\s{0,3}(?:MatrixForm|TraditionalForm|InputForm|Simplify|FullSimplify|TrigReduce|Expand)\Z"
+)
+TAIL: Final = " \t\r\n;,.$"
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenMatrix:
+    """A matrix in program text.
+
+    ``groups`` are the texts in its outermost brackets: usually one, or one for each row. ``maker``
+    is the name of the function around the brackets. ``shape`` has the numbers of rows and columns
+    from the function's arguments.
+    """
+
+    groups: tuple[SourceText, ...]
+    maker: str = ""
+    shape: tuple[int, int] | None = None
+
+
+@once
+def begins_as_matrix(text: str) -> bool:
+    """True if a matrix in brackets begins the text, possibly after imports and a name."""
+    plain = without_remarks(SourceText.of(text)).text
+    return _head(plain) is not None
+
+
+def without_title(source: SourceText) -> SourceText:
+    """Return the text without a first line that is only a name, such as ``ans =``."""
+    title = _TITLE.match(source.text)
+    return source.cut(title.end(), len(source.text)) if title else source
+
+
+def without_function(source: SourceText) -> SourceText:
+    """Return the body of the one function in a text, if the body sets the function's output."""
+    found = _FUNCTION.fullmatch(source.text)
+    if found is None or "function" in found["body"]:
+        return _without_def(source)
+    body = source.cut(*found.span("body"))
+    output = found["output"]
+    is_output = re.compile(rf"(?:^|;)[ \t]*(?:return\s|{output or 'return'}[ \t]*=)", re.MULTILINE)
+    return body if not output or is_output.search(body.text) else source
+
+
+def _without_def(source: SourceText) -> SourceText:
+    """Return the statements of the one function of Python in a text that returns a matrix.
+
+    Calls below the function are left out. Any other text is returned unchanged.
+    """
+    lines = source.lines()
+    heads = [i for i, line in enumerate(lines) if _DEF.match(line.text)]
+    if len(heads) != 1:
+        return source
+    [head] = heads
+    after = next((i for i in range(head + 1, len(lines)) if lines[i].text[:1].strip()), len(lines))
+    body = [i for i in range(head + 1, after) if lines[i].text.strip()]
+    returns = [i for i in body if _RETURNS.match(lines[i].text)]
+    if len(returns) != 1 or not all(_CALLS.fullmatch(line.text) for line in lines[after:]):
+        return source
+    returned = _RETURN.fullmatch(lines[body[-1]].text)
+    if returned is None and "[" not in lines[returns[0]].text:
+        return source
+    first, last = body[0], body[-1] if returned else body[-1] + 1
+    kept = [line for line in lines[first:last] if not _unpacks(line.text)]
+    names = [found[1] for line in kept if (found := _PROGRAM_TEXT_ASSIGNED.match(line.text))]
+    if returned and names.count(returned[1]) != 1:
+        return source
+    pieces = [*lines[:head], *kept]
+    return joined([each for line in pieces for each in (line, line.spelled("\n"))], source.at)
+
+
+def _unpacks(line: str) -> bool:
+    """True if a line names the elements of an argument in order: ``q1, q2, q3 = q``."""
+    unpacked = _UNPACKED.fullmatch(line)
+    names = unpacked["names"].split(",") if unpacked else []
+    numbers = [found[1] for name in names if (found := _LAST_NUMBER.search(name.strip()))]
+    return bool(names) and numbers == [str(i + 1) for i in range(len(names))]
+
+
+def unwrap(source: SourceText, calls: int = 3) -> WrittenMatrix:
+    """Return the matrix in a text, without the program text around it.
+
+    Raises GridError for unbalanced brackets, or for other text next to the matrix.
+    """
+    # At most ``calls`` function calls may enclose the matrix.
+    source = without_remarks(source)
+    head = _head(source.text)
+    if head is None:
+        message = say("No matrix begins here. Paste the matrix alone, each row in brackets.")
+        raise GridError("no_grid", message, source.whole)
+    start, call = head
+    source = _without_forms(source.cut(start, len(source.text)).strip(TAIL))
+    if call:
+        return _unwrap_call(source, call, calls)
+    return WrittenMatrix(tuple(_groups(source)))
+
+
+def _without_forms(source: SourceText) -> SourceText:
+    for _ in range(_MOST_FORMS):
+        form = _FORM_AFTER.search(source.text, len(source.text) - 24)
+        if form is None:
+            break
+        source = source.cut(0, form.start()).strip(TAIL)
+    for _ in range(_MOST_FORMS):
+        form = _FORM.match(source.text)
+        if form is None or strict_pairs(source)[form.end() - 1] != len(source.text):
+            break
+        source = source.cut(form.end(), len(source.text) - 1).strip(TAIL)
+    return source
+
+
+def without_remarks(source: SourceText) -> SourceText:
+    """Return the text without comments and line continuations; strings stay as they are."""
+    pieces: list[SourceText] = []
+    start = 0
+    for i, end in _remarks(source.text):
+        blank = source.cut(i, i + 1).spelled(" ")
+        pieces += [source.cut(start, i), blank]
+        start = end
+    if not pieces:
+        return source
+    return joined([*pieces, source.cut(start, len(source.text))], source.whole[0])
+
+
+@once
+def _remarks(text: str) -> list[tuple[int, int]]:
+    # Return where each comment and each continuation of a line begins and ends.
+    if not any(map(text.__contains__, _REMARK_SIGNS)):
+        return []
+    found: list[tuple[int, int]] = []
+    i = 0
+    last = {opener: text.rfind(closer) for opener, closer in _COMMENTS.items()}
+    while len(found) < GRID_LIMITS.separators and (sign := _SIGN.search(text, i)):
+        i = sign.start("slashes") if sign["slashes"] else sign.start()
+        letter = text[i]
+        if letter in "'\"":
+            is_string = i == 0 or not (text[i - 1].isalnum() or text[i - 1] in ")]}.'")
+            string = _STRINGS[letter].match(text, i) if is_string else None
+            i = string.end() if string else i + 1
+        elif end := _remark_end(text, i, last):
+            found.append((i, end))
+            i = end
+        else:
+            i += 1
+    return found
+
+
+def _remark_end(text: str, start: int, last: Mapping[str, int]) -> int:
+    # Return the place after the remark that begins at ``start``, or 0 if none begins there.
+    # ``last`` is the last place at which a block comment of each kind ends.
+    opener = text[start : start + 2]
+    if opener in _COMMENTS:
+        closer = _COMMENTS[opener]
+        return text.index(closer, start + 2) + 2 if start + 2 <= last[opener] else 0
+    remark = _REMARK.match(text, start)
+    return remark.end() if remark else 0
+
+
+def _head(text: str) -> tuple[int, re.Match[str] | None] | None:
+    at = after_names(text)
+    at += len(text[at:]) - len(text[at:].lstrip())
+    if form := _FORM.match(text, at):
+        return (at, None) if _NESTED.match(text, form.end()) else None
+    if call := _PROGRAM_TEXT_CALL.match(text, at):
+        name = call[1].rpartition(".")[2]
+        if name in MAKERS or text[call.end()] == "[":
+            return call.start(1), call
+    if _NESTED.match(text, at) is None:
+        return None
+    # Round brackets also begin expressions; they are a list only if they enclose the whole text.
+    if text[at] == "(" and not _ends_the_text(text, at):
+        return None
+    return at, None
+
+
+def without_harmless_lines(source: SourceText) -> SourceText:
+    """Return the text without imports and declarations."""
+    return joined(source.split(_HARMLESS_LINE), source.whole[0])
+
+
+def after_names(text: str) -> int:
+    """Return the position after imports, declarations and the left side of an equation."""
+    at = 0
+    while at < len(text) and (line := _HARMLESS.match(text, at)):
+        at = line.end()
+    names = _PROGRAM_TEXT_NAMES.match(text, at)
+    assert names is not None
+    return names.end()
+
+
+def _ends_the_text(text: str, start: int) -> bool:
+    depth = 0
+    for bracket in BRACKET.finditer(text, start):
+        depth += 1 if bracket[0] in CLOSES else -1
+        if depth == 0:
+            return not text[bracket.end() :].strip(TAIL)
+    return False
+
+
+def _groups(source: SourceText) -> list[SourceText]:
+    ends = strict_pairs(source)
+    groups: list[SourceText] = []
+    i = 0
+    while i < len(source.text):
+        if source.text[i] in CLOSES:
+            if len(groups) > GRID_LIMITS.rows:
+                raise too_many_rows(source.whole)
+            groups.append(source.cut(i + 1, ends[i] - 1))
+            i = ends[i]
+        elif source.text[i] in TAIL:
+            i += 1
+        else:
+            raise text_around(source.cut(i, len(source.text)))
+    return groups
+
+
+def _unwrap_call(source: SourceText, call: re.Match[str], calls: int) -> WrittenMatrix:
+    name, inside = call[1].rpartition(".")[2], call.end() - call.start(1)
+    if name not in MAKERS or not calls:
+        message = say(
+            "`{function}(…)` of a matrix is not worked out here. Paste the result.",
+            function=call[1],
+        )
+        if name in _ROBOT_CLASSES:
+            message = say(
+                "`{function}(…)` describes a robot and is no matrix. Paste the matrix, worked out.",
+                function=call[1],
+            )
+        raise GridError("unknown_call", message, source.span(0, len(call[1])))
+    opened = source.text.index("(")
+    ends = strict_pairs(source)
+    if ends[opened] != len(source.text):
+        raise text_around(source.cut(ends[opened], len(source.text)))
+    arguments = split(source.cut(inside, len(source.text) - 1), ",")
+    arguments = [argument.strip() for argument in arguments if not _KEYWORD.match(argument.text)]
+    arguments = [argument for argument in arguments if argument.text]
+    shape = None
+    if len(arguments) == 3 and all(_is_small(argument.text) for argument in arguments[:2]):
+        shape = int(arguments[0].text), int(arguments[1].text)
+        arguments = arguments[2:]
+    if len(arguments) == 1 and _PROGRAM_TEXT_CALL.match(arguments[0].text):
+        return unwrap(arguments[0], calls - 1)
+    groups = [group for argument in arguments for group in _groups(argument)]
+    return WrittenMatrix(tuple(groups), name, shape)
+
+
+def _is_small(text: str) -> bool:
+    return text.isascii() and text.isdigit() and len(text) < 3
+
+
+def text_around(piece: SourceText) -> GridError:
+    """Return the error for text next to a matrix that may change the matrix's meaning."""
+    piece = piece.strip()
+    first = piece.text.split("\n", 1)[0][:30]
+    shown = "".join(filter(str.isprintable, first)).strip()
+    message = say("Empty brackets stand next to the matrix. Delete them.")
+    if piece.text:
+        message = say("An invisible character stands next to the matrix. Delete it.")
+    if shown:
+        message = say(
+            "`{text}` stands next to the matrix and may change it. Paste the matrix alone, "
+            "worked out.",
+            text=shown,
+        )
+    return GridError("text_around", message, piece.span(0, len(piece.text)))
+
+
+# --- Split a script in MATLAB or Python into statements and calls
+
+
+_ENDS: Final = ";,\n\r\x85\u2028\u2029"
+# Lines that begin or end a block comment: %{ and %} in MATLAB, triple quotes in Python.
+_BLOCK: Final = regex(r"[ \t]*(%\{|%\}|\"\"\"|''')?")
+_SCRIPT_CALL: Final = regex(r"(?:[A-Za-z_]\w{0,60}\.){0,4}([A-Za-z_]\w{0,60})[ \t]*\(")
+_SCRIPT_SHOWN: Final = 40
+# Blanks other than those of ASCII and the ends of lines: web pages have them in programs.
+_BLANK: Final = regex(r"[^\S\x00-\x20\x85\u2028\u2029]")
+
+
+@dataclass(frozen=True, slots=True)
+class RobotTable:
+    """The DH table of a robot, and the convention that the script names: standard or modified.
+
+    With ``has_headers``, the first row contains headers. Otherwise the columns are a, α, d, θ.
+    """
+
+    grid: Grid
+    convention: str | None = None
+    has_headers: bool = False
+
+
+def statements(source: SourceText) -> list[SourceText]:
+    """Return the statements of a script in order, without comments.
+
+    Raises GridError for unbalanced brackets, and for too many brackets.
+    """
+    # Brackets may span several lines.
+    source = replace(source, text=_BLANK.sub(" ", source.text))
+    plain = without_remarks(_without_blocks(without_prompts(source)))
+    if sum(map(plain.text.count, CLOSES)) > GRID_LIMITS.separators:
+        raise unread_script(
+            say(
+                "This script has more than {most:,} brackets. Paste only its links.",
+                most=GRID_LIMITS.separators,
+            ),
+            source,
+        )
+    pieces = (piece.strip() for piece in split(plain, _ENDS))
+    return [piece for piece in pieces if piece.text]
+
+
+def _without_blocks(source: SourceText) -> SourceText:
+    """Return the text without block comments."""
+    if not any(mark in source.text for mark in ("%{", '"""', "'''")):
+        return source
+    return joined(_outside_blocks(source), source.at)
+
+
+def _outside_blocks(source: SourceText) -> Iterator[SourceText]:
+    closer = ""
+    for line in source.lines():
+        mark = _BLOCK.match(line.text)
+        found = (mark and mark[1]) or ""
+        if closer:
+            closer = "" if closer in line.text else closer
+        elif found and found != "%}":
+            rest = line.text.partition(found)[2]
+            closer = "%}" if found == "%{" else found
+            closer = "" if closer in rest else closer
+        else:
+            yield line
+        yield line.cut(0, 0).spelled("\n")
+
+
+def split_call(source: SourceText) -> tuple[str, SourceText] | None:
+    """Return a function's name and the text of its arguments; None if the text is not one call.
+
+    Raises GridError for unbalanced brackets.
+    """
+    # Module names before the function's name, as in ``rtb.RevoluteDH(…)``, are left out.
+    call = _SCRIPT_CALL.match(source.text)
+    if call is None or strict_pairs(source)[call.end() - 1] != len(source.text):
+        return None
+    return call[1], source.cut(call.end(), len(source.text) - 1)
+
+
+def arguments(inside: SourceText) -> list[SourceText]:
+    """Return the arguments of a call, or the elements of a list."""
+    pieces = (piece.strip() for piece in split(inside, ","))
+    return [piece for piece in pieces if piece.text]
+
+
+def unread_script(message: str, source: SourceText) -> GridError:
+    """Return the error for a script whose DH table is not certain."""
+    return GridError("unread_script", message, source.whole)
+
+
+def excerpt(source: SourceText) -> str:
+    """Return the beginning of a piece of a script, to quote it in a message."""
+    text = " ".join("".join(c if c.isprintable() else " " for c in source.text).split())
+    return text if len(text) <= _SCRIPT_SHOWN else text[: _SCRIPT_SHOWN - 1] + "…"
+
+
+# --- Statements of a script that only use its DH table, such as ``T1 = dh(DH(1,:));`` below it
+#
+# Nothing is run. A statement is left out only if it cannot change the table, its units or its
+# order.
+#
+# The table and its rows may be arguments, but never a part of a calculation. An element, such as
+# DH(1,2), could tell that the columns have another order, and so could the name of a parameter.
+
+
+# Signs of another unit or of another order.
+_TELLS: Final = regex(
+    r"deg|rad|180|1000|57\.|1e-?3|\.001|(?<!\w)(?:a?(?:sin|cos|tan)d|[mc]m)(?!\w)"
+    r"|flip|swap|rot90|shift|transpos|permut|sort|revers|shuffle|order|convert|scal|unit"
+    r"|eval|exec|assignin",
+    re.IGNORECASE,
+)
+# Toolboxes, whose matrices have another order.
+_TOOLBOX: Final = regex(r"link[(.]|revolute|prismatic|dhrobot|rigidbody|setfixed", re.IGNORECASE)
+_PARAMETER: Final = regex(
+    r"(?<![^\W\d_])(?:a|d|r|(?i:al|alpha|alfa|th|theta|twist|offset|angle)|[αθ])_?[ijn]?(?![^\W_])"
+)
+_GAP: Final = r"['\"]?\s{0,4},\s{0,4}['\"]?"
+# The parameters, or the elements of a row, in the order a, α, d, θ.
+_IN_ORDER: Final = regex(
+    rf"(?<![\w.])a(?:_?i)?{_GAP}(?:alpha|al|α)(?:_?i)?{_GAP}d(?:_?i)?{_GAP}(?:theta|th|θ)(?:_?i)?"
+    r"(?!\w)|"
+    + "|".join(
+        rf"(?P<row{first}>\w{{1,40}}[(\[](?:\w{{1,12}}(?:,\s?|\]\[))?){first}(?P<end{first}>[)\]])"
+        + "".join(rf"\s?,\s?(?P=row{first}){first + i}(?P=end{first})" for i in range(1, 4))
+        for first in (0, 1)
+    )
+)
+_ROW: Final = "ROW"
+# The length of a statement, as it is written and without the elements of its rows.
+_LONGEST_WRITTEN: Final = 2_000
+_LONGEST: Final = 400
+# The number of rows.
+_COUNTED: Final = (
+    r"(?<![\w.])(?:len|length|size|numel|nrows|height)\({table}(?:,\s?[01])?\)"
+    r"|(?<![\w.]){table}\.(?:shape\[0\]|rows(?!\w))"
+)
+_STRING: Final = regex(r"(?<=[(,=\[{ ])(['\"])[^'\"\n]{0,200}\1")
+# The table and its name: DH = [, dh = np.array([.
+_TABLE: Final = regex(
+    r"(?:^|(?<=;))[ \t]*([A-Za-z]\w{0,40})[ \t]*=[ \t]*(?:[\w.]{1,40}\(\s{0,40})?[\[{]",
+    re.MULTILINE,
+)
+_LATER_STATEMENTS_NAMES: Final = r"[A-Za-z]\w{0,40}"
+_LOOP: Final = regex(
+    rf"(?:par)?for\s{{1,4}}\(?(?P<names>{_LATER_STATEMENTS_NAMES}(?:,\s?\(?{_LATER_STATEMENTS_NAMES})?)\)?\s?(?:=|in\s|∈)\s?"
+    r"(?P<over>[^,;=]{1,60}?(?:\([^()]{0,20}\))?)\)?(?:[,:](?=\s|\Z)|\Z)\s?(?P<body>.*)",
+    re.DOTALL,
+)
+_LISTED: Final = regex(
+    rf"\[(?P<value>[^\[\]]*(?:\[[^\[\]]*\][^\[\]]*)*)\sfor\s(?P<names>{_LATER_STATEMENTS_NAMES})\sin\s(?P<over>[^\[\]]*)\]"
+)
+_LATER_STATEMENTS_ASSIGNED: Final = regex(
+    rf"(?P<left>\[?{_LATER_STATEMENTS_NAMES}(?:\{{[\w+ -]{{1,20}}\}}|\([\w:,+ -]{{1,20}}\))?"
+    rf"(?:\s?,\s?{_LATER_STATEMENTS_NAMES}){{0,5}}\]?)\s?=(?!=)\s?(?P<right>.+)",
+    re.DOTALL,
+)
+_LATER_STATEMENTS_SHOWN: Final = regex(
+    r"(?:\w{1,12}\.)?(?:disp|display|print|println|pprint|pretty|fprintf|printf)\(.*\)"
+    rf"|{_LATER_STATEMENTS_NAMES}(?:\{{\d{{1,2}}\}})?(?:\s?[*@]\s?{_LATER_STATEMENTS_NAMES}(?:\{{\d{{1,2}}\}})?){{0,12}}"
+    r"|(?:import|from|syms|clc|format|end\w{0,6})(?!\w)[^=]*|if __name__ == '':",
+    re.DOTALL,
+)
+# A matrix or a list, but not an empty list or a list of strings.
+_LITERAL: Final = regex(r"(?<![\w)\]}])[\[{](?!\s{0,4}(?:[\]}]|''))")
+_IS_TABLE: Final = regex(r"dh|tab|param", re.IGNORECASE)
+# The first line of an output, such as "3×4 Matrix{Num}:" or "DH =".
+_ECHO: Final = regex(
+    r";?[ \t]*\n\s{0,40}(?:\d{1,2}[×x]\d{1,2} [\w{}, ]{1,40}:|(?P<name>[A-Za-z]\w{0,40}) ?=)\s*?\n"
+)
+_TOKEN: Final = regex(r"[^\s,;\[\]]+")
+_NUMBER: Final = regex(r"-?\d{1,12}(?:\.\d{0,12})?")
+# A line that prints a table: print(tabulate(dh, headers=[…])), print(df.to_string()).
+_PRINTED: Final = regex(
+    r"\s{0,40}(?:(?:import|from)\s[^\n]{0,80}\n){0,4}(?:\w{1,12}\.)?(?:print|disp|display)\("
+    r"(?:[\w.]{1,20}\()?\w{1,40}(?:=\w{1,12}|\.to_\w{1,12}\()?(?:,[^()\n]{0,200})?\){1,2}[ \t;]*\n"
+)
+_SET: Final = regex(r"(?<!\w)\d*([^\W\d]\w*)\s?=(?!=)")
+_WORD: Final = regex(r"[^\W\d]\w*")
+
+
+def without_uses(source: SourceText) -> SourceText:
+    """Return a table without the later statements of its script that only use it.
+
+    Any other text is returned unchanged. Raises GridError for unbalanced brackets.
+    """
+    plain = without_remarks(source)
+    found = _TABLE.search(plain.text)
+    if found is None:
+        return source
+    name = found[1]
+    opened = BRACKET.search(plain.text, found.end(1))
+    assert opened is not None
+    end = strict_pairs(plain)[opened.start()]
+    if _is_echo(plain.text[found.end() : end], plain.text[end:], name):
+        return plain.cut(0, end)
+    later = split(plain.cut(end, len(plain.text)), ";\n\r")
+    if later[0].text.strip():
+        return source
+    taken = set(_WORD.findall(plain.text[:end]))
+    rows = {_ROW}
+    if all(_is_use(each.text.strip(), name, rows, taken) for each in later):
+        return plain.cut(0, end)
+    return source
+
+
+def without_print(source: SourceText) -> SourceText:
+    """Return a printed table without a first line such as ``print(tabulate(dh, …))``."""
+    printed = _PRINTED.match(source.text)
+    if printed is None or _TELLS.search(printed[0]):
+        return source
+    rest = source.cut(printed.end(), len(source.text))
+    named = _PARAMETER.findall(printed[0])
+    if not tells(printed[0]) or named == _PARAMETER.findall(rest.text.lstrip().partition("\n")[0]):
+        return rest
+    return source
+
+
+def tells(text: str) -> bool:
+    """True if a text may name another unit or another order of the columns than a, α, d, θ."""
+    return bool(_TELLS.search(text) or _PARAMETER.search(_IN_ORDER.sub(_ROW, text)))
+
+
+def first_change(later: Sequence[SourceText], table: str) -> SourceText | None:
+    """Return the first statement after a table that may change it, or None."""
+    rows = {_ROW}
+    for each in later:
+        is_other = not {table, *rows} & set(_WORD.findall(each.text))
+        is_harmless = is_other and not _TELLS.search(each.text)
+        if not is_harmless and not _is_use(each.text, table, rows, set()):
+            return each
+    return None
+
+
+def _is_echo(written: str, later: str, name: str) -> bool:
+    """True if the text after a table is only its output by an interpreter."""
+    echo = _ECHO.match(later)
+    if echo is None or (echo["name"] or name) != name:
+        return False
+    tokens, shown = _TOKEN.findall(written), _TOKEN.findall(later[echo.end() :])
+    return len(tokens) == len(shown) and all(map(_is_equal, tokens, shown))
+
+
+def _is_equal(written: str, shown: str) -> bool:
+    # A program shows -pi/2 as -1.5708.
+    if written == shown:
+        return True
+    if not _NUMBER.fullmatch(shown) or set(_WORD.findall(written)) - {"pi"}:
+        return False
+    if _NUMBER.fullmatch(written):
+        return float(written) == float(shown)
+    return "pi" in written and (written[0] == "-") == (shown[0] == "-") and float(shown) != 0
+
+
+def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool:
+    """True if a statement cannot change the table; ``rows`` gets the names of its rows."""
+    # ``taken`` are the words in the table and before it.
+    if len(statement) > _LONGEST_WRITTEN:
+        return False
+    text = _IN_ORDER.sub(_ROW, re.sub(_COUNTED.format(table=table), "1", statement))
+    if not text or text == f"return {table}":
+        return True
+    is_set = not taken.isdisjoint(_SET.findall(text))
+    if is_set or len(text) > _LONGEST or _TOOLBOX.search(text) or tells(text):
+        return False
+    text = _STRING.sub("''", text)
+    if loop := _LOOP.match(text):
+        return _iterates(loop, table, rows, taken) and _is_use(loop["body"], table, rows, taken)
+    assigned = _LATER_STATEMENTS_ASSIGNED.fullmatch(text)
+    if assigned is None:
+        return _LATER_STATEMENTS_SHOWN.fullmatch(text) is not None and _is_argument(
+            text, table, rows
+        )
+    names, right = set(_WORD.findall(assigned["left"])), assigned["right"]
+    if names & (taken | rows - {_ROW}) or any(map(_IS_TABLE.search, names)):
+        return False
+    if listed := _LISTED.search(right):
+        if not _iterates(listed, table, rows, taken):
+            return False
+        right = f"{right[: listed.start()]}({listed['value']}){right[listed.end() :]}"
+    elif row := _use_of(table).fullmatch(right):
+        rows |= names
+        return row["row"] is not None
+    return _is_argument(right, table, rows)
+
+
+def _iterates(loop: re.Match[str], table: str, rows: set[str], taken: set[str]) -> bool:
+    names, over = _WORD.findall(loop["names"]), loop["over"].strip()
+    if set(names) & taken:
+        return False
+    if re.fullmatch(rf"(?:(?:enumerate|eachrow)\()?{table}(?:,\s?\w)?\)?", over):
+        rows.add(names[-1])
+        # In MATLAB, a loop over a matrix takes its columns.
+        return " in " in loop[0]
+    return re.fullmatch(r"[\w(),:+ -]{1,60}", over) is not None and table not in over
+
+
+def _use_of(*names: str) -> re.Pattern[str]:
+    return re.compile(
+        rf"(?<![\w.])(?:{'|'.join(sorted(names))})(?!\w)"
+        r"(?P<row>\[[\w +-]{1,12}(?:,\s?:)?\]|\([\w +-]{1,12},\s?:\)|\.row\([\w +-]{1,12}\))?"
+    )
+
+
+def _is_argument(text: str, table: str, rows: set[str]) -> bool:
+    """True if the table and its rows are only arguments of functions, or are shown."""
+    if _LITERAL.search(text):
+        return False
+    for use in _use_of(table, *rows).finditer(text):
+        before, after = text[: use.start()].rstrip(), text[use.end() :].lstrip()
+        is_within = before.removesuffix("*")[-1:] in {"(", ","} and after[:1] in {")", ","}
+        if (before or after) and not is_within:
+            return False
+    return True
+
+
+# A character in UTF-16, of one or two units, or an escaped punctuation mark.
+_ESCAPE: Final = regex(
+    r"\\(?:(u[dD][89abAB][0-9A-Fa-f]{2}\\u[dD][c-fC-F][0-9A-Fa-f]{2}|u[0-9A-Fa-f]{4})|([\\\"'/]))"
+)
+
+
+def unquoted(cell: SourceText) -> SourceText:
+    """Return the cell without the quotation marks of a string, and with its escapes decoded."""
+    # An escape that may begin a LaTeX command is not decoded: "\theta" stays \theta, though a
+    # program would read a tab in it.
+    quote = cell.text[:1]
+    if quote not in {"'", '"'} or len(cell.text) < 2 or not cell.text.endswith(quote):
+        return cell
+    inner = cell.cut(1, len(cell.text) - 1)
+    pieces: list[SourceText] = []
+    start = 0
+    for escape in _ESCAPE.finditer(inner.text):
+        pieces.append(inner.cut(start, escape.start()))
+        letter = _character(escape[1]) if escape[1] else escape[2]
+        pieces.append(inner.cut(escape.start(), escape.end()).spelled(letter))
+        start = escape.end()
+    return joined([*pieces, inner.cut(start, len(inner.text))], inner.whole[0])
+
+
+def _character(units: str) -> str:
+    return bytes.fromhex(units.replace("\\", "").replace("u", "")).decode("utf-16-be", "replace")

@@ -1,1 +1,0 @@
-"""Convert typed text to plain characters, each with its position in the typed text."""

@@ -1,1 +1,0 @@
-"""Parse plain characters into tokens, and tokens into a syntax tree."""

@@ -1,1 +1,0 @@
-"""Split plain characters into tokens."""

@@ -1,1 +1,0 @@
-"""Print a syntax tree as text, LaTeX or MathML."""

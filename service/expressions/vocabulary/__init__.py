@@ -1,1 +1,0 @@
-"""The names that an answer may use: symbols and functions."""

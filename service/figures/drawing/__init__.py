@@ -1,1 +1,0 @@
-"""Draw the parts of a figure, and place its labels."""

@@ -1,1 +1,0 @@
-"""Compute the frames and the formulas of a student's table."""

@@ -1,1 +1,0 @@
-"""Reports for grading platforms, one format in each file."""

@@ -1,1 +1,0 @@
-"""Helpers of several formats: submissions with their reports, messages in words, escaping."""

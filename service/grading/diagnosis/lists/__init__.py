@@ -1,1 +1,0 @@
-"""Slips in a list of values: positions, angles and Euler angles."""

@@ -1,1 +1,0 @@
-"""Slips in a rotation, a transform or a list of transforms."""

@@ -1,1 +1,0 @@
-"""Slips in a product of transforms or motions."""

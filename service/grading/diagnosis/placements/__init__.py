@@ -1,1 +1,0 @@
-"""Slips in the placement of frames."""

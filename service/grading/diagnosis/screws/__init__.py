@@ -1,1 +1,0 @@
-"""Slips in screw axes."""

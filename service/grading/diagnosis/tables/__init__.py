@@ -1,1 +1,0 @@
-"""Slips in a DH table."""

@@ -1,1 +1,0 @@
-"""Decide which answers are right, by comparing numbers."""

@@ -1,1 +1,0 @@
-"""The points of an answer, computed from the verdicts on its cells."""

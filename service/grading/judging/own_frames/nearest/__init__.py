@@ -1,1 +1,0 @@
-"""Find the valid table (one that describes the robot) nearest to a wrong one."""

@@ -1,1 +1,0 @@
-"""Find the exact numbers of tables with rounded decimals."""

@@ -1,1 +1,0 @@
-"""Code that several answer kinds share."""

@@ -1,1 +1,0 @@
-"""Read answers in JSON or pasted text; each cell becomes an entry."""

@@ -1,1 +1,0 @@
-"""Read submitted lists of values and of frames as entries."""

@@ -1,1 +1,0 @@
-"""Read submitted matrices and screw axes as entries."""

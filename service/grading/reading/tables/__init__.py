@@ -1,1 +1,0 @@
-"""Read submitted DH tables as rows of entries."""

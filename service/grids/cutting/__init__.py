@@ -1,1 +1,0 @@
-"""Cut a pasted text into cells."""

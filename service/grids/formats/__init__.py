@@ -1,1 +1,0 @@
-"""The formats of pasted tables, one file each."""

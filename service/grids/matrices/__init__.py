@@ -1,1 +1,0 @@
-"""The formats of pasted matrices, one file each."""

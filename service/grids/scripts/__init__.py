@@ -1,1 +1,0 @@
-"""Read scripts and interpreter sessions in MATLAB or Python."""

@@ -1,1 +1,0 @@
-"""Rigid transforms and Denavit-Hartenberg chains, computed for whole arrays at once."""

@@ -1,1 +1,0 @@
-"""Find which tables describe a given robot if students choose the frames."""

@@ -1,1 +1,0 @@
-"""Repair a table by changing a few cells."""

@@ -1,1 +1,0 @@
-"""Grade files that students hand in at a platform, and report there (Asset Processor)."""

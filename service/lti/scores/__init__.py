@@ -1,1 +1,0 @@
-"""Scores: send the points of learners to the gradebooks of platforms (AGS)."""

@@ -1,1 +1,0 @@
-"""The server around the application: limits for connections, and fair scheduling."""

@@ -1,1 +1,0 @@
-"""Fair scheduling of the requests of different clients."""

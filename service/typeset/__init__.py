@@ -1,1 +1,0 @@
-"""Texts and formulas as students read them: names and matrices in MathML."""

@@ -1,1 +1,0 @@
-"""Exercises about generated robots. A level and a seed determine the robot."""

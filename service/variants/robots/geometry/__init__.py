@@ -1,1 +1,0 @@
-"""The geometry of generated robots, and the reasons to refuse a robot."""

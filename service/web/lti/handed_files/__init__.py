@@ -1,1 +1,0 @@
-"""Grade files that students hand in on the learning platform."""

@@ -1,3 +1,0 @@
-"""The pages on which the admin of a learning platform registers the platform."""
-
-# By invitation.

@@ -1,1 +1,0 @@
-"""Import robots into the editor for exercise files."""
