@@ -67,6 +67,9 @@ _PASTED: Final[Mapping[str, str]] = {
     "short words in brackets": run("[", "a1 ", "]"),
 }
 
+# A text that may be several answers, in each part; what stands below its rows is read with them.
+_ROWS_AND_DOLLARS: Final = run("c1, c2, c3, c1\nc2, c3, c1, c2\nc3, c1, c2, c3\n", "$")
+
 # A table of an honest client, in which a row is missing and the last one moves nothing.
 _FEW_ROWS: Final = [
     {"a": "0*0.649546", "alpha": "0", "d": "-(0)", "theta": "0"},
@@ -78,6 +81,11 @@ _FEW_ROWS: Final = [
 KNOWN: Final[Mapping[str, Attack]] = {
     "a table with a row too few": Attack(
         GRADE, "planar-rrr", {"answers": {"table": {"rows": _FEW_ROWS}}}
+    ),
+    "rows and dollars in each part": Attack(
+        GRADE,
+        "dh-conditions",
+        {"answers": dict.fromkeys(("first", "second", "third", "fourth"), _ROWS_AND_DOLLARS)},
     ),
     "cells that nearly repair": _graded(pose=_HALVES),
     "cells that nearly repair, in several parts": _graded(pose=_HALVES, links=[_HALVES] * 6),

@@ -155,7 +155,7 @@ _NAMED_VALUES_NAME: Final = regex(
     r"_?\{?(?P<number>[\d₀-₉]{0,2}|[ijᵢ])\}?(?P=quote)[ \t]{0,20}(?P<sign>[=:,])(?!=)"
 )
 # Marks that only style a text.
-_STYLE: Final = regex(r"\\[()]|\*\*|[`$]")
+_STYLE: Final = regex(r"(?:\\[()]|\*\*|[`$])+")
 # Signs of a list, of another name, or of an unclosed string.
 _NOT_ONE: Final = regex(r"[=:'\"]|\A[\[{]|\A\Z")
 # A word within a row that may be a value.

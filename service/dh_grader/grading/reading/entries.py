@@ -776,6 +776,8 @@ def units_in(comment: str) -> tuple[set[AngleUnit], set[float]]:
 
 
 _MOST_ANSWERS: Final = 4
+# A reading searches a text for names, units and comments, which costs twice as much as cutting it.
+_READING: Final = 3
 _FEWEST_LINES: Final = 2
 _MOST_LINES: Final = 200
 # Programs print numbers with as few as five digits.
@@ -832,20 +834,24 @@ def read_once(
 def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] | None:
     # The text up to the end of its first answer, and a note, if equal answers follow; None if the
     # text has only one answer. Raises GridError if the answers differ.
-    if len(text) > GRID_LIMITS.characters:
+    # A text that was not cut is not read in pieces either.
+    if len(text) > GRID_LIMITS.characters or not reader.budget.charge_pasted(text):
         return None
     if not _FEWEST_LINES <= len(text.splitlines()) <= _MOST_LINES:
         return None
-    ways = list(_starts(lines := SourceText.of(text).lines()))
-    if not ways or not reader.budget.affords_search(PASTED_WORK * 2 * len(text)):
+    # The first reading cost as much as each of these, and PASTED_WORK is only a part of it.
+    work = _READING * PASTED_WORK * len(text)
+    if not reader.budget.affords_search(work):
         return None
+    lines = SourceText.of(text).lines()
     own = replace(reader, budget=WorkBudget(MAX_SYMBOLS, repairs=0, pasted=4 * MAX_PASTED))
     try:
-        for starts in ways:
+        for starts in _starts(lines):
+            if not reader.budget.affords_search(work):
+                return None
             pieces = [lines[a:b] for a, b in pairwise([*starts, len(lines)])]
-            found = [_found(piece, find, own) for piece in pieces]
-            answers = [each for each in found if each is not None]
-            if len(answers) == len(pieces) and _are_alternatives(answers, own):
+            answers = _all_found(pieces, find, own)
+            if answers is not None and _are_alternatives(answers, own):
                 return _first(pieces, answers, own)
     finally:
         reader.budget.charge_search(SYMBOL_WORK * (MAX_SYMBOLS - max(own.budget.symbols, 0)))
@@ -875,6 +881,17 @@ def _first(
 
 def _lines(first: int, last: int) -> str:
     return str(first) if first == last else f"{first}-{last}"
+
+
+def _all_found(
+    pieces: Sequence[Sequence[SourceText]], find: Find, reader: Reader
+) -> list[FoundAnswer] | None:
+    answers = []
+    for piece in pieces:
+        if (answer := _found(piece, find, reader)) is None:
+            return None
+        answers.append(answer)
+    return answers
 
 
 def _found(piece: Sequence[SourceText], find: Find, reader: Reader) -> FoundAnswer | None:
