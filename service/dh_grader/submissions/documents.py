@@ -17,10 +17,19 @@ from itertools import groupby, islice, zip_longest
 from typing import Any, Final
 from xml.etree import ElementTree as ET
 
-from dh_grader.grading.reading.entries import comments, units_in
-from dh_grader.grading.reading.headers import METRES, QUANTITIES, THETA_OFFSET, read_header
+from dh_grader.grading.reading.entries import comments, is_beside_code, units_in
+from dh_grader.grading.reading.headers import (
+    LABEL,
+    METRES,
+    QUANTITIES,
+    THETA_OFFSET,
+    Header,
+    read_header,
+)
 from dh_grader.pasting import ASSIGNMENT, GridError, read_grid, read_robot
-from dh_grader.pasting.around import UNIT, is_correction, names_unit
+from dh_grader.pasting.around import UNIT, is_sentence, names_unit
+from dh_grader.pasting.program import changing_statement
+from dh_grader.pasting.remarks import Claim, claims, contradicts, may_change
 from dh_grader.regex import regex
 from dh_grader.submissions.bodies import MalformedError, read_json
 from dh_grader.translations import say
@@ -57,26 +66,141 @@ _LARGEST_FACTOR: Final = 2
 _FEWEST_HEADERS: Final = 2
 
 
-def changing_remark(text: str, around: Iterable[str], length_unit: str | None) -> str:
+def changing_remark(
+    text: str, around: Iterable[str], length_unit: str | None, beside: Iterable[str] = ()
+) -> str:
     """Return the first sentence around a table or matrix that may change its meaning, or "".
 
     ``length_unit`` is the unit of the lengths in the exercise, or None if it is not known.
+    ``beside`` are remarks on cells, such as the comments of a spreadsheet.
     """
-    numbers: set[str] | None = None
-    for sentence in _remarks_sentences(around):
-        if is_correction(sentence):
+    table = _Table.of(text)
+    beside = tuple(beside)
+    for sentence in _remarks_sentences((*around, *beside)):
+        if _changes(sentence, table) or _gives_unit(sentence, table, length_unit):
             return sentence
-        units = _MEASURED.sub(" ", _COMMAND.sub(" ", _CIRCLE.sub("°", sentence)))
-        if not names_unit(units):
-            continue
-        if numbers is None:
-            numbers = set(_kinds_of_numbers(text))
-        # Angles without a unit are in radians.
-        if "angle" in numbers and _ANGLES.search(_RADIANS.sub("", units)):
+    for sentence in _remarks_sentences((*_said_within(text), *table.asides)):
+        # The reader of tables has judged the units in its text.
+        if _changes(sentence, table):
             return sentence
-        if "length" in numbers and _lengths(units) - {METRES.get(length_unit or "")}:
-            return sentence
+    for remark in (*beside, *table.remarks, *_said_beside_code(text)):
+        if may_change(remark, of_cell=True):
+            return " ".join(remark.split())
     return ""
+
+
+def _changes(sentence: str, table: "_Table") -> bool:
+    return may_change(sentence) or any(map(table.contradicts, claims(sentence)))
+
+
+def _gives_unit(sentence: str, table: "_Table", length_unit: str | None) -> bool:
+    units = _MEASURED.sub(" ", _COMMAND.sub(" ", _CIRCLE.sub("°", sentence)))
+    if not names_unit(units) and not _CONVERTS.search(sentence):
+        return False
+    # Angles without a unit are in radians.
+    is_code = _CONVERTS.search(sentence) is not None
+    if "angle" in table.numbers and (is_code or _ANGLES.search(_RADIANS.sub("", units))):
+        return True
+    others = _lengths(units) - {METRES.get(length_unit or "")}
+    return "length" in table.numbers and bool(others)
+
+
+# A statement that converts degrees to radians.
+_CONVERTS: Final = regex(
+    r"[^\n]{0,80}(?:deg2rad|\bradians\(|(?:pi|π)\s?/\s?180(?!\d)|\b(?:cos|sin)d\()[^\n]{0,80}"
+)
+
+
+def _said_within(text: str) -> Iterator[str]:
+    # The sentences and comments in a text that was read as a whole.
+    yield from (line for line in text.splitlines() if is_sentence(line) and is_prose(line))
+    yield from (comment[1] for comment in comments(text))
+
+
+def is_prose(line: str) -> bool:
+    """True if a line is no row of a table: it has few signs between cells, or many words."""
+    signs = sum(map(line.count, "\t|&;"))
+    return signs < _FEWEST_SIGNS and len(line.split()) > line.count(",") * _MOST_WORDS
+
+
+_FEWEST_SIGNS: Final = 3
+
+
+def _said_beside_code(text: str) -> Iterator[str]:
+    return (each[1] for each in comments(text) if is_beside_code(text, each.start()))
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """The cells of a table that words beside it may speak of."""
+
+    headers: tuple[Header | None, ...]
+    rows: tuple[tuple[str, ...], ...]
+    # "angle" or "length" if numbers without a unit may be in another unit.
+    numbers: frozenset[str]
+    # The words in its rows, and the rows of words.
+    remarks: tuple[str, ...] = ()
+    asides: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, text: str) -> "_Table":
+        """Return the table in a text; it has no rows if the text has none."""
+        rows = _rows(text)
+        numbers = frozenset(_kinds_of_numbers(text))
+        widest = max(map(_filled, rows), default=0)
+        if widest < len(QUANTITIES):
+            return cls((), (), numbers)
+        names = next((i for i, row in enumerate(rows[:_MOST_ABOVE]) if _has_headers(row)), None)
+        body = [tuple(row) for row in rows[0 if names is None else names + 1 :]]
+        headers: list[Header | None] = [Header(column) for column in QUANTITIES]
+        if names is not None:
+            headers = [read_header(cell) for cell in rows[names]]
+        elif widest > len(QUANTITIES):
+            headers = [Header(LABEL), *headers]
+        words = [cell for row in body if _filled(row) >= len(QUANTITIES) for cell in row]
+        asides = [" ".join(filter(None, row)) for row in rows if 0 < _filled(row) < len(QUANTITIES)]
+        return cls(
+            tuple(headers),
+            tuple(row for row in body if _filled(row) >= len(QUANTITIES)),
+            numbers,
+            tuple(filter(_HAS_WORD.search, words)),
+            tuple(filter(_HAS_WORD.search, asides)),
+        )
+
+    def contradicts(self, claim: Claim) -> bool:
+        """True if a sentence gives a cell another value than the table."""
+        for i, header in enumerate(self.headers):
+            if header is not None and header.column == claim.column:
+                row = self._row(claim.row + (1 if header.shifted and claim.row > 0 else 0))
+                return i < len(row) and contradicts(claim.value, row[i])
+        return False
+
+    def _row(self, number: int) -> tuple[str, ...]:
+        labels = [i for i, header in enumerate(self.headers) if header and header.column == LABEL]
+        if number > 0 and labels:
+            for row in self.rows:
+                if labels[0] < len(row) and _LAST_NUMBER.findall(row[labels[0]])[-1:] == [
+                    str(number)
+                ]:
+                    return row
+        if number > len(self.rows) or not self.rows:
+            return ()
+        return self.rows[number - 1 if number > 0 else -1]
+
+
+def _filled(row: Sequence[str]) -> int:
+    return sum(map(bool, map(str.strip, row)))
+
+
+def _has_headers(row: Sequence[str]) -> bool:
+    known = [header for cell in row if (header := read_header(cell))]
+    return sum(header.column in QUANTITIES for header in known) >= _FEWEST_HEADERS
+
+
+_HAS_WORD: Final = regex(r"[^\W\d_]{3}|[\u4e00-\u9fff]{2}")
+_LAST_NUMBER: Final = regex(r"\d{1,3}")
+# The most rows above the headers.
+_MOST_ABOVE: Final = 5
 
 
 def _remarks_sentences(around: Iterable[str]) -> Iterator[str]:
@@ -414,13 +538,16 @@ class Excerpt:
     """A piece of a file that may be the answer to a part.
 
     ``name`` is the name of a sheet, or empty. An excerpt of a higher ``level`` counts only if none
-    of a lower level can be read. ``around`` are the lines, cells and comments beside it.
+    of a lower level can be read. ``around`` are the lines and cells around it, and ``beside`` the
+    remarks on its cells. ``changed`` is a later statement that changes it, or empty.
     """
 
     text: str
     name: str = ""
     level: int = 0
     around: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+    changed: str = ""
 
 
 SheetRow = Sequence[str]
@@ -562,6 +689,8 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
                             "program, and save it there"
                         )
                     )
+            if b"strike" in content:
+                content = _STRUCK_IN_XLSX.sub(rb"\1~~\2~~", content)
             copy.writestr(name, content)
     # Loaded only if there is such a file.
     from openpyxl import load_workbook
@@ -574,7 +703,11 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
             rows = sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS)
             hidden = _Hidden.of_xlsx(parts.get(sheet._worksheet_path, b""))
             sheets.append((sheet.title, hidden.without([list(map(_of_xlsx, row)) for row in rows])))
-    yield from _of_sheets(sheets, [*_notes(package, _NOTES_OF_SHEETS)])
+    yield from _of_sheets(
+        sheets,
+        comments=[*_notes(package, _NOTES_OF_SHEETS)],
+        boxes=[*_notes(package, _BOXES_OF_SHEETS)],
+    )
 
 
 def _of_xlsx(cell: Any) -> str:
@@ -584,7 +717,17 @@ def _of_xlsx(cell: Any) -> str:
     return _struck(text) if cell.font and cell.font.strike else text
 
 
+# A piece of a text that is struck out, in the XML of a workbook.
+_STRUCK_IN_XLSX: Final = regex(
+    rb"(<(?:\w{1,9}:)?rPr>(?:\s{0,9}<[^/<>][^<>]{0,200}>){0,20}?"
+    rb"\s{0,9}<(?:\w{1,9}:)?strike(?:\s{1,9}val=[\"'](?:1|true)[\"'])?\s{0,9}/>"
+    rb"(?:\s{0,9}<[^/<>][^<>]{0,200}>){0,20}\s{0,9}</(?:\w{1,9}:)?rPr>"
+    rb"\s{0,9}<(?:\w{1,9}:)?t(?:\s[^<>]{0,60})?>\s{0,20})([^<>~\s][^<>~]{0,399})(?=</)"
+)
+
+
 _NOTES_OF_SHEETS: Final = regex(r"xl/(?:comments/?[^/]{0,20}|threadedComments/[^/]{1,60})\.xml")
+_BOXES_OF_SHEETS: Final = regex(r"xl/drawings/drawing\d{1,4}\.xml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -677,12 +820,17 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
         file_contents=data, ragged_rows=True, formatting_info=True, logfile=io.StringIO()
     )
     sheets = []
+    notes: list[str] = []
     for sheet in book.sheets():
         if sheet.visibility == 0:
+            notes += [note.text for note in sheet.cell_note_map.values()]
             if sum(map(sheet.row_len, range(sheet.nrows))) > MAX_CELLS:
                 raise _too_much()
             rows = [
-                [_of_xls(book, cell) for cell in sheet.row(i)[:MAX_COLUMNS]]
+                [
+                    _of_xls(book, cell, sheet.rich_text_runlist_map.get((i, j), ()))
+                    for j, cell in enumerate(sheet.row(i)[:MAX_COLUMNS])
+                ]
                 for i in range(min(sheet.nrows, MAX_ROWS))
             ]
             hidden = _Hidden(
@@ -690,7 +838,7 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
                 frozenset(j for j, info in sheet.colinfo_map.items() if info.hidden),
             )
             sheets.append((sheet.name, hidden.without(rows)))
-    yield from _of_sheets(sheets)
+    yield from _of_sheets(sheets, comments=notes)
 
 
 def _cells_in_records(data: bytes) -> Iterator[int]:
@@ -720,9 +868,13 @@ def _cells_in_records(data: bytes) -> Iterator[int]:
 _CELLS_IN_RECORD: Final = {0xBD: 6, 0xBE: 2}
 
 
-def _of_xls(book: Any, cell: Any) -> str:
+def _of_xls(book: Any, cell: Any, fonts: Sequence[tuple[int, int]]) -> str:
     format_ = book.xf_list[cell.xf_index]
     text = _value_of_xls(cell, book.datemode, book.format_map[format_.format_key].format_str)
+    for start, font in reversed(fonts):
+        if book.font_list[font].struck_out:
+            end = next((at for at, _ in fonts if at > start), len(text))
+            text = text[:start] + _struck(text[start:end]) + text[end:]
     return _struck(text) if text and book.font_list[format_.font_index].struck_out else text
 
 
@@ -745,8 +897,13 @@ def _ods(data: bytes) -> Iterator[Excerpt]:
             (_attribute(table, "name"), list(_rows_of_ods(table, _struck_styles(root))))
             for table in _tables_of_ods(root)
         ],
-        ["".join(each.itertext()) for each in root.iter() if local_name(each) == "annotation"],
+        comments=_texts_in(root, "annotation"),
+        boxes=_texts_in(root, "text-box") + _texts_in(root, "custom-shape"),
     )
+
+
+def _texts_in(root: ET.Element, name: str) -> list[str]:
+    return ["".join(each.itertext()) for each in root.iter() if local_name(each) == name]
 
 
 def _struck_styles(root: ET.Element) -> frozenset[str]:
@@ -870,11 +1027,19 @@ def _one_line(text: str) -> str:
 
 
 def _of_sheets(
-    sheets: Iterable[tuple[str, Sequence[SheetRow]]], comments: Sequence[str] = ()
+    sheets: Iterable[tuple[str, Sequence[SheetRow]]],
+    *,
+    comments: Sequence[str] = (),
+    boxes: Sequence[str] = (),
 ) -> Iterator[Excerpt]:
+    # ``comments`` are on cells, and ``boxes`` are texts that lie on a sheet.
     filled = [(name, rows) for name, rows in sheets if any(any(row) for row in rows)]
-    for name, rows in filled:
-        yield Excerpt(_as_table(rows), name, around=(*_office_files_sentences(rows), *comments))
+    notes = tuple(comments)
+    for i, (name, rows) in enumerate(filled):
+        others = [row for j, (_, other) in enumerate(filled) if j != i for row in other]
+        said = [each for each in _remarks(others) if len(each.split()) > _MOST_WORDS or "行" in each]
+        around = (*_office_files_sentences(rows), *boxes, *said)
+        yield Excerpt(_as_table(rows), name, around=around, beside=notes)
     for name, rows in filled:
         blocks = list(_blocks(rows))
         if len(blocks) == 1:
@@ -882,8 +1047,8 @@ def _of_sheets(
         for block in blocks:
             if len(block) > 1:
                 others = [row for other in blocks if other is not block for row in other]
-                around = (*_office_files_sentences(block), *_remarks(others), *comments)
-                yield Excerpt(_as_table(block), name, 1, around)
+                around = (*_office_files_sentences(block), *_remarks(others), *boxes)
+                yield Excerpt(_as_table(block), name, 1, around, notes)
 
 
 def _office_files_sentences(rows: Iterable[SheetRow]) -> Iterator[str]:
@@ -928,19 +1093,70 @@ def _blocks(rows: Sequence[SheetRow]) -> Iterator[list[SheetRow]]:
 def _docx(data: bytes) -> Iterator[Excerpt]:
     package = _Package(data)
     root = package.parsed("word/document.xml")
+    if "word/styles.xml" in package.names:
+        _strike_by_style(root, package.parsed("word/styles.xml"))
     lines: list[str] = []
     tables: list[list[SheetRow]] = []
     body = next((each for each in root if local_name(each) == "body"), root)
     _read_blocks(body, lines, tables)
     between = "\n".join(line for line in lines if line.strip())
-    notes = [*_text_boxes(body), *_notes(package, _NOTES_OF_WORD)]
+    boxes = [*_text_boxes(body), *_notes(package, _MARGINS_OF_WORD)]
+    notes = tuple(_notes(package, _NOTES_OF_WORD))
     for i, rows in enumerate(tables):
         others = [row for other in (*tables[:i], *tables[i + 1 :]) for row in other]
-        around = (*between.splitlines(), *_office_files_sentences(rows), *_remarks(others), *notes)
+        around = (*between.splitlines(), *_office_files_sentences(rows), *_remarks(others), *boxes)
         if text := _as_table(rows).strip():
-            yield Excerpt(text, around=around)
+            yield Excerpt(text, around=around, beside=notes)
     if between:
-        yield Excerpt(between, level=1 if tables else 0, around=tuple(notes))
+        yield Excerpt(between, level=1 if tables else 0, around=tuple(boxes), beside=notes)
+
+
+def _strike_by_style(root: ET.Element, styles: ET.Element) -> None:
+    """Give each run whose style strikes out its text this property."""
+    based: dict[str, str] = {}
+    own: dict[str, bool] = {}
+    for style in (each for each in styles if local_name(each) == "style"):
+        name = _attribute(style, "styleId")
+        looks = _looks(style)
+        if "strike" in looks or "dstrike" in looks:
+            own[name] = True
+        elif any(local_name(each) in ("strike", "dstrike") for each in style.iter()):
+            own[name] = False
+        based[name] = next((_attribute(e, "val") for e in style if local_name(e) == "basedOn"), "")
+
+    def is_struck(name: str) -> bool:
+        for _ in range(_MOST_STYLES):
+            if name in own or not name:
+                break
+            name = based.get(name, "")
+        return own.get(name, False)
+
+    struck = {name for name in based if is_struck(name)}
+    if not struck:
+        return
+    for paragraph in (each for each in root.iter() if local_name(each) == "p"):
+        of_paragraph = any(_style_of(paragraph, "pPr", "pStyle") == name for name in struck)
+        for run in (each for each in paragraph.iter() if local_name(each) == "r"):
+            own_looks = {local_name(each) for part in run for each in part}
+            if not own_looks & {"strike", "dstrike"} and (
+                of_paragraph or _style_of(run, "rPr", "rStyle") in struck
+            ):
+                properties = next((each for each in run if local_name(each) == "rPr"), None)
+                if properties is None:
+                    properties = ET.SubElement(run, "rPr")
+                ET.SubElement(properties, "strike")
+
+
+_MOST_STYLES: Final = 20
+
+
+def _style_of(element: ET.Element, properties: str, style: str) -> str:
+    for part in element:
+        if local_name(part) == properties:
+            for each in part:
+                if local_name(each) == style:
+                    return _attribute(each, "val")
+    return ""
 
 
 def _text_boxes(body: ET.Element) -> Iterator[str]:
@@ -960,7 +1176,8 @@ def _notes(package: _Package, names: re.Pattern[str]) -> Iterator[str]:
                 yield "".join(each.itertext())
 
 
-_NOTES_OF_WORD: Final = regex(r"word/(?:comments|footnotes|endnotes|header\d*|footer\d*)\.xml")
+_NOTES_OF_WORD: Final = regex(r"word/(?:comments|footnotes|endnotes)\.xml")
+_MARGINS_OF_WORD: Final = regex(r"word/(?:header\d*|footer\d*)\.xml")
 
 
 def _read_blocks(parent: ET.Element, lines: list[str], tables: list[list[SheetRow]]) -> None:
@@ -1112,14 +1329,16 @@ def _notebook(data: bytes) -> Iterator[Excerpt]:
     texts = [source for kind, source, _ in found if kind != "code" and source.strip()]
     lines = tuple(line for text in texts for line in text.splitlines() if "|" not in line)
     said = tuple(comment[1] for source in code for comment in comments(source))
+    # A function that converts angles shows that those of the table are in degrees.
+    lines = (*lines, *(found[0] for source in code for found in _CONVERTS.finditer(source)))
     for text in texts:
         if (table := pasted_from(text, ".md")) != text:
             yield Excerpt(table, around=(*lines, *said))
     if code:
         yield Excerpt("\n".join(code), around=lines)
-        yield from (
-            Excerpt(each, level=1, around=(*lines, *said)) for each in code if len(code) > 1
-        )
+        for i, each in enumerate(code if len(code) > 1 else ()):
+            changed = changing_statement(each, "\n".join(code[i + 1 :]))
+            yield Excerpt(each, level=1, around=(*lines, *said), changed=changed)
     yield from (
         Excerpt(text, level=1, around=(*lines, *said, *around_rows(text))) for text in texts
     )
@@ -1309,7 +1528,10 @@ def excerpts(data: bytes, ending: str) -> tuple[Excerpt, ...]:
         raise _damaged() from error
     if not any(each.text.strip() for each in found):
         raise UnusableFileError(say("is empty"))
-    return tuple(replace(each, around=_not_struck(each.around)) for each in found)
+    return tuple(
+        replace(each, around=_not_struck(each.around), beside=_not_struck(each.beside))
+        for each in found
+    )
 
 
 def _not_struck(lines: Iterable[str]) -> tuple[str, ...]:
