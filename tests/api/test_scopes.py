@@ -42,7 +42,7 @@ from dh_grader.courses.assignments import add_assignment
 from dh_grader.grading import Report, Submission, grade
 from dh_grader.store import AttemptStore
 from dh_grader.store.database import in_transaction
-from dh_grader.store.learner_data import override
+from dh_grader.store.results import override
 from dh_grader.store.tables import (
     assignments,
     attempts,

@@ -11,9 +11,10 @@ import docx
 import openpyxl
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.formats.local_grading import GradedFile, GradingTerms, graded
+from dh_grader.formats.graded import GradedFile
+from dh_grader.formats.local_grading import GradingTerms, graded
 from dh_grader.grading import Submission, grade
-from dh_grader.submissions.assignment import of_one
+from dh_grader.submissions import of_one
 from dh_grader.submissions.documents import changing_remark
 from dh_grader.submissions.files import all_handed_in
 from odf.office import Annotation
@@ -241,7 +242,9 @@ def test_a_long_sentence_is_read_to_its_end() -> None:
 
 # --- The places from which words come ---
 
-WRONG = "wrong sign"
+REMARKED = tuple(
+    (*row, said) for row, said in zip(RADIANS, ("comment", "", "wrong sign", "", ""), strict=True)
+)
 
 
 def comment_of_word() -> bytes:
@@ -306,26 +309,22 @@ def annotation_of_ods() -> bytes:
 
 
 PLACES: Mapping[str, Callable[[], bytes]] = {
-    "comment.docx": comment_of_word, "note.docx": footnote_of_table, "comment.xlsx": comment_of_sheet,
+    "comment.docx": comment_of_word, "note.docx": footnote_of_table,
+    "comment.xlsx": comment_of_sheet,
     "column.xlsx": column_of_sheet, "sheet.xlsx": other_sheet, "box.xlsx": box_on_sheet,
     "note.ods": annotation_of_ods,
     "beside.xlsx": lambda: workbook(RADIANS, "<-- falsch!"),
-    "column.csv": lambda: "\n".join(
-        ", ".join((*row, said))
-        for row, said in zip(RADIANS, ("comment", "", WRONG, "", ""), strict=True)
+    "column.csv": lambda: "\n".join(", ".join(row) for row in REMARKED).encode(),
+    "column.md": lambda: (
+        markdown(REMARKED, "").replace("|---|---|---|---|", "|---|---|---|---|---|").encode()
+    ),
+    "below.csv": lambda: (
+        "\n".join(", ".join(row) for row in RADIANS) + "\n\nalpha2 is 0\n"
     ).encode(),
-    "column.md": lambda: markdown(
-        tuple(
-            (*row, said)
-            for row, said in zip(RADIANS, ("comment", "", WRONG, "", ""), strict=True)
-        ),
-        "",
-    ).replace("|---|---|---|---|", "|---|---|---|---|---|").encode(),
-    "below.csv": lambda: ("\n".join(", ".join(row) for row in RADIANS) + "\n\nalpha2 is 0\n").encode(),
     "program.m": lambda: (
-        "% a, alpha, d, theta\nDH = [a1 0 0 theta1;\n a2 pi 0 theta2; % must be 0\n"
-        " 0 0 d3 0;\n 0 0 d4 theta4];\n"
-    ).encode(),
+        b"% a, alpha, d, theta\nDH = [a1 0 0 theta1;\n a2 pi 0 theta2; % must be 0\n"
+        b" 0 0 d3 0;\n 0 0 d4 theta4];\n"
+    ),
 }  # fmt: skip
 
 
@@ -430,7 +429,9 @@ def test_the_comments_of_a_receipt_are_notes(
 
 # --- A notebook whose later cell changes the table ---
 
-CELL = "# a, alpha, d, theta\nDH = [" + ", ".join(f"[{', '.join(row)}]" for row in RADIANS[1:]) + "]"
+CELL = (
+    "# a, alpha, d, theta\nDH = [" + ", ".join(f"[{', '.join(row)}]" for row in RADIANS[1:]) + "]"
+)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,8 @@
-"""The text of an API key: a prefix, random characters, and a checksum."""
+"""Who asks, and what that caller may do: API keys, tokens, sessions, and limits of rates.
+
+This package knows scopes and secrets. It knows nothing about routes: ``api/permissions.py`` says
+which right a route needs.
+"""
 
 import asyncio
 import hmac
@@ -37,6 +41,8 @@ from dh_grader.store.database import in_transaction
 from dh_grader.store.tables import key_secrets, keys
 from dh_grader.translations import say
 
+# --- The text of an API key: a prefix, random characters, and a checksum
+#
 # The prefix lets scanners find keys that were published by mistake. The checksum lets the service
 # refuse a misspelt key without asking the database.
 
@@ -85,7 +91,7 @@ def _checksum(drawn: str) -> str:
     return "".join(digits)
 
 
-# Find the client of a request by its address, for scheduling and for limits.
+# --- Find the client of a request by its address, for scheduling and for limits
 
 
 def client_key(address: str) -> str:
@@ -103,7 +109,7 @@ def client_key(address: str) -> str:
     return str(ipaddress.IPv6Network((found, 64), strict=False))
 
 
-# The caller of a request and its rights.
+# --- The caller of a request and its rights
 
 
 class Scope(StrEnum):
@@ -153,7 +159,7 @@ class Caller:
 NOBODY: Final = Caller(frozenset())
 
 
-# Rate limits for keys and addresses.
+# --- Rate limits for keys and addresses
 
 
 _log = logging.getLogger(__name__)
@@ -273,7 +279,7 @@ def _storage(address: str) -> Storage:
     return storage
 
 
-# The operations that need no API key.
+# --- The operations that need no API key
 
 
 UNTIL_KEYS: Final = "until-keys"
@@ -322,7 +328,7 @@ def open_access(text: str | None) -> OpenAccess:
     return OpenAccess(frozenset(map(Scope, scopes)) | {Scope.GRADE}, False, anywhere=True)
 
 
-# API keys, and the secret of an installation.
+# --- API keys, and the secret of an installation
 
 
 # The least number of characters of a secret; 64 hexadecimal digits are usual.
@@ -453,7 +459,7 @@ class Secret:
         return hmac.digest(self._text, f"dh-grader {purpose}".encode(), "sha256")
 
 
-# Tokens of learners: JSON Web Tokens, signed with the secret of the installation.
+# --- Tokens of learners: JSON Web Tokens, signed with the secret of the installation
 #
 # A token names a key and is valid at most as long as the key. Tokens are not stored.
 
@@ -534,11 +540,10 @@ def _unexpected(*claims: str) -> str:
     return f"The token has unexpected claims: {', '.join(claims)}."
 
 
-# Sessions of tutors in a browser.
+# --- Sessions of tutors in a browser
 #
 # A session is a signed text that names a key. Sessions are not stored.
-
-
+#
 # A session token is valid at most as long as its key.
 
 
@@ -572,7 +577,7 @@ def key_of_session(text: str, secret: bytes) -> str:
     return claims.key
 
 
-# Database functions for API keys.
+# --- Database functions for API keys
 
 
 def any_key(connection: Connection) -> bool:
@@ -672,7 +677,7 @@ def _key(row: Row[Any]) -> Key:
     return Key(**known)
 
 
-# Look up keys in the database, many in one statement.
+# --- Look up keys in the database, many in one statement
 
 
 # A column of the table of keys, ``id`` or ``digest``, and the value to find there.
@@ -749,7 +754,7 @@ class KeyLookups:
             self._waiting.clear()
 
 
-# The API keys of the database, memoized for a few seconds.
+# --- The API keys of the database, memoized for a few seconds
 
 
 R = TypeVar("R")

@@ -1,4 +1,4 @@
-"""The command `dh-grader`."""
+"""The command `dh-grader`, which imports the file of a command when it is called."""
 
 import gc
 import os
@@ -12,7 +12,10 @@ from typer.core import TyperGroup
 from dh_grader.cli.terminal import spoken, translate_help
 from dh_grader.translations import paragraph, say
 
-# The program `dh-grader`, which imports a command when it is called.
+# --- The command `dh-grader`
+
+
+# --- The program `dh-grader`, which imports a command when it is called
 
 
 # The help of each command. The help of the program needs neither the grader nor the web framework.

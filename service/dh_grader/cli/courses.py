@@ -1,4 +1,4 @@
-"""`dh-grader courses`: courses with learners, links, assignments and a gradebook."""
+"""`dh-grader courses` and `assignments`: courses with learners, links, dates and a gradebook."""
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -62,13 +62,16 @@ from dh_grader.courses.gradebook import gradebook, gradebook_workbook, missing, 
 from dh_grader.formats.texts import number, percent, visible
 from dh_grader.settings import load_settings
 from dh_grader.store.database import in_transaction
+from dh_grader.submissions import AssignedExercise, Assignment, load_assignment
 from dh_grader.submissions.answers import ExerciseAnswers, answers_in, of_file
-from dh_grader.submissions.assignment import AssignedExercise, Assignment, load_assignment
 from dh_grader.submissions.bodies import field_error, find_exercise
 from dh_grader.submissions.files import HandedIn, all_handed_in
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count, template
 
-# Change and delete courses from the command line.
+# --- `dh-grader courses`: courses with learners, links, assignments and a gradebook
+
+
+# --- Change and delete courses from the command line
 
 
 D = TypeVar("D", bound=DeletionRequest)
@@ -120,7 +123,7 @@ def deleted(
     tell(say("Deleted {name}: {counts}.", name=name, counts=counts))
 
 
-# The lines that the command line prints about an assignment of a course.
+# --- The lines that the command line prints about an assignment of a course
 
 
 def assignment_lines(
@@ -191,7 +194,7 @@ def _time(moment: datetime) -> str:
     return f"{moment:%Y-%m-%d %H:%M %Z}"
 
 
-# `dh-grader courses assignments`: the assignments of a course, and extensions.
+# --- `dh-grader courses assignments`: the assignments of a course, and extensions
 
 
 M = TypeVar("M", bound=BaseModel)
@@ -741,7 +744,7 @@ def show_missing(
     screen.print(spoken(incomplete))
 
 
-# `dh-grader assignments`: check assignment files, each of which lists several exercises.
+# --- `dh-grader assignments`: check assignment files, each of which lists several exercises
 
 
 assignments_commands = typer.Typer(

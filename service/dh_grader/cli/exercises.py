@@ -1,4 +1,4 @@
-"""`dh-grader exercises`: list, show, check and create exercises."""
+"""`dh-grader exercises` and `bundle`: list, check, import, export, deploy and pack exercises."""
 
 import os
 import sys
@@ -78,7 +78,10 @@ from dh_grader.variants import (
     with_deployed,
 )
 
-# Write new exercise files without replacing existing ones.
+# --- `dh-grader exercises`: list, show, check and create exercises
+
+
+# --- Write new exercise files without replacing existing ones
 
 
 def write_new(folder: Path, exercise_id: str, text: str) -> Path:
@@ -114,7 +117,7 @@ def warn_of_unread(exercises: Iterable[str]) -> None:
         )
 
 
-# `dh-grader exercises import`: a robot from a URDF file or a pasted table -> an exercise file.
+# --- `dh-grader exercises import`: a robot from a URDF file or a pasted table -> an exercise file
 
 
 def import_robot_command(
@@ -256,7 +259,7 @@ def _answer(question: Question) -> str:
     return str(typer.prompt(text, type=choices, show_choices=False))
 
 
-# `dh-grader exercises export`: the robot of an exercise as URDF or as a script.
+# --- `dh-grader exercises export`: the robot of an exercise as URDF or as a script
 
 
 class ExportFormat(StrEnum):
@@ -292,7 +295,7 @@ def export_robot_command(
     stdout().print(write(at_home, exercise.id), soft_wrap=True, end="")
 
 
-# `dh-grader exercises check`: find faults in exercise files.
+# --- `dh-grader exercises check`: find faults in exercise files
 
 
 FAILED = 1
@@ -384,7 +387,7 @@ def _summary(files: int, unusable: int, found: Counter[Level]) -> str:
     return spoken(joined(", ", [ok, *filter(None, others)]))
 
 
-# `dh-grader exercises check --seeds` and `deploy`: many variants of one exercise.
+# --- `dh-grader exercises check --seeds` and `deploy`: many variants of one exercise
 
 
 # The most faults that are printed, each with the first seed that has it.
@@ -706,7 +709,7 @@ def _sections(solution: ModelSolution, *, links: bool) -> Iterator[tuple[str, Sh
         yield spoken(say("Pose of the tool in the base frame")), solution.pose
 
 
-# `dh-grader bundle`: write a zip file for a grading platform.
+# --- `dh-grader bundle`: write a zip file for a grading platform
 
 
 _SECRET: Final = regex(r"[0-9a-f]{64}")

@@ -1,4 +1,4 @@
-"""`dh-grader doctor`: check this installation, and say what is wrong and how to mend it."""
+"""`dh-grader serve`, `keys` and `doctor`: run the service, its keys, and a check of all."""
 
 import gc
 import os
@@ -52,6 +52,9 @@ from dh_grader.store.database import (
 )
 from dh_grader.store.tables import courses
 from dh_grader.translations import Sentence, joined, say, say_count, template
+
+# --- `dh-grader doctor`: check this installation, and say what is wrong and how to mend it
+
 
 doctor_commands = typer.Typer(add_completion=False)
 
@@ -302,7 +305,7 @@ _CHECKS: Final[dict[str, Callable[[Settings], Iterator[str]]]] = {
 }
 
 
-# `dh-grader serve`: run the service on this machine.
+# --- `dh-grader serve`: run the service on this machine
 
 
 serve_commands = typer.Typer(add_completion=False)
@@ -338,7 +341,7 @@ def serve_command(
         )
 
 
-# `dh-grader keys`: create, list and revoke API keys.
+# --- `dh-grader keys`: create, list and revoke API keys
 
 
 keys_commands = typer.Typer(

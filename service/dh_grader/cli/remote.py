@@ -1,4 +1,7 @@
-"""Use a server that grades instead of this program."""
+"""Let a server grade instead of this program, and continue an interrupted run.
+
+It loads httpx, so `dh-grader grade` imports this file late.
+"""
 
 import hashlib
 import json
@@ -21,7 +24,7 @@ from dh_grader.grading import Report, Submission
 from dh_grader.grading.report import rounded_points
 from dh_grader.regex import regex
 from dh_grader.settings import Settings
-from dh_grader.submissions.assignment import (
+from dh_grader.submissions import (
     AssignedExercise,
     Assignment,
     ExerciseOutline,
@@ -32,6 +35,8 @@ from dh_grader.submissions.bodies import GradeRequest, UnknownExerciseError
 from dh_grader.submissions.files import HandedIn
 from dh_grader.translations import say
 
+# --- Use a server that grades instead of this program
+#
 # Modules that load httpx are imported late.
 
 
@@ -129,7 +134,7 @@ def graded_by(
     )
 
 
-# The journal of reports from a server, with which an interrupted run can continue.
+# --- The journal of reports from a server, with which an interrupted run can continue
 #
 # Each line is a JSON object with a report, and the digest of its submission and options.
 
@@ -218,9 +223,8 @@ def _places(path: Path) -> list[tuple[str, int]]:
     return found
 
 
-# Let a server grade submissions.
-
-
+# --- Let a server grade submissions
+#
 # This module loads httpx, so import the module late.
 
 

@@ -1,4 +1,4 @@
-"""Output to the terminal, errors that end the program, and the installed exercises."""
+"""The terminal: output, progress, interrupts, the reader's language, and errors that end it."""
 
 import gettext
 import os
@@ -33,7 +33,10 @@ from dh_grader.translations import (
     told,
 )
 
-# Handle SIGINT and SIGTERM so that no unfinished files and no processes are left.
+# --- Output to the terminal, errors that end the program, and the installed exercises
+
+
+# --- Handle SIGINT and SIGTERM so that no unfinished files and no processes are left
 
 
 # The exit codes of a shell: 128 plus the number of the signal.
@@ -198,7 +201,7 @@ def installed_file(exercise_id: str) -> Path:
     return find_exercise(files, exercise_id)
 
 
-# A progress bar for long runs on a terminal.
+# --- A progress bar for long runs on a terminal
 
 
 # With fewer submissions the bar would vanish before anybody could read it.
@@ -239,11 +242,10 @@ def progress(total: int) -> Iterator[Progress]:
         )
 
 
-# Translate the command line into the language of the user.
+# --- Translate the command line into the language of the user
 #
 # Help texts are English in the source; ``translate_help`` translates them when a command is loaded.
-
-
+#
 # Output for programs, the names of commands and options, and exit codes have no language.
 
 
@@ -326,7 +328,7 @@ class _Formatter(TyperCommand.context_class.formatter_class):  # type: ignore[na
         super().write_usage(prog, args, shown)
 
 
-# Options of the command line that take one of several words.
+# --- Options of the command line that take one of several words
 
 
 _Choice = TypeVar("_Choice", bound=StrEnum)

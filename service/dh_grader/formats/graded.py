@@ -1,4 +1,4 @@
-"""Submissions with their reports: the input of every format."""
+"""What every format gets: submissions with their reports, told in a language, safe as JSON."""
 
 import json
 import re
@@ -21,14 +21,17 @@ from dh_grader.grading import (
 )
 from dh_grader.grading.report import rounded_points
 from dh_grader.regex import regex
-from dh_grader.submissions.assignment import SetExercise
+from dh_grader.submissions import SetExercise
 from dh_grader.translations import ENGLISH, Language, told
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 
-# JSON that is safe to print to a terminal or the log of a build.
+# --- Submissions with their reports: the input of every format
+
+
+# --- JSON that is safe to print to a terminal or the log of a build
 
 
 # In UTF-8: the start of a build's command (`##[…]`), and control characters that JSON allows.
@@ -234,7 +237,7 @@ class Visibility(StrEnum):
     HIDDEN = "hidden"
 
 
-# The type of report formats, and what a format needs besides the submissions.
+# --- The type of report formats, and what a format needs besides the submissions
 
 
 @dataclass(frozen=True, slots=True)
@@ -309,7 +312,7 @@ def single(
     return pieces
 
 
-# Reports in the language of their reader.
+# --- Reports in the language of their reader
 
 
 # Returns a text of a report, changed.

@@ -87,7 +87,7 @@ _TABLE: Final = _words(
 _NOT: Final = r"(?:not|never|\w{2,6}n['’]?t|cannot)"
 # It is wrong.
 _WRONG: Final = _words(
-    rf"wrong(?:ly)?|incorrect(?:ly)?|{_NOT}\s(?:\w{1,12}\s)?(?:correct|right|true|valid)"
+    rf"wrong(?:ly)?|incorrect(?:ly)?|{_NOT}\s(?:\w{1, 12}\s)?(?:correct|right|true|valid)"
     r"|mistakes?|mistaken(?:ly)?|errors?|erroneous(?:ly)?|typos?|misprint|messed\sup|misread"
     r"|falsch\w{0,2}|fehlerhaft\w{0,2}|fehler|irrtümlich|irrtum|versehentlich|aus\sversehen"
     r"|(?:tipp|schreib|rechen|vorzeichen|abschreib)fehler|unrichtig|verschrieben|verrechnet|vertan"
@@ -155,7 +155,9 @@ _VALUE: Final = (
     rf"(?![^\W_])|{_LETTER}_?\d|[adl]_?\d|零|负|正"
     rf"|(?:nach|into|to|in)\s(?:(?:die|the)\s)?(?:(?:spalte|column)\s)?{_LETTER}(?![^\W_]))"
 )
-_GIVES: Final = regex(rf"(?:[^.;]|\.(?=\d)){{0,40}}?(?<![A-Za-z0-9])(?P<value>{_VALUE})", re.IGNORECASE)
+_GIVES: Final = regex(
+    rf"(?:[^.;]|\.(?=\d)){{0,40}}?(?<![A-Za-z0-9])(?P<value>{_VALUE})", re.IGNORECASE
+)
 # A person is asked to leave it out, or to do something else with it.
 _DROP: Final = (
     r"ignore|disregard|skip|delete|remove|cancel|drop|strike|scratch|cross\s(?:it\s)?out|discard"
@@ -180,7 +182,8 @@ _REQUEST: Final = _words(
     rf"{_DROP_IN_CHINESE}|改[成为正]|修[改正]|更正|[替更]?换[成为]?|加上|乘以?|取反|反号|变号|移到|当作|看作|算作|交换|互换|对调",
 )
 _PLEASE: Final = _words(
-    r"please|pls|kindly|bitte|por\sfavor|svp|s['’]il\s(?:vous|te)\spla[iî]t|merci\sde|veuillez|prière\sde", "请|麻烦"
+    r"please|pls|kindly|bitte|por\sfavor|svp|s['’]il\s(?:vous|te)\spla[iî]t|merci\sde|veuillez|prière\sde",
+    "请|麻烦",
 )
 # Words before the verb of a request.
 _OPENING: Final = regex(
@@ -354,14 +357,15 @@ def _should_be(text: str, *, in_cell: bool) -> bool:
 
 # "0, not 180".
 _NOT_THIS: Final = regex(
-    rf"{_VALUE}\S?,?\s?(?:(?:und|and|y|et)\s)?(?:not|no|nicht|pas|non|不是)\s?{_VALUE}", re.IGNORECASE
+    rf"{_VALUE}\S?,?\s?(?:(?:und|and|y|et)\s)?(?:not|no|nicht|pas|non|不是)\s?{_VALUE}",
+    re.IGNORECASE,
 )
 
 
 # The number of a joint is no value.
 _PLACE_NUMBER: Final = regex(
-    rf"(?<![^\W_])(?:{_LINES}|{_LINKS}|{_ORDINAL})\s?(?:{_NUMBER})?|[xyz]_?\{{?\d|(?:fig|figure|abb)\w{{0,6}}\.?"
-    r"\s?\d",
+    rf"(?<![^\W_])(?:{_LINES}|{_LINKS}|{_ORDINAL})\s?(?:{_NUMBER})?|[xyz]_?\{{?\d"
+    r"|(?:fig|figure|abb)\w{0,6}\.?\s?\d",
     re.IGNORECASE,
 )
 
@@ -380,19 +384,23 @@ class Claim:
 
 _COLUMNS: Final = {
     "a": r"a|link\slength|length|gliedlänge|longitud|longueur|连杆长度|长度|杆长",
-    "alpha": r"\\?alpha|\\?alfa|α|(?:link\s)?twist(?:\sangle)?|verdrehung|verwindung|torsi[oó]n|扭转?角",
+    "alpha": (
+        r"\\?alpha|\\?alfa|α|(?:link\s)?twist(?:\sangle)?|verdrehung|verwindung|torsi[oó]n|扭转?角"
+    ),
     "d": r"d|(?:link|joint)?\s?offset|偏[距置移]|décalage",
     "theta": r"\\?theta|θ|joint\sangle|gelenkwinkel|关节角",
 }
 _PARAMETER: Final = "|".join(f"(?P<{name}>{words})" for name, words in _COLUMNS.items())
 _IS: Final = (
-    r"(?:\s?[=:：→≔]|\s?[-=]>|\s(?:is|are|was|equals|becomes|ist|sind|war|beträgt|mit|with(?:\sa)?|con|avec(?:\sun)?|es|son|est|vale|vaut)"
+    r"(?:\s?[=:：→≔]|\s?[-=]>|\s(?:is|are|was|equals|becomes|ist|sind|war|beträgt"
+    r"|mit|with(?:\sa)?|con|avec(?:\sun)?|es|son|est|vale|vaut)"
     r"(?![^\W_])|\s?(?:等于|应?为|是|变成))"
 )
 _GIVEN: Final = (
     r"[-+−–]?\s?(?:\d{1,6}(?:[.,]\d{1,6})?\s?(?:\*?\s?(?:π|pi))?|π|pi)(?:\s?/\s?\d)?"
     r"(?:\s?(?:°|deg\w{0,4}|grad\w{0,2}|rad\w{0,4}|度))?"
-    r"|zero|null|cero|zéro|零|minus|menos|moins|negativ\w{0,1}|négati\w{1,2}|positiv\w{0,1}|positi\w{1,2}|负的?|正的?"
+    r"|zero|null|cero|zéro|零|minus|menos|moins|negativ\w?|négati\w{1,2}|positiv\w?"
+    r"|positi\w{1,2}|负的?|正的?"
 )
 _INDEXED: Final = regex(
     rf"(?<![A-Za-z\d_])(?:{_PARAMETER})\s?_?\{{?(?P<row>\d)\}}?{_IS}\s?(?:[^\W\d]{{2,12}}\s){{0,2}}"
@@ -405,11 +413,13 @@ _UNINDEXED: Final = regex(
     re.IGNORECASE,
 )
 _ORDER: Final = (
-    r"first|1st|erst|primer|premi", r"second|2nd|zweit|segund|deuxi", r"third|3rd|dritt|tercer|troisi",
+    "first|1st|erst|primer|premi", "second|2nd|zweit|segund|deuxi",
+    "third|3rd|dritt|tercer|troisi",
     "fourth|4th|viert|cuart|quatri", "fifth|5th|fünft|quint|cinqui", "sixth|6th|sechst|sext|sixi",
 )  # fmt: skip
 _ROW_NUMBER: Final = regex(
-    rf"(?<![^\W_])(?:{_LINES}|{_LINKS})\s?(?:no\.?\s?)?(?P<number>\d)|(?:连杆|关节|杆件)\s?(?P<link>\d)|第\s?(?P<chinese>[\d一二三四五六])\s?(?:行|个?连杆|个?关节)"
+    rf"(?<![^\W_])(?:{_LINES}|{_LINKS})\s?(?:no\.?\s?)?(?P<number>\d)|(?:连杆|关节|杆件)\s?(?P<link>\d)"
+    r"|第\s?(?P<chinese>[\d一二三四五六])\s?(?:行|个?连杆|个?关节)"
     r"|(?P<last>(?<![^\W_])(?:last|letzt|[uú]ltim|derni)|最后一行)|"
     + "|".join(rf"(?P<order{i}>(?<![^\W_])(?:{words}))" for i, words in enumerate(_ORDER, 1)),
     re.IGNORECASE,

@@ -1,7 +1,4 @@
-"""The seed of a learner, a short text that determines the learner's variant.
-
-The seed is derived from a secret, so that learners can neither compute nor choose it.
-"""
+"""An exercise and a seed -> a variant: made, compared, chosen, and kept after a correction."""
 
 import hashlib
 import hmac
@@ -28,6 +25,10 @@ from dh_grader.kinematics import ALPHA, A, D, Numbers
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
+# --- The seed of a learner, a short text that determines the learner's variant
+#
+# The seed is derived from a secret, so that learners can neither compute nor choose it.
+#
 # If the exercise file lists seeds that a tutor has checked (deployed seeds), the learner gets the
 # one with the largest keyed hash. So one more seed in the list changes the variants of only a few
 # learners.
@@ -60,11 +61,10 @@ def _keyed(secret: str, learner: str, exercise: str, number: int, seed: str) -> 
     return hmac.new(secret.encode(), message, hashlib.sha256).digest()
 
 
-# Keep the variants of an assignment when an exercise file is corrected.
+# --- Keep the variants of an assignment when an exercise file is corrected
 #
 # The table ``[vary]`` of a file says which numbers its variants may have. An assignment stores a
-# copy
-# of this table and uses it instead of the file's table.
+# copy of this table and uses it instead of the file's table.
 
 
 # As many exercises in assignments are used at the same time.
@@ -100,7 +100,7 @@ def _pinned(vary: Vary, exercise: str, choices: str) -> Vary:
         return vary
 
 
-# Make a variant of an exercise. A short text, the seed, determines the variant.
+# --- Make a variant of an exercise. A short text, the seed, determines the variant
 
 
 # A variant takes about 100 kB of memory.
@@ -180,7 +180,7 @@ def hidden_variant(exercise: Exercise, seed: str) -> Exercise:
     return replace(variant_of(exercise, seed), id=exercise.plain_id)
 
 
-# Compare variants of an exercise by their robot and by their difficulty.
+# --- Compare variants of an exercise by their robot and by their difficulty
 
 
 # Numbers of a file have a few decimals; what is closer is the same.
@@ -260,7 +260,7 @@ def _home(exercise: Exercise) -> dict[str, Numbers]:
     }
 
 
-# Choose the variants that learners get: checked by a tutor, different, and equally hard.
+# --- Choose the variants that learners get: checked by a tutor, different, and equally hard
 
 
 # Draws for each variant that is wanted; then there are too few different ones.
