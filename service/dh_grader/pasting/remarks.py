@@ -10,9 +10,11 @@ import math
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Final
 
 from dh_grader.regex import regex
+from dh_grader.slices import checkpoint
 
 
 def _words(latin: str, chinese: str = "") -> re.Pattern[str]:
@@ -205,7 +207,8 @@ _WITHDRAWN: Final = _words(
     r"|nicht\s(?:\w{1,12}\s){0,2}?(?:be)?(?:werten|wertet|noten|achten|rücksichtigen|zählen)"
     r"|nicht\s(?:\w{1,12}\s){0,2}?(?:korrigieren|verwenden)|ungewertet"
     r"|(?:nur|noch|bloß)\s(?:\w{1,4}\s)?(?:erster?\s)?entwurf|unfertig\w{0,2}|vorläufig\w{0,2}"
-    r"|noch\snicht\s(?:fertig|final|endgültig)|platzhalter"
+    r"|nicht\s(?:\w{1,12}\s){0,2}?(?:fertig|final|endgültig)\w{0,2}|platzhalter"
+    r"|no\ses\s(?:\w{1,9}\s){0,2}?(?:final|definitiv[ao])|pas\s(?:\w{1,9}\s){0,2}?(?:finale?|définiti\w{1,2})"
     r"|no\s(?:\w{1,12}\s){0,2}?(?:califi(?:que|quen|car)|eval(?:úe|úen|uar)|corr(?:ija|ijan|egir)"
     r"|consider(?:e|en|ar)|c(?:uente|uenten|ontar)|punt(?:úe|úen|uar)|ten(?:er|ga|gan)\sen\scuenta"
     r"|us(?:e|en)|tom(?:e|en))|(?:no|sin)\s(?:\w{1,5}\s)?(?:terminad[oa]|terminar|acabad[oa])|borrador|provisional|preliminar"
@@ -290,25 +293,25 @@ def may_change(sentence: str, *, of_cell: bool = False) -> bool:
     return any(_piece_may_change(text[i : i + _LONGEST], of_cell=of_cell) for i in starts)
 
 
+@lru_cache(maxsize=1024)
 def _piece_may_change(text: str, *, of_cell: bool) -> bool:
-    is_taken_back = bool(_SUPPOSED.search(text) or _PAST.search(text))
+    checkpoint()
     if _ANNOUNCED.match(text) or _WITHDRAWN.search(text):
         return True
     if _ELSEWHERE.search(text) and not _PAST.search(text):
         return True
     in_cell = of_cell or bool(_CELL.search(text))
     is_placed = in_cell or bool(_LINK.search(text) or _PROPERTY.search(text))
-    if _is_request(text, in_cell=in_cell) or (_ADDED.match(text) and is_placed):
-        return True
-    if of_cell and (_DOUBTS_CELL.search(text) or _GIVES_CELL.fullmatch(text)):
-        return True
-    if is_placed and (
-        _should_be(text, in_cell=in_cell) or _NOT_THIS.search(text) or _UNSURE.search(text)
-    ):
-        return True
-    if is_taken_back:
+    if not is_placed and not _TABLE.search(text):
         return False
-    if _WRONG.search(text) and (is_placed or _TABLE.search(text)):
+    checkpoint()
+    if _is_request(text, in_cell=in_cell):
+        return True
+    if is_placed and (_gives_other(text, in_cell=in_cell) or (of_cell and _of_cell(text))):
+        return True
+    if _SUPPOSED.search(text) or _PAST.search(text):
+        return False
+    if _WRONG.search(text):
         return True
     if not is_placed or (_REASON.search(text) and not of_cell):
         # An explanation such as "α₂ is 180° because z₂ is reversed".
@@ -316,6 +319,20 @@ def _piece_may_change(text: str, *, of_cell: bool) -> bool:
     if _TURNED.search(text):
         return in_cell or bool(_SIGN.search(text))
     return bool(_DOUBTFUL.search(text))
+
+
+def _gives_other(text: str, *, in_cell: bool) -> bool:
+    # A sentence about a place of the table that no "if" takes back.
+    return bool(
+        _ADDED.match(text)
+        or _should_be(text, in_cell=in_cell)
+        or _NOT_THIS.search(text)
+        or _UNSURE.search(text)
+    )
+
+
+def _of_cell(text: str) -> bool:
+    return bool(_DOUBTS_CELL.search(text) or _GIVES_CELL.fullmatch(text))
 
 
 _SIGN: Final = _words(
@@ -342,7 +359,7 @@ def _is_request(text: str, *, in_cell: bool) -> bool:
 # A remark on a cell is short: "?", "zero!", "not 180", "doch 0".
 _DOUBTS_CELL: Final = regex(r"[?？¿]")
 _GIVES_CELL: Final = regex(
-    rf"\W{{0,5}}(?:(?:not|no|nicht|pas|doch|eher|besser|rather|better|now|jetzt|plutôt|mejor|ahora|要|改)"
+    rf"\W{{0,5}}(?:(?:not|no|nicht|pas|doch|eher|besser|lieber|rather|better|now|jetzt|plutôt|mejor|ahora|要|改)"
     rf"\s?)(?:{_VALUE}).{{0,9}}|\W{{0,5}}(?:zero|null|cero|zéro|negativ\w?|négati\w{{1,2}}|minus|menos|moins)\W{{0,5}}",
     re.IGNORECASE,
 )
