@@ -13,10 +13,13 @@ from dh_grader.formats.local_grading import GradingTerms, graded
 from dh_grader.grading import Submission, Verdict, grade
 from dh_grader.submissions import of_one
 from dh_grader.submissions.files import all_handed_in
+from docx.enum.style import WD_STYLE_TYPE
 from odf.opendocument import OpenDocumentSpreadsheet
 from odf.style import Style, TextProperties
 from odf.table import Table, TableCell, TableRow
 from odf.text import P
+from openpyxl.cell.rich_text import CellRichText, TextBlock
+from openpyxl.cell.text import InlineFont
 from openpyxl.comments import Comment
 from openpyxl.styles import Font
 
@@ -211,3 +214,70 @@ def test_pasted_text_that_is_struck_out_says_so(catalogue: Mapping[str, Exercise
         "unread_tag",
         "Line 3: Struck-out text cannot be read. Delete it.",
     )
+
+
+def half_struck_xlsx() -> bytes:
+    """Return a workbook in which LibreOffice and Excel show a struck 45° before 180°."""
+    book = openpyxl.Workbook()
+    for row in (HEAD, *ROWS):
+        book.active.append(row)
+    struck = TextBlock(InlineFont(b=True, strike=True), "45° ")
+    book.active["B3"] = CellRichText(struck, "180°")
+    return saved(book)
+
+
+def half_struck_xls() -> bytes:
+    book = xlwt.Workbook()
+    sheet = book.add_sheet("DH")
+    struck = xlwt.Font()
+    struck.struck_out = True
+    for i, row in enumerate((HEAD, *ROWS)):
+        for j, text in enumerate(row):
+            if text == "180°":
+                sheet.write_rich_text(i, j, [("45 ", struck), (text, xlwt.Font())])
+            else:
+                sheet.write(i, j, text)
+    return saved(book)
+
+
+def struck_by_style(*, of_paragraph: bool = False) -> bytes:
+    document = docx.Document()
+    styles = document.styles
+    kind = WD_STYLE_TYPE.PARAGRAPH if of_paragraph else WD_STYLE_TYPE.CHARACTER
+    styles.add_style("Old", kind).font.strike = True
+    styles.add_style("Older", kind).base_style = styles["Old"]
+    table = document.add_table(rows=0, cols=4)
+    for row in (HEAD, *ROWS):
+        for cell, text in zip(table.add_row().cells, row, strict=True):
+            cell.text = text
+    cell = table.rows[2].cells[1]
+    if of_paragraph:
+        cell.add_paragraph("45°", style="Older")
+    else:
+        cell.paragraphs[0].add_run(" 45°").style = "Older"
+    return saved(document)
+
+
+@pytest.mark.parametrize(
+    ("name", "make"),
+    [
+        ("half.xlsx", half_struck_xlsx), ("half.xls", half_struck_xls),
+        ("style.docx", struck_by_style),
+        ("paragraph.docx", lambda: struck_by_style(of_paragraph=True)),
+    ],
+)  # fmt: skip
+def test_a_piece_of_a_cell_that_is_struck_out_is_not_read(
+    name: str, make: Callable[[], bytes], tmp_path: Path, catalogue: Mapping[str, Exercise]
+) -> None:
+    assert result(tmp_path, catalogue["scara"], name, make())[0] == Verdict.UNREADABLE
+
+
+@pytest.mark.parametrize("command", ["sout", "cancel", "bcancel", "xcancel", "xout", "st"])
+def test_text_that_latex_strikes_out_is_refused(
+    command: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    rows = [" & ".join(row) for row in (HEAD, *ROWS)]
+    rows[2] = f"a2 & \\{command}{{0}} $180^\\circ$ & 0 & theta2"
+    text = "\\begin{tabular}{cccc}\n" + " \\\\\n".join(rows) + "\n\\end{tabular}"
+    report = grade(catalogue["scara"], Submission({"table": text})).parts[0]
+    assert [each.code for each in report.feedback] == ["unread_tag"]

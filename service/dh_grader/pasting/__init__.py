@@ -132,8 +132,11 @@ FULL_WIDTH: Final = str.maketrans("，；（）｜＝－＋：［］【】｛｝
 # The first line of a CSV file that names its separator to a spreadsheet.
 _SEPARATOR_LINE: Final = regex(r"sep=[;,|\t]\r?\n", re.IGNORECASE)
 
-# Struck-out text, as Markdown writes it. Readers of files write it in the same way.
-_STRUCK_OUT: Final = regex(r"(?<!~)~~(?=[^\s~])[^~\n]{1,400}~~(?!~)")
+# Struck-out text, as Markdown or LaTeX write it. Readers of files write it as Markdown does.
+_STRUCK_OUT: Final = regex(
+    r"(?<!~)~~(?=[^\s~])[^~\n]{1,400}~~(?!~)"
+    r"|\\(?:sout|xout|st|hcancel|[bx]?cancel(?:to)?)(?![A-Za-z])\s{0,9}\{[^{}\n]{1,400}\}?"
+)
 
 # LaTeX's thin space, which is written between factors and contains a comma.
 _THIN_SPACE: Final = "\\,"

@@ -13,6 +13,7 @@ from typing import Final
 
 from dh_grader.expressions.errors import Note, Span
 from dh_grader.pasting.program import begins_as_matrix, text_around, without_remarks
+from dh_grader.pasting.remarks import may_change
 from dh_grader.pasting.source import GridError, SourceText, joined, split_blanks
 from dh_grader.regex import regex
 from dh_grader.translations import say
@@ -91,14 +92,7 @@ UNIT: Final = regex(
     r"|°|弧度|度|毫米|厘米|米|(?<!\w)(?:in|en) m(?!\w)",
     re.IGNORECASE,
 )
-# Words of a sentence that corrects a table: columns or signs are exchanged …
-_EXCHANGES: Final = regex(
-    r"swapp|exchang|interchang|vertausch|échang|intercambi|invertid|交换|互换|颠倒"
-    # Inverse kinematics exchanges nothing.
-    r"|invers[ée](?!\w{0,2}\s?-?(?:[kc]in|dyn|trans|matri|mod|prob|pos|lageb))",
-    re.IGNORECASE,
-)
-# … or, after the table, something should be different.
+# Words of a sentence after the table, by which something in it should be different.
 _CORRECTS: Final = regex(
     r"correction|erratum|typo|mistake|wrong|(?:should|must)(?: \w+){0,3} be(?!\w)|instead"
     r"|rather than|(?<!\w)not (?:0|[+-]?\d|[a-zαθ]_?\w?(?!\w))"
@@ -106,41 +100,6 @@ _CORRECTS: Final = regex(
     r"|erreur|corrig|au lieu|devrait|faute|faux"
     r"|errata|corrección|correg|en (?:lugar|vez) de|debería|equivoc|更正|纠正|错误|应为|应该|改为",
     re.IGNORECASE,
-)
-# … or the sentence begins with such a word, or names a place in the table beside it.
-_ANNOUNCED: Final = regex(
-    r"[\W_]{0,9}(?:corrections?|corrigend(?:um|a)|errat(?:um|a)|korrektur(?:en)?|berichtigung"
-    r"|correcci[oó]n|edit|更正|勘误)[ \t]{0,3}[:：.!]",
-    re.IGNORECASE,
-)
-_ROW: Final = (
-    r"(?:(?:row|line|joint row|column|zeile|reihe|spalte|fila|columna|ligne|colonne)s?"
-    r"\s?(?:no\.? ?)?\d|(?:last|first|second|third|fourth|letzten?|ersten?|zweiten?|dritten?"
-    r"|vierten?|dernière|première|deuxième|última|primera|segunda|[1-9](?:st|nd|rd|th|\.|e|ª))\s"
-    r"(?:row|line|column|zeile|reihe|spalte|fila|columna|ligne|colonne)"
-    r"|(?:dernière|primera|última)\s(?:ligne|fila)|(?:fila|columna|ligne|colonne)\s(?:[uú]ltima)"
-    r"|第\s?[\d一二三四五六七]\s?[行列]|最后一[行列])"
-)
-_ENTRY: Final = r"(?:(?:a|d|alpha|alfa|theta|[αθ])_?\{?\d)"
-_NAMED: Final = regex(rf"(?<!\w){_ROW}|(?<!\w){_ENTRY}", re.IGNORECASE)
-_NAMED_ROW: Final = regex(rf"(?<!\w){_ROW}", re.IGNORECASE)
-_NAMED_TABLE: Final = regex(r"table\b|tabell|tabla|tableau|表", re.IGNORECASE)
-# Such words are about an answer that is wrong …
-_WRONG: Final = regex(
-    r"(?<!\w)(?:wrong|incorrect|mistakes?|typos?|falsch\w{0,2}|fausse|faux|tippfehler|equivocad\w"
-    r"|incorrect[oa]|erron\w{2}|erreur|incorrecte?)(?!\w)|错误|写错",
-    re.IGNORECASE,
-)
-# … or that something in it should be different; exercises also use them.
-_DIFFERENT: Final = regex(
-    r"(?<!\w)(?:forgot|forgotten|missed|missing|sorry|instead of|rather than|(?:should|must) be"
-    r"|vergessen|fehlt|fehler|error|statt|stattdessen|muss|müsste|sollte|lautet richtig"
-    r"|oubli\w{1,3}|manque|au lieu|devrait|doit|olvid\w{1,3}|falta|en (?:lugar|vez)|debería"
-    r"|debe)(?!\w)|应为|应该|改为|忘|漏",
-    re.IGNORECASE,
-)
-_VALUE_AFTER: Final = regex(
-    rf"(?<!\w){_ENTRY}\}}?\s(?:should|must) be\s(?:[-+−]?\d|{_ENTRY}|pi(?!\w)|π)", re.IGNORECASE
 )
 
 
@@ -346,29 +305,22 @@ def check_sentences(before: list[SourceText], after: list[SourceText]) -> None:
     """Raise GridError if a sentence before or after the table may change its meaning."""
     for line in (*before, *after):
         check_units(line)
-    corrections = [line for line in (*before, *after) if is_correction(line.text)]
-    corrections += [line for line in after if _CORRECTS.search(line.text)]
-    if corrections:
-        raise GridError(
-            "text_around",
-            say(
-                "The sentence in line {line} may correct the table. Write the correction into the "
-                "table, and delete the sentence.",
-                line=corrections[0].line_number,
-            ),
-            corrections[0].whole,
-        )
+    for line in (*before, *after):
+        if may_change(line.text):
+            raise may_correct(line)
+    for line in after:
+        if _CORRECTS.search(line.text):
+            raise may_correct(line)
 
 
-def is_correction(sentence: str) -> bool:
-    """True if a sentence, before or after a table, says that the table is wrong."""
-    if _EXCHANGES.search(sentence) or _ANNOUNCED.match(sentence):
-        return True
-    if _WRONG.search(sentence):
-        return bool(_NAMED.search(sentence) or _NAMED_TABLE.search(sentence))
-    if _DIFFERENT.search(sentence):
-        return bool(_NAMED_ROW.search(sentence) or _VALUE_AFTER.search(sentence))
-    return False
+def may_correct(line: SourceText) -> GridError:
+    """Return the error for a sentence that may change the meaning of the table beside it."""
+    message = say(
+        "The sentence in line {line} may correct the table. Write the correction into the "
+        "table, and delete the sentence.",
+        line=line.line_number,
+    )
+    return GridError("text_around", message, line.whole)
 
 
 def names_unit(sentence: str) -> bool:

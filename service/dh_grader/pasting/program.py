@@ -642,7 +642,7 @@ def text_around(piece: SourceText) -> GridError:
         message = say("An invisible character stands next to the matrix. Delete it.")
     if shown:
         message = say(
-            "`{text}` stands next to the matrix and may change it. Paste the matrix alone, "
+            "`{text}` stands next to the table or matrix and may change it. Paste it alone, "
             "worked out.",
             text=shown,
         )
@@ -881,6 +881,123 @@ def first_change(later: Sequence[SourceText], table: str) -> SourceText | None:
         if not is_harmless and not _is_use(each.text, table, rows, set()):
             return each
     return None
+
+
+def changing_statement(table: str, later: str) -> str:
+    """Return the first statement in ``later`` that may change a table of a script, or "".
+
+    Such a statement gives a value to the table, to a part or a row of it, calls a function only for
+    what it does to them, or tells that their units or the order of their columns are others.
+    """
+    try:
+        source = without_remarks(SourceText.of(table))
+        named = {found[1] for found in _TABLE.finditer(source.text)}
+        statements = split(without_remarks(SourceText.of(later)), ";\n\r") if named else []
+    except GridError:
+        return ""
+    has_order = len(set(_PARAMETER.findall(table))) > _MOST_NAMES
+    for each in statements:
+        text = each.text.strip()
+        if _is_new_table(text, named):
+            return ""
+        if _is_change(text, named, has_order=has_order):
+            return " ".join(text.split())
+    return ""
+
+
+def _is_change(statement: str, named: set[str], *, has_order: bool) -> bool:
+    # ``named`` gets the names of the rows of the table.
+    if not named & set(_WORD.findall(statement)):
+        return _RUNS_TEXT.match(statement) is not None
+    body = statement
+    if loop := _OVER_ROWS.match(statement):
+        names, body = _WORD.findall(loop["names"]), loop["body"].strip()
+        if loop["table"] in named and len(names) <= _MOST_NAMES:
+            # In Python, the rows in a loop are those of the table.
+            named.add(names[-1])
+    if (given := _GIVES_ROW.fullmatch(body)) and given["table"] in named:
+        named.add(given["name"])
+    plain = _STRING.sub("", statement.replace(".evalf", ""))
+    return (
+        _changes(body, named)
+        or _TELLS.search(plain) is not None
+        or (not has_order and _tells_order(statement))
+    )
+
+
+def _is_new_table(statement: str, named: set[str]) -> bool:
+    # Another table with the same name is an answer of its own.
+    found = _TABLE.match(statement)
+    right = statement[found.end(1) :] if found else ""
+    return len(_LITERAL.findall(right)) > _MOST_NAMES and not named & set(_WORD.findall(right))
+
+
+def _tells_order(statement: str) -> bool:
+    for name, place in _ELEMENT.findall(statement):
+        if name.lower().strip("_i") != ("a", "alpha", "d", "theta")[int(place)]:
+            return True
+    rest = _ELEMENT.sub("", _IN_ORDER.sub(_ROW, statement))
+    return len(_PARAMETER.findall(rest)) > 1
+
+
+def _changes(statement: str, named: set[str]) -> bool:
+    table = rf"(?<![\w.])(?:{'|'.join(sorted(named))})(?!\w)"
+    if re.match(rf"del\s.*{table}", statement) or re.search(rf"out\s?=\s?{table}", statement):
+        return True
+    left, equals, right = _left_side(statement)
+    if equals:
+        return re.search(table, left) is not None and not _IS_COPY.fullmatch(right)
+    called = re.match(rf"{table}(?:\[[^\]]{{0,80}}\])*\.(\w+)\(", statement)
+    if called:
+        return not _SHOWS.fullmatch(called[1])
+    call = _BARE_CALL.match(statement)
+    is_argument = re.search(rf"{table}(?:\[[^\]]{{0,80}}\])*\s?[,)]", statement)
+    return call is not None and bool(is_argument) and not _SHOWS.fullmatch(call[1])
+
+
+def _left_side(statement: str) -> tuple[str, bool, str]:
+    # The two sides of an assignment. Signs in brackets belong to arguments.
+    depth = 0
+    for i, sign in enumerate(statement):
+        depth += (sign in "([{") - (sign in ")]}")
+        if sign == "=" and depth == 0:
+            if "=" in statement[i + 1 : i + 2] or statement[i - 1 : i] in _COMPARES:
+                return "", False, ""
+            return statement[:i], True, statement[i + 1 :].strip()
+    return "", False, ""
+
+
+_MOST_NAMES: Final = 2
+_RUNS_TEXT: Final = regex(r"(?:exec|eval|assignin)\(")
+# A column of a table gets the name of a parameter: theta = DH[i, 3], theta = DH[i][3].
+_ELEMENT: Final = regex(
+    r"(?<![\w.])((?i:a|alpha|al|d|theta|th)(?:_?i)?)\s?=\s?\w{1,40}"
+    r"(?:\[[\w:]{1,12},\s?|\[\w{1,12}\]\[)([0-3])\]"
+)
+_COMPARES: Final = ("=", "!", "<", ">", "~")
+# A statement in a loop over the rows of a table.
+_OVER_ROWS: Final = regex(
+    r"(?:async\s)?for\s(?P<names>[\w, ()]{1,60}?)\sin\s(?:enumerate\()?(?P<table>\w{1,40})"
+    r"[^:\n]{0,60}:(?P<body>.*)",
+    re.DOTALL,
+)
+# A row or a view of a table gets a name: alpha = DH[:, 1].
+_GIVES_ROW: Final = regex(
+    r"(?P<name>\w{1,40})\s?=\s?(?P<table>\w{1,40})(?:\[[^\]]{1,40}\])*(?:\.T)?"
+)
+# The same values in another type: DH = np.array(DH, dtype=float).
+_IS_COPY: Final = regex(
+    r"(?:[A-Za-z]\w{0,20}\.)?(?:array|asarray|Matrix|ImmutableMatrix|DataFrame|list|tuple|simplify|N"
+    r"|nsimplify|deepcopy|copy|float)\(\w{1,40}(?:,\s?dtype\s?=\s?[\w.]{1,20})?\)|\w{1,40}\.copy\(\)"
+)
+# A function or a method that shows a table, or only returns something.
+_SHOWS: Final = regex(
+    r"(?:disp|display|print|println|pprint|pretty|fprintf|printf|show|head|tail|to_\w+|info|describe"
+    r"|plot\w*|scatter|imshow|table|uitable|latex|tabulate|savetxt|save|savemat|dump|dumps|len|shape"
+    r"|size|copy|tolist|round|sum|mean|min|max|transpose|reshape|astype|assert\w*|type|isinstance"
+    r"|fk\w*|forward\w*|check\w*|test\w*|teach|view|visuali\w+|draw\w*|animate\w*)"
+)
+_BARE_CALL: Final = regex(r"(?:[A-Za-z_]\w{0,40}\.){0,3}([A-Za-z_]\w{0,40})\(")
 
 
 def _is_echo(written: str, later: str, name: str) -> bool:

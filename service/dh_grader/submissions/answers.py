@@ -6,18 +6,18 @@ the file names the exercise.
 
 import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from os.path import commonpath
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, Final
 
 from pydantic import ValidationError
 
 from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.files import alternatives
-from dh_grader.grading.reading.entries import length_unit_of
+from dh_grader.grading.reading.entries import comments, length_unit_of
 from dh_grader.submissions import (
     RECEIPT,
     AssignedExercise,
@@ -27,7 +27,7 @@ from dh_grader.submissions import (
     without_copy_number,
 )
 from dh_grader.submissions.bodies import GradeRequest, nearest
-from dh_grader.submissions.documents import changing_remark, shortened
+from dh_grader.submissions.documents import changing_remark, is_prose, shortened
 from dh_grader.submissions.files import (
     BY_HAND_ENDINGS,
     DATA_ENDINGS,
@@ -52,6 +52,7 @@ _LONGEST_NAME: Final = 60
 _MOST_TRIED: Final = 5
 # The names of files that are not answers, unless the assignment asks for them.
 _NOT_ANSWERS: Final = frozenset({"readme", "license", "licence", "changelog"})
+_PROGRAMS: Final = frozenset({".py", ".m", ".ipynb"})
 # Files that a repository does not hold for other reasons.
 _NO_TEXTS: Final = frozenset({".xlsx", ".xls", ".ods", ".docx", ".rtf", ".csv", ".tsv", ".zip"})
 
@@ -70,6 +71,8 @@ class ExerciseAnswers:
     names: tuple[str, ...] = ()
     # A sentence about each file that was not read, by the name of the file.
     unread: Mapping[str, str] = field(default_factory=dict)
+    # The paths of the files that were read as answers.
+    read: frozenset[Path] = frozenset()
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,7 +100,8 @@ def answers_in(
     If a file has several excerpts, such as the sheets of a workbook, ``choose`` chooses one.
     """
     try:
-        files = [file for file in handed.files() if not _is_empty_receipt(file)]
+        everything = list(handed.files())
+        files = [file for file in everything if not _is_empty_receipt(file)]
         misplaced = [file for file in files if file.is_misplaced]
         claims, left = _claims(
             [file for file in files if not file.is_misplaced] or files, assignment
@@ -115,7 +119,7 @@ def answers_in(
     unread = [file for file in left if _may_be_answer(file)]
     # A photo beside all answers is no answer; where an answer is missing, it may be the answer.
     return tuple(
-        _with_unread(answers, unread, assigned)
+        _with_notes(_with_unread(answers, unread, assigned), everything, assigned)
         for answers, assigned in zip(found, assignment.exercises, strict=True)
     )
 
@@ -137,6 +141,76 @@ def _with_misplaced(answers: ExerciseAnswers, misplaced: Sequence[HandedFile]) -
         ),
         names=(*answers.names, *names),
         unread=problems,
+    )
+
+
+def _with_notes(
+    answers: ExerciseAnswers, files: Sequence[HandedFile], assigned: AssignedExercise
+) -> ExerciseAnswers:
+    # A note beside the answer, such as the text in the editor of the platform, may change it.
+    if answers.body is None:
+        return answers
+    texts = [_text_of(answer) for answer in answers.body.answers.values()]
+    unit = _length_unit(assigned)
+    for file in files:
+        is_answer = file.path in answers.read and file.name != RECEIPT
+        if is_answer or not _may_be_note(file, len(files)):
+            continue
+        said = list(_lines_of(file))
+        for text in texts:
+            if sentence := changing_remark(text, said, unit):
+                problem = of_file(file.own_name, _may_change(sentence))
+                return replace(
+                    answers,
+                    body=None,
+                    problem=joined("; ", list(filter(None, (answers.problem, problem)))),
+                    names=tuple(dict.fromkeys((*answers.names, file.own_name))),
+                    unread={**answers.unread, file.own_name: problem},
+                )
+    return answers
+
+
+def _text_of(answer: object) -> str:
+    return answer if isinstance(answer, str) else json.dumps(answer, ensure_ascii=False)
+
+
+def _may_be_note(file: HandedFile, count: int) -> bool:
+    # On a platform, each text is the student's. A repository has texts of others, such as README.
+    if ending(file.name) not in (*PASTED_ENDINGS, "") or file.problem:
+        return False
+    if any(map(platform_name, file.path.parts)):
+        return True
+    return count <= _MOST_TRIED and _stem(file) not in _NOT_ANSWERS
+
+
+def _lines_of(file: HandedFile) -> Iterator[str]:
+    # The sentences in a file, but not the rows of its tables and the statements of its programs.
+    try:
+        data = file.read()
+        if file.name == RECEIPT:
+            yield from decoded(data).splitlines()
+            return
+        found = read_content(data, file.name if ending(file.name) else f"{file.name}.txt")
+    except UnusableFileError:
+        return
+    for excerpt in found.excerpts:
+        yield from (*excerpt.around, *excerpt.beside)
+        if ending(file.name) in _PROGRAMS:
+            yield from (comment[1] for comment in comments(excerpt.text))
+        else:
+            yield from filter(is_prose, excerpt.text.splitlines())
+
+
+def _length_unit(assigned: AssignedExercise) -> str | None:
+    exercise = assigned.exercise
+    return length_unit_of(exercise) if isinstance(exercise, Exercise) else None
+
+
+def _may_change(sentence: str) -> Sentence:
+    return say(
+        "has a sentence beside the table or matrix that may change its meaning, so grade "
+        "it by hand: “{sentence}”",
+        sentence=shortened(sentence),
     )
 
 
@@ -391,7 +465,8 @@ def _combined(
         problem = of_file(PurePosixPath(shown).name, error.args[0])
         return ExerciseAnswers(shown, None, problem, names)
     told = joined("; ", list(problems.values()))
-    return ExerciseAnswers(shown, body, told, names, problems)
+    read = frozenset(claim.file.path for claim in claims)
+    return ExerciseAnswers(shown, body, told, names, problems, read)
 
 
 def _common_place(paths: Sequence[str], submission: str) -> str:
@@ -482,17 +557,16 @@ def refuse_changing_remark(
     excerpts: Sequence[Excerpt], chosen: str, assigned: AssignedExercise
 ) -> None:
     """Raise UnusableFileError if a sentence beside the chosen text may change its meaning."""
-    exercise = assigned.exercise
-    unit = length_unit_of(exercise) if isinstance(exercise, Exercise) else None
-    around = next((each.around for each in excerpts if each.text == chosen), ())
-    if sentence := changing_remark(chosen, around, unit):
+    own = next((each for each in excerpts if each.text == chosen), Excerpt(chosen))
+    if own.changed:
         raise UnusableFileError(
             say(
-                "has a sentence beside the table or matrix that may change its meaning, so grade "
-                "it by hand: “{sentence}”",
-                sentence=shortened(sentence),
+                "changes the table or matrix in a later cell, so grade it by hand: “{statement}”",
+                statement=shortened(own.changed),
             )
         )
+    if sentence := changing_remark(chosen, own.around, _length_unit(assigned), own.beside):
+        raise UnusableFileError(_may_change(sentence))
 
 
 def _by_sheet(excerpts: Sequence[Excerpt], assigned: AssignedExercise) -> dict[str, str]:

@@ -2,15 +2,24 @@
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from html import unescape
 from itertools import zip_longest
 from typing import Final
 from xml.etree import ElementTree as ET
 
-from dh_grader.grading.reading.entries import comments, units_in
-from dh_grader.grading.reading.headers import METRES, QUANTITIES, THETA_OFFSET, read_header
+from dh_grader.grading.reading.entries import comments, is_beside_code, units_in
+from dh_grader.grading.reading.headers import (
+    LABEL,
+    METRES,
+    QUANTITIES,
+    THETA_OFFSET,
+    Header,
+    read_header,
+)
 from dh_grader.pasting import ASSIGNMENT, GridError, read_grid, read_robot
-from dh_grader.pasting.around import UNIT, is_correction, names_unit
+from dh_grader.pasting.around import UNIT, is_sentence, names_unit
+from dh_grader.pasting.remarks import Claim, claims, contradicts, may_change
 from dh_grader.regex import regex
 
 # --- Find the table or matrix in a LaTeX, Markdown or MATLAB document
@@ -50,26 +59,143 @@ _LARGEST_FACTOR: Final = 2
 _FEWEST_HEADERS: Final = 2
 
 
-def changing_remark(text: str, around: Iterable[str], length_unit: str | None) -> str:
+def changing_remark(
+    text: str, around: Iterable[str], length_unit: str | None, beside: Iterable[str] = ()
+) -> str:
     """Return the first sentence around a table or matrix that may change its meaning, or "".
 
     ``length_unit`` is the unit of the lengths in the exercise, or None if it is not known.
+    ``beside`` are remarks on cells, such as the comments of a spreadsheet.
     """
-    numbers: set[str] | None = None
-    for sentence in _remarks_sentences(around):
-        if is_correction(sentence):
+    table = _Table.of(text)
+    beside = tuple(beside)
+    for sentence in _remarks_sentences((*around, *beside)):
+        if _changes(sentence, table) or _gives_unit(sentence, table, length_unit):
             return sentence
-        units = _MEASURED.sub(" ", _COMMAND.sub(" ", _CIRCLE.sub("°", sentence)))
-        if not names_unit(units):
-            continue
-        if numbers is None:
-            numbers = set(_kinds_of_numbers(text))
-        # Angles without a unit are in radians.
-        if "angle" in numbers and _ANGLES.search(_RADIANS.sub("", units)):
+    for sentence in _remarks_sentences((*_said_within(text), *table.asides)):
+        # The reader of tables has judged the units in its text.
+        if _changes(sentence, table):
             return sentence
-        if "length" in numbers and _lengths(units) - {METRES.get(length_unit or "")}:
-            return sentence
+    for remark in (*beside, *table.remarks, *_said_beside_code(text)):
+        if may_change(remark, of_cell=True):
+            return " ".join(remark.split())
     return ""
+
+
+def _changes(sentence: str, table: "_Table") -> bool:
+    return may_change(sentence) or any(map(table.contradicts, claims(sentence)))
+
+
+def _gives_unit(sentence: str, table: "_Table", length_unit: str | None) -> bool:
+    units = _MEASURED.sub(" ", _COMMAND.sub(" ", _CIRCLE.sub("°", sentence)))
+    if not names_unit(units) and not CONVERTS_ANGLES.search(sentence):
+        return False
+    # Angles without a unit are in radians.
+    is_code = CONVERTS_ANGLES.search(sentence) is not None
+    if "angle" in table.numbers and (is_code or _ANGLES.search(_RADIANS.sub("", units))):
+        return True
+    others = _lengths(units) - {METRES.get(length_unit or "")}
+    return "length" in table.numbers and bool(others)
+
+
+# A statement that converts degrees to radians.
+CONVERTS_ANGLES: Final = regex(
+    r"[^\n]{0,80}(?:deg2rad|\bradians\(|(?:pi|π)\s?/\s?180(?!\d)|\b(?:cos|sin)d\()[^\n]{0,80}"
+)
+
+
+def _said_within(text: str) -> Iterator[str]:
+    # The sentences and comments in a text that was read as a whole.
+    yield from (line for line in text.splitlines() if is_sentence(line) and is_prose(line))
+    yield from (comment[1] for comment in comments(text))
+
+
+def is_prose(line: str) -> bool:
+    """True if a line is no row of a table: it has few signs between cells, or many words."""
+    signs = sum(map(line.count, "\t|&;"))
+    return signs < _FEWEST_SIGNS and len(line.split()) > line.count(",") * _MOST_WORDS
+
+
+_FEWEST_SIGNS: Final = 3
+# The most words between two commas of a row.
+_MOST_WORDS: Final = 2
+
+
+def _said_beside_code(text: str) -> Iterator[str]:
+    return (each[1] for each in comments(text) if is_beside_code(text, each.start()))
+
+
+@dataclass(frozen=True, slots=True)
+class _Table:
+    """The cells of a table that words beside it may speak of."""
+
+    headers: tuple[Header | None, ...]
+    rows: tuple[tuple[str, ...], ...]
+    # "angle" or "length" if numbers without a unit may be in another unit.
+    numbers: frozenset[str]
+    # The words in its rows, and the rows of words.
+    remarks: tuple[str, ...] = ()
+    asides: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, text: str) -> "_Table":
+        """Return the table in a text; it has no rows if the text has none."""
+        rows = _rows(text)
+        numbers = frozenset(_kinds_of_numbers(text))
+        widest = max(map(_filled, rows), default=0)
+        if widest < len(QUANTITIES):
+            return cls((), (), numbers)
+        names = next((i for i, row in enumerate(rows[:_MOST_ABOVE]) if _has_headers(row)), None)
+        body = [tuple(row) for row in rows[0 if names is None else names + 1 :]]
+        headers: list[Header | None] = [Header(column) for column in QUANTITIES]
+        if names is not None:
+            headers = [read_header(cell) for cell in rows[names]]
+        elif widest > len(QUANTITIES):
+            headers = [Header(LABEL), *headers]
+        words = [cell for row in body if _filled(row) >= len(QUANTITIES) for cell in row]
+        asides = [" ".join(filter(None, row)) for row in rows if 0 < _filled(row) < len(QUANTITIES)]
+        return cls(
+            tuple(headers),
+            tuple(row for row in body if _filled(row) >= len(QUANTITIES)),
+            numbers,
+            tuple(filter(_HAS_WORD.search, words)),
+            tuple(filter(_HAS_WORD.search, asides)),
+        )
+
+    def contradicts(self, claim: Claim) -> bool:
+        """True if a sentence gives a cell another value than the table."""
+        for i, header in enumerate(self.headers):
+            if header is not None and header.column == claim.column:
+                row = self._row(claim.row + (1 if header.shifted and claim.row > 0 else 0))
+                return i < len(row) and contradicts(claim.value, row[i])
+        return False
+
+    def _row(self, number: int) -> tuple[str, ...]:
+        labels = [i for i, header in enumerate(self.headers) if header and header.column == LABEL]
+        if number > 0 and labels:
+            for row in self.rows:
+                if labels[0] < len(row) and _LAST_NUMBER.findall(row[labels[0]])[-1:] == [
+                    str(number)
+                ]:
+                    return row
+        if number > len(self.rows) or not self.rows:
+            return ()
+        return self.rows[number - 1 if number > 0 else -1]
+
+
+def _filled(row: Sequence[str]) -> int:
+    return sum(map(bool, map(str.strip, row)))
+
+
+def _has_headers(row: Sequence[str]) -> bool:
+    known = [header for cell in row if (header := read_header(cell))]
+    return sum(header.column in QUANTITIES for header in known) >= _FEWEST_HEADERS
+
+
+_HAS_WORD: Final = regex(r"[^\W\d_]{3}|[\u4e00-\u9fff]{2}")
+_LAST_NUMBER: Final = regex(r"\d{1,3}")
+# The most rows above the headers.
+_MOST_ABOVE: Final = 5
 
 
 def _remarks_sentences(around: Iterable[str]) -> Iterator[str]:

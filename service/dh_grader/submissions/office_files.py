@@ -22,9 +22,11 @@ from xml.etree import ElementTree as ET
 
 from dh_grader.grading.reading.entries import comments
 from dh_grader.grading.reading.headers import read_header
+from dh_grader.pasting.program import changing_statement
 from dh_grader.regex import regex
 from dh_grader.submissions.bodies import MalformedError, read_json
 from dh_grader.submissions.documents import (
+    CONVERTS_ANGLES,
     around_rows,
     around_table,
     local_name,
@@ -62,13 +64,16 @@ class Excerpt:
     """A piece of a file that may be the answer to a part.
 
     ``name`` is the name of a sheet, or empty. An excerpt of a higher ``level`` counts only if none
-    of a lower level can be read. ``around`` are the lines, cells and comments beside it.
+    of a lower level can be read. ``around`` are the lines and cells around it, and ``beside`` the
+    remarks on its cells. ``changed`` is a later statement that changes it, or empty.
     """
 
     text: str
     name: str = ""
     level: int = 0
     around: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+    changed: str = ""
 
 
 SheetRow = Sequence[str]
@@ -210,6 +215,8 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
                             "program, and save it there"
                         )
                     )
+            if b"strike" in content:
+                content = _STRUCK_IN_XLSX.sub(rb"\1~~\2~~", content)
             copy.writestr(name, content)
     # Loaded only if there is such a file.
     from openpyxl import load_workbook
@@ -222,7 +229,11 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
             rows = sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS)
             hidden = _Hidden.of_xlsx(parts.get(sheet._worksheet_path, b""))
             sheets.append((sheet.title, hidden.without([list(map(_of_xlsx, row)) for row in rows])))
-    yield from _of_sheets(sheets, [*_notes(package, _NOTES_OF_SHEETS)])
+    yield from _of_sheets(
+        sheets,
+        comments=[*_notes(package, _NOTES_OF_SHEETS)],
+        boxes=[*_notes(package, _BOXES_OF_SHEETS)],
+    )
 
 
 def _of_xlsx(cell: Any) -> str:
@@ -232,7 +243,17 @@ def _of_xlsx(cell: Any) -> str:
     return _struck(text) if cell.font and cell.font.strike else text
 
 
+# A piece of a text that is struck out, in the XML of a workbook.
+_STRUCK_IN_XLSX: Final = regex(
+    rb"(<(?:\w{1,9}:)?rPr>(?:\s{0,9}<[^/<>][^<>]{0,200}>){0,20}?"
+    rb"\s{0,9}<(?:\w{1,9}:)?strike(?:\s{1,9}val=[\"'](?:1|true)[\"'])?\s{0,9}/>"
+    rb"(?:\s{0,9}<[^/<>][^<>]{0,200}>){0,20}\s{0,9}</(?:\w{1,9}:)?rPr>"
+    rb"\s{0,9}<(?:\w{1,9}:)?t(?:\s[^<>]{0,60})?>\s{0,20})([^<>~\s][^<>~]{0,399})(?=</)"
+)
+
+
 _NOTES_OF_SHEETS: Final = regex(r"xl/(?:comments/?[^/]{0,20}|threadedComments/[^/]{1,60})\.xml")
+_BOXES_OF_SHEETS: Final = regex(r"xl/drawings/drawing\d{1,4}\.xml")
 
 
 @dataclass(frozen=True, slots=True)
@@ -296,7 +317,9 @@ _UNITS_SHOWN: Final = {
 
 def _struck(text: str) -> str:
     """Return struck-out text as Markdown writes it, which no reader of tables takes."""
-    return f"~~{text.replace('~', '')}~~" if text.strip(" ~") else text
+    inner = text.strip(" ~")
+    before, _, after = text.partition(inner) if inner else (text, "", "")
+    return f"{before}~~{inner.replace('~', '')}~~{after}" if inner else text
 
 
 _OF_SHEETS: Final = regex(
@@ -325,12 +348,17 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
         file_contents=data, ragged_rows=True, formatting_info=True, logfile=io.StringIO()
     )
     sheets = []
+    notes: list[str] = []
     for sheet in book.sheets():
         if sheet.visibility == 0:
+            notes += [note.text for note in sheet.cell_note_map.values()]
             if sum(map(sheet.row_len, range(sheet.nrows))) > MAX_CELLS:
                 raise _too_much()
             rows = [
-                [_of_xls(book, cell) for cell in sheet.row(i)[:MAX_COLUMNS]]
+                [
+                    _of_xls(book, cell, sheet.rich_text_runlist_map.get((i, j), ()))
+                    for j, cell in enumerate(sheet.row(i)[:MAX_COLUMNS])
+                ]
                 for i in range(min(sheet.nrows, MAX_ROWS))
             ]
             hidden = _Hidden(
@@ -338,7 +366,7 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
                 frozenset(j for j, info in sheet.colinfo_map.items() if info.hidden),
             )
             sheets.append((sheet.name, hidden.without(rows)))
-    yield from _of_sheets(sheets)
+    yield from _of_sheets(sheets, comments=notes)
 
 
 def _cells_in_records(data: bytes) -> Iterator[int]:
@@ -368,9 +396,13 @@ def _cells_in_records(data: bytes) -> Iterator[int]:
 _CELLS_IN_RECORD: Final = {0xBD: 6, 0xBE: 2}
 
 
-def _of_xls(book: Any, cell: Any) -> str:
+def _of_xls(book: Any, cell: Any, fonts: Sequence[tuple[int, int]]) -> str:
     format_ = book.xf_list[cell.xf_index]
     text = _value_of_xls(cell, book.datemode, book.format_map[format_.format_key].format_str)
+    for start, font in reversed(fonts):
+        if book.font_list[font].struck_out:
+            end = next((at for at, _ in fonts if at > start), len(text))
+            text = text[:start] + _struck(text[start:end]) + text[end:]
     return _struck(text) if text and book.font_list[format_.font_index].struck_out else text
 
 
@@ -393,8 +425,13 @@ def _ods(data: bytes) -> Iterator[Excerpt]:
             (_attribute(table, "name"), list(_rows_of_ods(table, _struck_styles(root))))
             for table in _tables_of_ods(root)
         ],
-        ["".join(each.itertext()) for each in root.iter() if local_name(each) == "annotation"],
+        comments=_texts_in(root, "annotation"),
+        boxes=_texts_in(root, "text-box") + _texts_in(root, "custom-shape"),
     )
+
+
+def _texts_in(root: ET.Element, name: str) -> list[str]:
+    return ["".join(each.itertext()) for each in root.iter() if local_name(each) == name]
 
 
 def _struck_styles(root: ET.Element) -> frozenset[str]:
@@ -518,11 +555,21 @@ def _one_line(text: str) -> str:
 
 
 def _of_sheets(
-    sheets: Iterable[tuple[str, Sequence[SheetRow]]], comments: Sequence[str] = ()
+    sheets: Iterable[tuple[str, Sequence[SheetRow]]],
+    *,
+    comments: Sequence[str] = (),
+    boxes: Sequence[str] = (),
 ) -> Iterator[Excerpt]:
+    # ``comments`` are on cells, and ``boxes`` are texts that lie on a sheet.
     filled = [(name, rows) for name, rows in sheets if any(any(row) for row in rows)]
-    for name, rows in filled:
-        yield Excerpt(_as_table(rows), name, around=(*_office_files_sentences(rows), *comments))
+    notes = tuple(comments)
+    for i, (name, rows) in enumerate(filled):
+        others = [row for j, (_, other) in enumerate(filled) if j != i for row in other]
+        said = [
+            each for each in _remarks(others) if len(each.split()) > _MOST_WORDS or "行" in each
+        ]
+        around = (*_office_files_sentences(rows), *boxes, *said)
+        yield Excerpt(_as_table(rows), name, around=around, beside=notes)
     for name, rows in filled:
         blocks = list(_blocks(rows))
         if len(blocks) == 1:
@@ -530,8 +577,8 @@ def _of_sheets(
         for block in blocks:
             if len(block) > 1:
                 others = [row for other in blocks if other is not block for row in other]
-                around = (*_office_files_sentences(block), *_remarks(others), *comments)
-                yield Excerpt(_as_table(block), name, 1, around)
+                around = (*_office_files_sentences(block), *_remarks(others), *boxes)
+                yield Excerpt(_as_table(block), name, 1, around, notes)
 
 
 def _office_files_sentences(rows: Iterable[SheetRow]) -> Iterator[str]:
@@ -576,19 +623,66 @@ def _blocks(rows: Sequence[SheetRow]) -> Iterator[list[SheetRow]]:
 def _docx(data: bytes) -> Iterator[Excerpt]:
     package = _Package(data)
     root = package.parsed("word/document.xml")
+    if "word/styles.xml" in package.names:
+        _strike_by_style(root, package.parsed("word/styles.xml"))
     lines: list[str] = []
     tables: list[list[SheetRow]] = []
     body = next((each for each in root if local_name(each) == "body"), root)
     _read_blocks(body, lines, tables)
     between = "\n".join(line for line in lines if line.strip())
-    notes = [*_text_boxes(body), *_notes(package, _NOTES_OF_WORD)]
+    boxes = [*_text_boxes(body), *_notes(package, _MARGINS_OF_WORD)]
+    notes = tuple(_notes(package, _NOTES_OF_WORD))
     for i, rows in enumerate(tables):
         others = [row for other in (*tables[:i], *tables[i + 1 :]) for row in other]
-        around = (*between.splitlines(), *_office_files_sentences(rows), *_remarks(others), *notes)
+        around = (*between.splitlines(), *_office_files_sentences(rows), *_remarks(others), *boxes)
         if text := _as_table(rows).strip():
-            yield Excerpt(text, around=around)
+            yield Excerpt(text, around=around, beside=notes)
     if between:
-        yield Excerpt(between, level=1 if tables else 0, around=tuple(notes))
+        yield Excerpt(between, level=1 if tables else 0, around=tuple(boxes), beside=notes)
+
+
+def _strike_by_style(root: ET.Element, styles: ET.Element) -> None:
+    """Give each run that is struck out by its style, or by that of its paragraph, this property."""
+    struck = _struck_styles_of_word(styles)
+    if not struck:
+        return
+    for paragraph in (each for each in root.iter() if local_name(each) == "p"):
+        of_paragraph = _style_of(paragraph, "pPr", "pStyle") in struck
+        for run in (each for each in paragraph.iter() if local_name(each) == "r"):
+            own = {local_name(each) for part in run for each in part}
+            by_style = of_paragraph or _style_of(run, "rPr", "rStyle") in struck
+            if by_style and not own & _STRIKES:
+                ET.SubElement(ET.SubElement(run, "rPr"), "strike")
+
+
+_STRIKES: Final = frozenset({"strike", "dstrike"})
+
+
+def _struck_styles_of_word(styles: ET.Element) -> set[str]:
+    # A style has the properties of the style on which it is based, unless it turns them off.
+    based: dict[str, str] = {}
+    own: dict[str, bool] = {}
+    for style in (each for each in styles if local_name(each) == "style"):
+        name = _attribute(style, "styleId")
+        based[name] = next((_attribute(e, "val") for e in style if local_name(e) == "basedOn"), "")
+        if any(local_name(each) in _STRIKES for each in style.iter()):
+            own[name] = bool(_STRIKES & _looks(style).keys())
+    for _ in range(_MOST_STYLES):
+        own |= {name: own[base] for name, base in based.items() if name not in own and base in own}
+    return {name for name, is_struck in own.items() if is_struck}
+
+
+# The most styles that are based on each other.
+_MOST_STYLES: Final = 10
+
+
+def _style_of(element: ET.Element, properties: str, style: str) -> str:
+    for part in element:
+        if local_name(part) == properties:
+            for each in part:
+                if local_name(each) == style:
+                    return _attribute(each, "val")
+    return ""
 
 
 def _text_boxes(body: ET.Element) -> Iterator[str]:
@@ -608,7 +702,8 @@ def _notes(package: _Package, names: re.Pattern[str]) -> Iterator[str]:
                 yield "".join(each.itertext())
 
 
-_NOTES_OF_WORD: Final = regex(r"word/(?:comments|footnotes|endnotes|header\d*|footer\d*)\.xml")
+_NOTES_OF_WORD: Final = regex(r"word/(?:comments|footnotes|endnotes)\.xml")
+_MARGINS_OF_WORD: Final = regex(r"word/(?:header\d*|footer\d*)\.xml")
 
 
 def _read_blocks(parent: ET.Element, lines: list[str], tables: list[list[SheetRow]]) -> None:
@@ -760,14 +855,16 @@ def _notebook(data: bytes) -> Iterator[Excerpt]:
     texts = [source for kind, source, _ in found if kind != "code" and source.strip()]
     lines = tuple(line for text in texts for line in text.splitlines() if "|" not in line)
     said = tuple(comment[1] for source in code for comment in comments(source))
+    # A function that converts angles shows that those of the table are in degrees.
+    lines = (*lines, *(found[0] for source in code for found in CONVERTS_ANGLES.finditer(source)))
     for text in texts:
         if (table := pasted_from(text, ".md")) != text:
             yield Excerpt(table, around=(*lines, *said))
     if code:
         yield Excerpt("\n".join(code), around=lines)
-        yield from (
-            Excerpt(each, level=1, around=(*lines, *said)) for each in code if len(code) > 1
-        )
+        for i, each in enumerate(code if len(code) > 1 else ()):
+            changed = changing_statement(each, "\n".join(code[i + 1 :]))
+            yield Excerpt(each, level=1, around=(*lines, *said), changed=changed)
     yield from (
         Excerpt(text, level=1, around=(*lines, *said, *around_rows(text))) for text in texts
     )
@@ -957,7 +1054,10 @@ def excerpts(data: bytes, ending: str) -> tuple[Excerpt, ...]:
         raise _damaged() from error
     if not any(each.text.strip() for each in found):
         raise UnusableFileError(say("is empty"))
-    return tuple(replace(each, around=_not_struck(each.around)) for each in found)
+    return tuple(
+        replace(each, around=_not_struck(each.around), beside=_not_struck(each.beside))
+        for each in found
+    )
 
 
 def _not_struck(lines: Iterable[str]) -> tuple[str, ...]:

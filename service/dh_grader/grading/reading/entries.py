@@ -60,7 +60,8 @@ from dh_grader.pasting import (
     read_robot,
     without_tuples,
 )
-from dh_grader.pasting.around import is_correction, is_sentence
+from dh_grader.pasting.around import is_sentence
+from dh_grader.pasting.remarks import may_change
 from dh_grader.pasting.source import joined, line_number, remembering
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
@@ -703,7 +704,7 @@ def side_by_side(names: Sequence[str]) -> str:
 # --- Find comments and captions in a pasted text, and the units that they name
 
 
-_COMMENT: Final = regex(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,80})")
+_COMMENT: Final = regex(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,300})")
 _CAPTION: Final = regex(
     r"\\caption\s{0,4}\{([^{}]{2,200})\}|<caption[^<>]{0,80}>([^<>]{2,200})</caption>",
     re.IGNORECASE,
@@ -743,13 +744,18 @@ def _refuse_other_lengths(text: str, reader: Reader) -> None:
 def refuse_corrections(text: str) -> None:
     """Raise GridError if a comment says that the table or matrix is wrong."""
     for comment in comments(text):
-        if is_correction(comment[1]):
+        if may_change(comment[1], of_cell=is_beside_code(text, comment.start())):
             message = say(
                 "The sentence in line {line} may correct the table. Write the correction into the "
                 "table, and delete the sentence.",
                 line=line_number(text, comment.start()),
             )
             raise GridError("text_around", message, comment.span())
+
+
+def is_beside_code(text: str, start: int) -> bool:
+    """True if a comment that begins at ``start`` is on a line with a row or a statement."""
+    return text[text.rfind("\n", 0, start) + 1 : start].strip(" \t%#/") != ""
 
 
 def comments(text: str) -> Iterator[re.Match[str]]:

@@ -53,7 +53,8 @@ from dh_grader.grading.reading.table_cells import arranged_row, first_number, ro
 from dh_grader.grading.report import Finding, Verdict, reading_error, reading_note
 from dh_grader.kinematics import COLUMNS, THETA, CellIndex, D
 from dh_grader.pasting import Grid, GridCell, GridError, RobotTable
-from dh_grader.pasting.around import check_sentences, left_aside
+from dh_grader.pasting.around import check_sentences, left_aside, may_correct
+from dh_grader.pasting.remarks import may_change
 from dh_grader.pasting.source import joined, line_number
 from dh_grader.regex import regex
 from dh_grader.translations import listed, say, say_count
@@ -851,6 +852,8 @@ def _row(
     aside = []
     for cell, header in zip(row, found, strict=False):
         if header and header.column == column_headers.ASIDE:
+            if may_change(cell.text, of_cell=True):
+                raise may_correct(cell)
             aside.append(cell.text)
         if header and header.column in _OFFSETS and cell.text.strip("-– "):
             j = THETA if header.column == column_headers.THETA_OFFSET else _moving(cells, reader)
