@@ -638,7 +638,7 @@ def import_learners(
         data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
         listed = read_class_list(decoded(data))
     except OSError as error:
-        give_up(say("{file}: cannot be read: {reason}", file=str(file), reason=str(error)))
+        give_up(say("{file} cannot be read: {reason}", file=str(file), reason=str(error)))
     except CourseError as error:
         give_up(joined(": ", [str(file), str(error.args[0])]))
     count = changed(lambda it: courses.add_learners(it, course, listed))

@@ -96,7 +96,7 @@ def require_no_input(output: Path, read: Iterable[Path]) -> None:
         if path.is_file() and output.exists() and path.samefile(output):
             give_up(
                 say(
-                    "{file}: is read, and would be overwritten; name another --output",
+                    "{file} is read, and would be overwritten; name another --output",
                     file=str(output),
                 )
             )
@@ -118,7 +118,7 @@ def require_own(output: Path, folders: Iterable[Path], *, force: bool = False) -
     if _holds(folders, output):
         give_up(
             say(
-                "{file}: is among the submissions, and no earlier run has written it; name another "
+                "{file} is among the submissions, and no earlier run has written it; name another "
                 "--output",
                 file=str(output),
             )
@@ -126,7 +126,7 @@ def require_own(output: Path, folders: Iterable[Path], *, force: bool = False) -
     if not force:
         give_up(
             say(
-                "{file}: exists, and is no earlier report of this program; name another --output, "
+                "{file} exists, and is no earlier report of this program; name another --output, "
                 "or add --force to replace the file",
                 file=str(output),
             )
@@ -786,12 +786,14 @@ class _Filling:
         if others:
             names = ", ".join(map(str, others))
             self._complain(
-                say("{files}: exists with other contents, and stays as it is", files=names)
+                say(
+                    "This file exists with other contents, and stays as it is: {files}", files=names
+                )
             )
         if others or not self.quiet:
             self._complain(
                 say(
-                    "{file}: is written. Grades filled in: {count}. Already the same: {same}. "
+                    "{file} is written. Grades filled in: {count}. Already the same: {same}. "
                     "Left for grading by hand: {left}.",
                     file=str(target),
                     count=filled.grades,
@@ -864,7 +866,7 @@ def _found(
             )
         )
     if not found:
-        give_up(say("{paths}: holds no submission", paths=", ".join(map(str, paths))))
+        give_up(say("{paths}: no submission was found", paths=", ".join(map(str, paths))))
     if sheet is not None:
         found = [
             replace(each, person=sheet.person(each.name, each.learner) or each.person)
@@ -945,7 +947,13 @@ class _GradeRun:
 
 
 def _complaints(submission: GradedSubmission) -> list[str]:
-    told = ((file.file, spoken(file.problem)) for file in submission.files if file.problem)
+    reasons = ((file.file, file.by_hand) for file in submission.files if file.by_hand)
+    beside = (
+        (file.file, say("Graded, but without this file: {reason}", reason=each))
+        for file in submission.files
+        for each in file.beside
+    )
+    told = ((path, spoken(reason)) for path, reason in (*reasons, *beside))
     # A problem begins with the name of its file; that of a file in a folder gets its path.
     lines = (said if said.startswith(path) else f"{path}: {said}" for path, said in told)
     return [visible(line) for line in dict.fromkeys(lines)]

@@ -54,7 +54,7 @@ from dh_grader.formats.texts import (
 from dh_grader.grading import PartReport, Report, RowReport, Severity, Verdict
 from dh_grader.grading.report import messages_of
 from dh_grader.regex import regex
-from dh_grader.translations import Language, Translation, say, told
+from dh_grader.translations import Language, Translation, joined, say, told
 
 _COLOURS: Final[Mapping[Verdict, str]] = {
     Verdict.CORRECT: "green",
@@ -356,14 +356,16 @@ def entries(submissions: Iterable[GradedSubmission]) -> Iterator[bytes]:
 
 
 def _entry(submission: GradedSubmission, file: GradedFile) -> bytes:
-    head: dict[str, str | bool] = {
+    head: dict[str, str | bool | list[str]] = {
         "submission": _encodable(submission.name),
         "file": _encodable(file.file),
         "exercise": file.exercise.id,
         "passed": submission.passed,
     }
-    if file.problem:
-        head["error"] = _encodable(file.problem)
+    if file.by_hand:
+        head["error"] = _encodable(file.by_hand)
+    if file.beside:
+        head["unread"] = [_encodable(each) for each in file.beside]
     if file.report is None:
         return json.dumps(head).encode()
     return json.dumps(head).encode()[:-1] + b', "report": %b}' % rendered(file.report)
@@ -517,7 +519,7 @@ def _csv_cells(submission: GradedSubmission, setting: Setting) -> list[str | flo
         submission.max_points,
         _share(submission.score) if is_complete else None,
         "yes" if submission.passed else "no",
-        "; ".join(submission.problems),
+        told(joined("; ", submission.problems), setting.language.translation),
         " ".join(code for each in results if each.report for code in _codes(each.report)),
         *(None if each.is_unread else each.points for each in results),
     ]

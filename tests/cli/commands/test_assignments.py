@@ -65,7 +65,7 @@ def test_each_exercise_has_an_entry_in_json(run: Run, folder: Path) -> None:
         ([], "--exercise ID or FILE, or --assignment F"),
         (["--exercise", "scara", "--assignment", "hw.toml"], "ID or FILE, or --assignment F"),
         (["--assignment", "hw.toml", "--part", "table"], "--part goes with --exercise"),
-        (["--assignment", "none.toml"], "none.toml: cannot be read: No such file"),
+        (["--assignment", "none.toml"], "none.toml cannot be read: No such file"),
         (["--assignment", "."], "cannot be read: Is a directory"),
     ],
 )

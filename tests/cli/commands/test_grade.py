@@ -440,7 +440,7 @@ def test_an_exercise_file_is_graded(run: Run, save: Save, tmp_path: Path) -> Non
     assert graded["report"]["score"] < 1
     missing = run("grade", answer, "--exercise", tmp_path / "none.toml")
     assert missing.exit_code == 2
-    assert "none.toml: cannot be read: No such file" in missing.stderr
+    assert "none.toml cannot be read: No such file" in missing.stderr
     nothing = run("grade", answer)
     assert nothing.exit_code == 2
     assert "--exercise ID or FILE, or --assignment F" in nothing.stderr
@@ -704,7 +704,7 @@ def test_the_output_replaces_only_earlier_outputs(
     command = ("--format", name, "--output", target)
     refused = table_only(run, answer, *command)
     assert (refused.exit_code, target.read_bytes()) == (2, b"a;b\n1;2\n")
-    assert "mine.txt: exists, and is no earlier report" in refused.stderr
+    assert "mine.txt exists, and is no earlier report" in refused.stderr
     assert "--force" in refused.stderr
     assert table_only(run, answer, *command, "--force").exit_code == 0
     written = target.read_bytes()
@@ -790,7 +790,7 @@ def test_the_worksheet_says_what_was_written(run: Run, tmp_path: Path) -> None:
     command = ("grade", given, *IN_TABLE, "--worksheet", sheet)
     first = tmp_path / "Grades-graded.csv"
     said = (
-        f"{first}: is written. Grades filled in: 1. Already the same: 0. Left for grading by "
+        f"{first} is written. Grades filled in: 1. Already the same: 0. Left for grading by "
         "hand: 1."
     )
     assert run(*command).stderr.splitlines()[-1] == said
@@ -803,7 +803,7 @@ def test_the_worksheet_says_what_was_written(run: Run, tmp_path: Path) -> None:
     second = tmp_path / "Grades-graded-2.csv"
     assert first.read_bytes() == changed
     assert again[-2:] == [
-        f"{first}: exists with other contents, and stays as it is",
+        f"This file exists with other contents, and stays as it is: {first}",
         said.replace(str(first), str(second)),
     ]
     assert run(*command, "--force").exit_code == 2
