@@ -486,8 +486,12 @@ def _earned(result: PartResult, language: Language) -> str:
         return result.file.problem
     if result.is_unread:
         return told(say("could not be read"), language.translation)
-    return points(result.points, result.max_points)
+    shown = points(result.points, result.max_points)
+    # Beside the grade of a worksheet, which has the decimal sign of its language.
+    return shown.replace(".", ",") if language.code in _WITH_DECIMAL_COMMA else shown
 
+
+_WITH_DECIMAL_COMMA: Final = frozenset({"de", "es", "fr"})
 
 _GRADEBOOK_MARK: Final = regex(re.escape(",".join(texts.GRADEBOOK_HEAD)).encode() + b"\r?\n")
 

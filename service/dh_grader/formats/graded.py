@@ -131,6 +131,7 @@ def _lacks_much(part: PartReport) -> bool:
 # An answer of nothing but zeros and joint variables earns at most this share (see marks.py).
 _MOST_OF_LAZY: Final = 0.25
 NOTHING_READ: Final = say("Nothing in this submission could be read.")
+NOTHING_ANSWERED: Final = say("Nothing is answered.")
 
 
 def _nothing_read(file: str, parts: Iterable[PartReport]) -> str:
@@ -199,7 +200,7 @@ class GradedFile:
         if reasons:
             return paragraph(*reasons)
         if self.names and not report.gradable:
-            return NOTHING_READ
+            return NOTHING_READ if is_answered(report) else NOTHING_ANSWERED
         titles = {part.id: part.title for part in self.exercise.parts}
         mostly = [titles[part.part] for part in report.parts if is_mostly_unread(part)]
         if mostly:
