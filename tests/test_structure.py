@@ -70,7 +70,7 @@ SUITES = {
 
 
 def module_name(file: Path) -> str:
-    """Return the dotted name of a file, such as ``dh_grader.grading.grading``."""
+    """Return the dotted name of a file, such as ``dh_grader.grading.judging``."""
     return ".".join(file.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__")
 
 

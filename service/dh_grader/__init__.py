@@ -10,7 +10,7 @@ for _variable in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_variable, "1")
 
 
-# The installed version of the program.
+# --- The installed version of the program
 
 
 VERSION: Final = version("dh-grader")

@@ -1,4 +1,8 @@
-"""Checks of an exercise for its author, before students see it, and a template for a new one."""
+"""Checks of an exercise for its author, before students see it, and a template for a new one.
+
+The checks grade the exercise as students would be graded. They know nothing about files on a
+server or about the editor.
+"""
 
 import json
 import math
@@ -28,7 +32,7 @@ from dh_grader.catalogue.robot import TRIALS, Reference, trial_values
 from dh_grader.catalogue.schema import ExpectSpec
 from dh_grader.expressions import LIMITS, AngleUnit, Expression
 from dh_grader.expressions.parser import in_degrees
-from dh_grader.expressions.tree import Node, Number, Unit, children
+from dh_grader.expressions.vocabulary import Node, Number, Unit, children
 from dh_grader.grading import FeedbackLevel, PartReport, Submission, Verdict, grade
 from dh_grader.grading.kinds.tables import slip_of
 from dh_grader.grading.misconception import Example, all_records
@@ -39,10 +43,13 @@ from dh_grader.solutions import solve
 from dh_grader.translations import Sentence, joined, say, say_count
 from dh_grader.translations import template as translations_template
 
+# --- Checks of an exercise for its author, before students see it, and a template for a new one
+
+
 __all__ = ["Level", "Remark", "UnusableIdError", "examine", "failures", "summary", "template"]
 
 
-# The template of a new exercise file.
+# --- The template of a new exercise file
 
 
 _TEMPLATE: Final = Path(__file__).with_suffix(".toml")
@@ -75,7 +82,7 @@ def template(exercise_id: str, like: Path | None = None) -> str:
     return _TEMPLATE.read_text(encoding="utf-8").replace("TITLE", title, 1)
 
 
-# The misconceptions that the grader can name in the answers to an exercise.
+# --- The misconceptions that the grader can name in the answers to an exercise
 
 
 # Answers of these kinds have cells of the same sort, in which the same mistakes are searched.
@@ -158,7 +165,7 @@ def _with_changes(answer: Any, changes: Mapping[str, str]) -> Any:
     return changed
 
 
-# Remarks on a readable exercise file.
+# --- Remarks on a readable exercise file
 
 
 class Level(StrEnum):
@@ -181,7 +188,7 @@ failed = partial(Remark, Level.FAILED)
 warning = partial(Remark, Level.WARNING)
 
 
-# Checks of symbols and numbers: ambiguous names, bad ranges, and degrees without a unit.
+# --- Checks of symbols and numbers: ambiguous names, bad ranges, and degrees without a unit
 
 
 _SHORTHAND: Final = regex(r"[cCsS][0-9]+")
@@ -352,7 +359,7 @@ def _units(node: Node) -> Iterator[Unit]:
         yield from _units(child)
 
 
-# Check that the planted mistake of a part ``find_slip`` is possible in a table of the robot.
+# --- Check that the planted mistake of a part ``find_slip`` is possible in a table of the robot
 
 
 def unfit_slips(exercise: Exercise) -> Iterator[Remark]:
@@ -374,7 +381,7 @@ def unfit_slips(exercise: Exercise) -> Iterator[Remark]:
             )
 
 
-# The points of answers that consist only of zeros and joint variables.
+# --- The points of answers that consist only of zeros and joint variables
 
 
 # The largest share without a warning. A pose may earn more: with parallel axes, the lazy answer to
@@ -435,7 +442,7 @@ def _share(report: PartReport) -> float:
     return report.points / report.max_points
 
 
-# The check that every joint of the reference robot adds a motion.
+# --- The check that every joint of the reference robot adds a motion
 
 
 WAYS = 6
@@ -490,7 +497,7 @@ def _jacobian(exercise: Exercise, robot: Reference) -> Numbers:
     return np.stack(columns, axis=-1)
 
 
-# Check an exercise file by grading: its model answers, its checks, and duplicate parts.
+# --- Check an exercise file by grading: its model answers, its checks, and duplicate parts
 
 
 UNITS: Final[tuple[AngleUnit, ...]] = ("radians", "degrees")
@@ -682,7 +689,7 @@ def _in_words(report: PartReport) -> str:
     return joined(": ", [result, message]) if message else result
 
 
-# All checks of an exercise for its author.
+# --- All checks of an exercise for its author
 
 
 EXAMINATIONS: tuple[Callable[[Exercise], Iterator[Remark]], ...] = (

@@ -113,7 +113,7 @@ __all__ = [
 ]
 
 
-# The exceptions of the client.
+# --- The exceptions of the client
 
 
 # The service is overloaded, or it restarts behind a proxy.
@@ -172,7 +172,7 @@ class UnexpectedAnswerError(GraderClientError):
     # A redirect also raises this error: a client that follows a redirect may reveal its key.
 
 
-# The rules by which failed calls are retried.
+# --- The rules by which failed calls are retried
 
 
 @dataclass(frozen=True, slots=True)
@@ -202,7 +202,7 @@ class Retries:
         return error.retry_after + random.uniform(longest / 2, longest)
 
 
-# Receive the responses of a server within limits, and convert failures to exceptions.
+# --- Receive the responses of a server within limits, and convert failures to exceptions
 
 
 # Far larger than the reports on the most submissions in one request (bytes).
@@ -304,9 +304,8 @@ def _causes(error: BaseException | None) -> Iterator[BaseException]:
         error = error.__cause__ or error.__context__
 
 
-# The calls of the service: build requests, and read responses.
-
-
+# --- The calls of the service: build requests, and read responses
+#
 # The clients make their methods from these functions.
 
 
@@ -481,7 +480,7 @@ def _results(content: bytes) -> list[GradeResult]:
     return GradeManyResponse.model_validate_json(content).results
 
 
-# The calls of the service for courses.
+# --- The calls of the service for courses
 
 
 M = TypeVar("M", bound=BaseModel)
@@ -708,7 +707,7 @@ def _sending(path: str, body: BaseModel, model: type[M]) -> HttpCall[M]:
     return HttpCall(path, read, body.model_dump_json(exclude_unset=True).encode())
 
 
-# Check the address of a server, and make the options of an httpx client.
+# --- Check the address of a server, and make the options of an httpx client
 
 
 # The characters of a token of ``Authorization: Bearer`` (RFC 6750).
@@ -769,9 +768,8 @@ def client_options(
     }
 
 
-# The clients, with and without ``await``.
-
-
+# --- The clients, with and without ``await``
+#
 # Their methods build and send the service's calls.
 
 
@@ -849,7 +847,7 @@ class GraderClient(_Methods):
         key: str | None = None,
         *,
         timeout: float = 60.0,
-        retries: Retries = Retries(),  # noqa: B008 -- frozen
+        retries: Retries = Retries(),
         transport: httpx.BaseTransport | None = None,
         language: str | None = None,
     ) -> None:
@@ -919,7 +917,7 @@ class AsyncGraderClient(_Methods):
         key: str | None = None,
         *,
         timeout: float = 60.0,
-        retries: Retries = Retries(),  # noqa: B008 -- frozen
+        retries: Retries = Retries(),
         transport: httpx.AsyncBaseTransport | None = None,
         language: str | None = None,
     ) -> None:

@@ -1,7 +1,6 @@
-"""The three steps of a hint for a message of a report.
+"""Hints on demand: three steps for a message, the rules of DH, and their pictures.
 
-A hint is made from the message and its place, never from the correct answer. So it reveals no more
-than the message.
+The steps say more and more; only the third names the correct entry.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -30,6 +29,12 @@ from dh_grader.grading.report import Feedback, PartReport, RuleName, Severity, V
 from dh_grader.kinematics import Convention, Numbers
 from dh_grader.regex import regex
 from dh_grader.translations import ENGLISH, Language, Sentence, say, template, told
+
+# --- The three steps of a hint for a message of a report
+#
+# A hint is made from the message and its place, never from the correct answer. So it reveals no
+# more than the message.
+
 
 STEPS: Final = 3
 # The codes of messages on mistakes that no record of a misconception has.
@@ -207,12 +212,11 @@ def _entry(topic: Topic) -> Sentence:
     return say("row {row}, column {column}", row=topic.row, column=topic.cell)
 
 
-# The rules of DH and of kinematics that hints explain, each in three sentences.
+# --- The rules of DH and of kinematics that hints explain, each in three sentences
 #
 # A rule never contains a value of the answer. Its sentences ``look`` and ``apply`` may name rows,
 # axes and frames of the exercise, by fields such as ``{row}`` and ``{z_before}``.
-
-
+#
 # The field ``rule`` in a record of a misconception names a rule. ``look`` and ``apply`` may have
 # these fields: ``{row}``, the axes ``{z_before}`` and ``{z}``, ``{x_before}`` and ``{x_here}``, the
 # axis ``{x}`` of the parameters a and α, the axis ``{axis}`` of d and θ, and ``{entry}``, the place
@@ -596,7 +600,7 @@ OF_COLUMN: Final[Mapping[str, RuleName]] = {
 }
 
 
-# The pictures of the four DH parameters: two frames, and the lengths and angles between them.
+# --- The pictures of the four DH parameters: two frames, and the lengths and angles between them
 
 
 # The drawn parameters; pixels for each unit of length.
@@ -762,7 +766,7 @@ def _labels(
         yield label, "variable", list(around(middle, 15.0)), middle[None]
 
 
-# Alternatives to a correct table: valid tables with one frame chosen differently.
+# --- Alternatives to a correct table: valid tables with one frame chosen differently
 #
 # The x or z axis of a frame may point the other way. If the next axis is parallel, the frame may
 # slide along its z axis. The grader decides which of these changes the exercise allows.

@@ -1,4 +1,4 @@
-"""The correct table of a robot as texts that mean the same in every angle unit."""
+"""A correct table as texts, and the same table with one random mistake, for practice."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -13,6 +13,9 @@ from dh_grader.catalogue import Exercise, Joint, ReferenceTable, Robot
 from dh_grader.expressions import Expression
 from dh_grader.kinematics import ALPHA, COLUMNS, THETA, A, Convention, D
 from dh_grader.slices import checkpoint
+
+# --- The correct table of a robot as texts that mean the same in every angle unit
+
 
 # The row and column of a cell.
 TableCell: TypeAlias = tuple[int, int]
@@ -123,11 +126,10 @@ def as_rows(texts: Sequence[Sequence[str]]) -> list[dict[str, str]]:
     return [dict(zip(COLUMNS, row, strict=True)) for row in texts]
 
 
-# The mistakes that can be put into a correct table, by the code of the message about them.
+# --- The mistakes that can be put into a correct table, by the code of the message about them
 #
 # Each function yields changes: new texts for some cells of the table.
-
-
+#
 # The grader may explain a change by another code; ``find_slip`` refuses such changes.
 
 
@@ -426,7 +428,7 @@ def changes_of(name: str, table: ModelTable) -> list[SlipChange]:
     return found
 
 
-# Make a table with one random mistake, so that the grader finds exactly this mistake.
+# --- Make a table with one random mistake, so that the grader finds exactly this mistake
 
 
 @dataclass(frozen=True, slots=True)
@@ -528,7 +530,7 @@ def _places(name: str, change: SlipChange, blame: TableBlame) -> tuple[frozenset
     return (cells, *(frozenset({other}) for other in others))
 
 
-# Pseudo-random numbers that are the same on every computer: integers from SHA-256 of a text.
+# --- Pseudo-random numbers that are the same on every computer: integers from SHA-256 of a text
 
 
 T = TypeVar("T")

@@ -1,4 +1,4 @@
-"""The statistics of a class, counted from its reports."""
+"""The statistics of a class, counted from its reports one by one, without the answers."""
 
 from array import array
 from collections import Counter
@@ -20,6 +20,9 @@ from dh_grader.grading import (
 )
 from dh_grader.grading.report import messages_of
 
+# --- The statistics of a class, counted from its reports
+
+
 __all__ = [
     "CellSuccess",
     "ClassStatistics",
@@ -36,7 +39,7 @@ __all__ = [
 ]
 
 
-# The distribution of scores.
+# --- The distribution of scores
 
 
 BINS: Final = 10
@@ -97,7 +100,7 @@ class ScoreDistribution:
         return [ScoreBin(i / BINS, (i + 1) / BINS, *counts) for i, counts in counted]
 
 
-# The number of submissions with each kind of mistake (message code).
+# --- The number of submissions with each kind of mistake (message code)
 
 
 # Messages about lost points or possible slips; notes and hints are not counted.
@@ -177,7 +180,7 @@ def _counted(part: PartReport) -> Iterator[tuple[Feedback, Verdict]]:
             yield message, verdict
 
 
-# The fraction of right answers in each part, row and cell.
+# --- The fraction of right answers in each part, row and cell
 
 
 # The longest stored entry, and the most different entries of a cell: enough for a class, and a
@@ -301,7 +304,7 @@ def columns(rows: Iterable[RowSuccess]) -> list[str]:
     return list(dict.fromkeys(label for row in rows for label in row.cells))
 
 
-# All statistics of a class.
+# --- All statistics of a class
 
 
 _NO_MESSAGES: Final = (FeedbackLevel.VERDICTS, FeedbackLevel.SCORE)
@@ -335,7 +338,7 @@ class ClassStatistics:
         return self._parts
 
 
-# Groups of submissions with identical mistakes: the same wrong entries in the same cells.
+# --- Groups of submissions with identical mistakes: the same wrong entries in the same cells
 #
 # Identical mistakes do not prove that anybody copied: a common mistake leads many students to the
 # same entries.

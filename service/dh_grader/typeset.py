@@ -1,17 +1,4 @@
-"""Typeset the names in a text: theta1 becomes θ with the index 1.
-
-`static/typeset/names.js` applies the same rules in a browser; the cases of
-`tests/typeset/names.json` hold for both. These are names:
-
-- the symbols that an exercise declares; ``a``, ``A`` and ``I`` in a longer text are English words,
-- Greek letters, also their names in lower case: alpha, phi_2,
-- a letter with an index or a superscript: x0, z_i, L1, R_2^0, R^T,
-- a word with an index of one letter or of digits: Rot_z,
-- frames in braces: {0}, {i-1}, {e},
-- ``x``, ``y`` and ``z`` before "axis" or "axes".
-
-Text in a web address, after a backslash or in a longer word is never a name.
-"""
+"""Names, formulas, matrices and statements of exercises as HTML with MathML."""
 
 import re
 import xml.etree.ElementTree as ET
@@ -22,8 +9,7 @@ from typing import TYPE_CHECKING, Any, Final, NamedTuple
 
 from dh_grader.expressions import Expression, ExpressionError, Symbol, Vocabulary, characters, read
 from dh_grader.expressions.printing import row, scripted, to_text
-from dh_grader.expressions.tree import Binary, Node
-from dh_grader.expressions.vocabulary import RESERVED
+from dh_grader.expressions.vocabulary import RESERVED, Binary, Node
 from dh_grader.pasting import GridError, read_grid
 from dh_grader.regex import regex
 
@@ -31,6 +17,22 @@ if TYPE_CHECKING:
     from markdown_it import MarkdownIt
     from markdown_it.rules_core import StateCore
     from markdown_it.token import Token
+
+
+# --- Typeset the names in a text: theta1 becomes θ with the index 1
+#
+# `static/typeset/names.js` applies the same rules in a browser; the cases of
+# `tests/typeset/names.json` hold for both. These are names:
+#
+# - the symbols that an exercise declares; ``a``, ``A`` and ``I`` are words in a longer text,
+# - Greek letters, also their names in lower case: alpha, phi_2,
+# - a letter with an index or a superscript: x0, z_i, L1, R_2^0, R^T,
+# - a word with an index of one letter or of digits: Rot_z,
+# - frames in braces: {0}, {i-1}, {e},
+# - ``x``, ``y`` and ``z`` before "axis" or "axes".
+#
+# Text in a web address, after a backslash or in a longer word is never a name.
+
 
 # These are also English words, or kinds of robots.
 _WORDS: Final = {"a", "A", "I", "delta", "iota"}
@@ -153,7 +155,7 @@ def _name(match: re.Match[str], symbols: Container[str]) -> TypesetName | None:
     return name if written in symbols and not is_word else None
 
 
-# Formulas and matrices in MathML, made from plain text.
+# --- Formulas and matrices in MathML, made from plain text
 
 
 # In characters of plain text; with more, a formula is too wide for a phone.
@@ -228,12 +230,11 @@ def _names(text: str) -> set[str]:
     return set(_FORMULAS_NAME.findall(text)) - RESERVED
 
 
-# Statements of exercises as HTML, from Markdown with LaTeX between dollar signs.
+# --- Statements of exercises as HTML, from Markdown with LaTeX between dollar signs
 #
 # Authors write text, never HTML: tags and scripts in the text are shown as text. Names in the text
 # and fenced blocks ``matrix`` are typeset.
-
-
+#
 # The library that converts formulas to MathML lets tags through (``\text{<b>}``, ``\href``), so
 # only the plain MathML of its result is kept.
 

@@ -18,7 +18,7 @@ from dh_grader.catalogue import Exercise
 from dh_grader.store import AttemptStore, database
 from dh_grader.store.attempts import record
 from dh_grader.store.database import before, in_transaction, open_database, unfinished
-from dh_grader.store.learner_data import override
+from dh_grader.store.results import override
 from dh_grader.store.tables import attempts, earlier_reports, overrides
 from sqlalchemy import func, select, text
 

@@ -7,9 +7,8 @@ import pytest
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.store import AttemptStore
 from dh_grader.store.database import UnknownAttemptError, UnusablePointsError
-from dh_grader.store.learner_data import LearnerData, forget, override
 from dh_grader.store.regrades import Regrading
-from dh_grader.store.results import history
+from dh_grader.store.results import LearnerData, forget, history, override
 from dh_grader.store.tables import attempts, metadata, outcomes, regrade_queue
 from sqlalchemy import func, select, text
 

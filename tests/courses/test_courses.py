@@ -13,7 +13,8 @@ from typing import Any
 import httpx
 import pytest
 from dh_grader import courses as roll
-from dh_grader.access import Scope, Secret, add_key, new_key_text, settle
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key, settle
 from dh_grader.api.http import ARRIVED
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import (
@@ -24,7 +25,7 @@ from dh_grader.contract.courses import (
     NewCourse,
     NewLearner,
 )
-from dh_grader.courses import CourseError, issue_links, learner_view, revoke_links
+from dh_grader.courses import CourseError, issue_links, revoke_links
 from dh_grader.courses.assignments import (
     add_assignment,
     assignments_of,
@@ -33,14 +34,21 @@ from dh_grader.courses.assignments import (
     learner_terms,
     terms_of,
 )
-from dh_grader.courses.gradebook import gradebook, handed_in, missing, written_gradebook
+from dh_grader.courses.gradebook import (
+    _log,
+    _log_missing,
+    gradebook,
+    handed_in,
+    missing,
+    written_gradebook,
+)
 from dh_grader.server import installed_app
 from dh_grader.settings import Settings
 from dh_grader.store.database import in_transaction, open_database
-from dh_grader.store.learner_data import forget
+from dh_grader.store.results import forget
 from dh_grader.translations import ENGLISH
-from dh_grader.web.assets import load_assets
 from dh_grader.web.courses import CourseState, assignment_page
+from dh_grader.web.pages import load_assets
 from pydantic import SecretStr
 from sqlalchemy import Connection
 
@@ -211,8 +219,8 @@ def test_an_exercise_whose_file_is_not_there_is_named_to_learner_and_tutor(
     class_.do(lambda it: add_assignment(it, "robots", new, {"scara", "brand-new"}))
     # The log of uvicorn may have been set up by another test, so that pytest does not see it.
     logged: list[object] = []
-    monkeypatch.setattr(learner_view._log, "warning", lambda *told: logged.extend(told))
-    learner_view._log_missing.cache_clear()
+    monkeypatch.setattr(_log, "warning", lambda *told: logged.extend(told))
+    _log_missing.cache_clear()
     class_.own()
     [course] = class_.ask("GET", "/v1/me").json()["courses"]
     found = course["assignments"][0]["exercises"]

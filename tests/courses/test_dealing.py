@@ -28,9 +28,14 @@ from dh_grader.courses.assignments import (
 )
 from dh_grader.kinematics import COLUMNS
 from dh_grader.store.attempts import AttemptFilter, GradesFormat
-from dh_grader.store.learner_data import everything_of, forget
 from dh_grader.store.regrades import Regrading
-from dh_grader.store.results import exercise_statistics, graded_attempts, written
+from dh_grader.store.results import (
+    everything_of,
+    exercise_statistics,
+    forget,
+    graded_attempts,
+    written,
+)
 from dh_grader.store.tables import assignments, attempts, deals
 from dh_grader.variants import built, seed_of
 from sqlalchemy import func, select, update

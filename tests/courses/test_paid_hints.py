@@ -12,9 +12,8 @@ from dh_grader.contract.courses import AssignmentChange, Extension
 from dh_grader.courses.assignments import assignment_of, change_assignment, extend
 from dh_grader.grading.reading.entries import Reader
 from dh_grader.store.attempts import AttemptFilter
-from dh_grader.store.learner_data import everything_of, forget
 from dh_grader.store.regrades import Regrading
-from dh_grader.store.results import exercise_statistics
+from dh_grader.store.results import everything_of, exercise_statistics, forget
 from dh_grader.store.tables import hints
 from sqlalchemy import func, select
 

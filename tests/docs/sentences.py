@@ -20,7 +20,7 @@ from dh_grader.catalogue import Exercise
 from dh_grader.expressions import LIMITS, AngleUnit, ExpressionError, Vocabulary, read
 from dh_grader.grading import FeedbackLevel, Submission, grade
 from dh_grader.grading.misconception import all_records
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 from dh_grader.grading.report import Feedback, PartReport, Place, messages_of, without_places
 
 from tests.docs import test_message_codes as messages_page

@@ -14,7 +14,7 @@ import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.expressions import LIMITS, ExpressionError, read
 from dh_grader.grading import FeedbackLevel
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 from dh_grader.grading.reading.table import MAX_ROWS
 from dh_grader.grading.report import MAX_SYMBOLS
 from dh_grader.pasting import GRID_LIMITS

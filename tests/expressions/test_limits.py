@@ -5,7 +5,7 @@ import time
 
 import pytest
 from dh_grader.expressions import LIMITS, ExpressionError, Vocabulary, read
-from dh_grader.expressions.tree import Binary, Node, SymbolNode, children
+from dh_grader.expressions.vocabulary import Binary, Node, SymbolNode, children
 
 from tests.expressions.fuzzing import seeds, texts
 from tests.guards import STALL

@@ -9,7 +9,16 @@ import sympy
 from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
 from dh_grader.expressions.parser import in_degrees
 from dh_grader.expressions.printing import to_text
-from dh_grader.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode, Unit
+from dh_grader.expressions.vocabulary import (
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
+    Pi,
+    SymbolNode,
+    Unit,
+)
 from hypothesis import example, given
 from hypothesis import strategies as st
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.grading import FeedbackLevel, Submission, grade
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 from hypothesis import given
 from hypothesis import strategies as st
 

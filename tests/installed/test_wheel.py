@@ -73,7 +73,7 @@ def test_the_wheel_holds_the_templates_of_reports_and_pages(programs: Path, tmp_
     report = run(programs / "dh-grader", *options, cwd=tmp_path)
     assert report.stdout.startswith("<!doctype html>"), report.stderr
     ask = (
-        "from dh_grader.web.assets import load_assets; from dh_grader.web.pages import play_page;"
+        "from dh_grader.web.pages import load_assets; from dh_grader.web.pages import play_page;"
         "from dh_grader.translations import ENGLISH;"
         "print(play_page(load_assets(), ENGLISH).decode())"
     )

@@ -11,12 +11,13 @@ from urllib.parse import parse_qs, urlsplit
 
 import httpx
 import pytest
-from dh_grader.access import OPEN_HERE, KeyRing
+from dh_grader.access import OPEN_HERE
+from dh_grader.access.keys import KeyRing
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise
+from dh_grader.lti import NewRegistration, add_registration
 from dh_grader.lti.fetching import ensure_key
-from dh_grader.lti.registrations import NewRegistration, add_registration
 from dh_grader.store import AttemptStore, tables
 from dh_grader.store.database import in_transaction
 from dh_grader.store.tables import course_learners, courses

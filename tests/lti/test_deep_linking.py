@@ -10,7 +10,7 @@ from typing import Any
 import httpx
 import jwt
 import pytest
-from dh_grader.lti.registrations import Registration
+from dh_grader.lti import Registration
 from dh_grader.store.tables import assignments
 from sqlalchemy import select
 

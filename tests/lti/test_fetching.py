@@ -12,9 +12,8 @@ from ipaddress import ip_address
 from typing import Any
 
 import pytest
-from dh_grader.lti import fetching
+from dh_grader.lti import fetching, unusable
 from dh_grader.lti.fetching import TIMEOUT, FetchError, answer, fetch_json, is_public
-from dh_grader.lti.registrations import unusable
 from fastapi import FastAPI, Response
 
 from tests.guards import ANSWER

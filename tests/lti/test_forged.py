@@ -9,13 +9,13 @@ from typing import Any
 
 import jwt
 import pytest
-from dh_grader.lti.launch import digest
-from dh_grader.lti.registrations import (
+from dh_grader.lti import (
     LTI_PROBLEMS,
     NewRegistration,
     add_registration,
     remove_registration,
 )
+from dh_grader.lti.launch import digest
 from dh_grader.store.tables import launches, learners, registrations
 from sqlalchemy import select, update
 

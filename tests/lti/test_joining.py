@@ -9,8 +9,8 @@ from typing import Any
 
 import httpx
 import pytest
+from dh_grader.lti import all_registrations, deployments_of
 from dh_grader.lti.joining import allow, canvas_configuration, invite
-from dh_grader.lti.registrations import all_registrations, deployments_of
 from dh_grader.store.tables import invitations
 from fastapi import FastAPI, Request
 from fastapi.responses import JSONResponse, Response

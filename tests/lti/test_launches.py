@@ -144,7 +144,7 @@ def test_previews_and_guests_record_nothing(tool: Tool) -> None:
 
 
 def test_roles_of_platforms_have_a_role_here() -> None:
-    from dh_grader.lti.registrations import LtiRole, role_of
+    from dh_grader.lti import LtiRole, role_of
 
     lis = "http://purl.imsglobal.org/vocab/lis/v2"
     cases = {

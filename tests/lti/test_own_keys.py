@@ -3,8 +3,8 @@ from typing import Any
 
 import pytest
 from dh_grader.access import Secret
+from dh_grader.lti import LtiError
 from dh_grader.lti.fetching import ensure_key, published_keys, rotate, signing_key
-from dh_grader.lti.registrations import LtiError
 from dh_grader.store.tables import own_keys
 
 from tests.access.kept_services import SECRET

@@ -3,8 +3,8 @@ from datetime import UTC, datetime
 from typing import Any
 
 import pytest
+from dh_grader.lti import LtiError, Registration
 from dh_grader.lti.fetching import FetchError, PlatformKeys, PlatformThreads
-from dh_grader.lti.registrations import LtiError, Registration
 
 from tests.lti.platform import Platform, public_jwk
 

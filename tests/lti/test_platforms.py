@@ -1,6 +1,6 @@
 """The operators' page of registered platforms."""
 
-from dh_grader.lti.registrations import LTI_PROBLEMS, LtiError, cause_without_values
+from dh_grader.lti import LTI_PROBLEMS, LtiError, cause_without_values
 from dh_grader.translations import LANGUAGES, say, told
 
 from tests.lti.conftest import hidden

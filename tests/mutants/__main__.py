@@ -73,7 +73,7 @@ PACKAGES: Final[Mapping[str, Package]] = {
         ["tests/attempts/results"],
     ),
     "fair_points": Package(
-        ["service/dh_grader/grading/fair_points.py"],
+        ["service/dh_grader/grading/judging_table.py"],
         ["tests/grading/judging", "tests/grading/test_unread_cells.py", "tests/frame_choice/rows"],
         ["tests/grading/judging/marking/test_fair_points.py"],
     ),

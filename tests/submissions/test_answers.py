@@ -6,8 +6,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from dh_grader.submissions import Assignment, assigned, of_one
 from dh_grader.submissions.answers import ExerciseAnswers, answers_in
-from dh_grader.submissions.assignment import Assignment, assigned, of_one
 from dh_grader.submissions.files import all_handed_in
 from dh_grader.translations import LANGUAGES, told
 

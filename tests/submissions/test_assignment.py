@@ -4,8 +4,8 @@ from pathlib import Path
 import pytest
 from dh_grader.catalogue import CatalogueError, Exercise, FeedbackLevel, shipped_folder
 from dh_grader.grading import Submission, grade
+from dh_grader.submissions import Assignment, assigned, load_assignment
 from dh_grader.submissions.answers import answers_in
-from dh_grader.submissions.assignment import Assignment, assigned, load_assignment
 from dh_grader.submissions.bodies import find_exercise
 from dh_grader.submissions.files import all_handed_in
 

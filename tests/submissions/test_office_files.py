@@ -14,8 +14,9 @@ from typing import Any, Final
 import openpyxl
 import pytest
 from dh_grader.formats.local_grading import GradingTerms, graded
-from dh_grader.submissions.assignment import of_one
-from dh_grader.submissions.documents import (
+from dh_grader.submissions import of_one
+from dh_grader.submissions.files import all_handed_in
+from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
     Excerpt,
     UnusableFileError,
@@ -23,7 +24,6 @@ from dh_grader.submissions.documents import (
     excerpts,
     typed_text,
 )
-from dh_grader.submissions.files import all_handed_in
 from hypothesis import given
 from hypothesis import strategies as st
 

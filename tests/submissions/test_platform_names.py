@@ -1,5 +1,5 @@
 import pytest
-from dh_grader.submissions.files import platform_name
+from dh_grader.submissions import platform_name
 
 
 @pytest.mark.parametrize(

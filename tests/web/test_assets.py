@@ -1,7 +1,7 @@
 from pathlib import Path
 
 import pytest
-from dh_grader.web.assets import load_assets
+from dh_grader.web.pages import load_assets
 
 
 def test_a_name_changes_with_the_file_and_with_the_files_it_names(tmp_path: Path) -> None:

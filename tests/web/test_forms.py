@@ -4,9 +4,9 @@ import re
 from pathlib import Path
 
 import pytest
-from dh_grader.web import assets
+from dh_grader.web import pages
 
-PAGES = sorted(Path(assets.__file__).parent.rglob("*.html"))
+PAGES = sorted(Path(pages.__file__).parent.rglob("*.html"))
 FORMS = [
     (page, form) for page in PAGES for form in re.findall(r"<form\b[^>]*>", page.read_text("utf-8"))
 ]

@@ -10,7 +10,7 @@ import pytest
 from dh_grader.api.application import application
 from dh_grader.catalogue import Exercise
 from dh_grader.web import web_routes
-from dh_grader.web.assets import load_assets
+from dh_grader.web.pages import load_assets
 
 # The first view of an exercise: the page, all scripts and styles, compressed as for a browser.
 MOST_BYTES = 120_000

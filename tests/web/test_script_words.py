@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from dh_grader.translations import LANGUAGES
-from dh_grader.web.assets import FOLDER, dictionary, load_assets, sentences_in
+from dh_grader.web.pages import FOLDER, dictionary, load_assets, sentences_in
 
 from tests.translations.catalogues import extracted
 from tests.translations.pseudo import PSEUDO, without_others

@@ -23,7 +23,7 @@ from dh_grader.formats import report_format
 from dh_grader.formats.graded import Setting
 from dh_grader.formats.local_grading import GradingTerms, graded
 from dh_grader.store import AttemptStore
-from dh_grader.submissions.assignment import of_one
+from dh_grader.submissions import of_one
 from dh_grader.submissions.files import all_handed_in
 from fastapi import FastAPI
 from rich.console import Console

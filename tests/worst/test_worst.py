@@ -10,7 +10,7 @@ from types import SimpleNamespace
 
 import pytest
 from dh_grader.grading import Submission, grade
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 from dh_grader.pasting import source as pairs
 
 from tests.worst.__main__ import PROMISED, PROMISED_DECIMALS

@@ -1,4 +1,7 @@
-"""Build the HTTP service from its routes, limits and headers."""
+"""Build the HTTP service from its routes, limits and headers.
+
+It knows the outermost middleware and the order of the routes; the routes are in the other files.
+"""
 
 import asyncio
 import gc
@@ -42,7 +45,7 @@ if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
 
 
-# The outermost middleware, which every request and response passes.
+# --- The outermost middleware, which every request and response passes
 
 
 # The headers of an answer that a page of another origin may read.
@@ -153,7 +156,7 @@ def _is_too_large(declared: str) -> bool:
     return len(digits) > _DIGITS or int(digits or "0") > MAX_BODY_SIZE
 
 
-# The interface between the application and the web pages.
+# --- The interface between the application and the web pages
 
 
 class WebPages(NamedTuple):
@@ -167,6 +170,9 @@ class WebPages(NamedTuple):
     of_problem: ProblemPage
     close: Callable[[], None]
     drafts: Drafts
+
+
+# --- Build the HTTP service from its routes, limits and headers
 
 
 # Puts a layer around an application.

@@ -1,4 +1,7 @@
-"""Routes for tutors: list the scores sent to learning platforms, and send them again."""
+"""The routes of courses: for tutors who run them, and for learners who hand in.
+
+The rules of courses are in ``dh_grader.courses``, those of attempts in ``dh_grader.store``.
+"""
 
 from collections.abc import Collection
 from datetime import UTC, datetime
@@ -106,6 +109,9 @@ if TYPE_CHECKING:
     from dh_grader.store.attempts import Standing
 
 
+# --- Routes for tutors: list the scores sent to learning platforms, and send them again
+
+
 def scores_routes(store: "AttemptStore | None") -> APIRouter:
     """Return the routes for scores at learning platforms."""
     router = APIRouter(prefix="/v1/courses/{course_id}/scores", tags=["courses"])
@@ -155,7 +161,7 @@ def scores_routes(store: "AttemptStore | None") -> APIRouter:
     return router
 
 
-# Routes for tutors: courses and their learners.
+# --- Routes for tutors: courses and their learners
 
 
 def rolls_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
@@ -277,7 +283,7 @@ def _new_learners(body: LearnersRequest) -> list[NewLearner]:
         raise course_problem(error) from error
 
 
-# The route for hints on recorded attempts.
+# --- The route for hints on recorded attempts
 #
 # A hint has several steps. The service records each step that a learner takes. A step may have a
 # price, which reduces the points of later attempts.
@@ -390,7 +396,7 @@ def _refused(name: str, detail: str) -> ProblemError:
     return ProblemError(HTTPStatus.FORBIDDEN, detail, name, say("The hint is not given"))
 
 
-# Routes for tutors: the personal links with which learners open their courses.
+# --- Routes for tutors: the personal links with which learners open their courses
 
 
 def links_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
@@ -447,7 +453,7 @@ def links_routes(store: "AttemptStore | None", access: Access) -> APIRouter:
     return router
 
 
-# The routes for learners: show assignments, hand in answers, and show solutions.
+# --- The routes for learners: show assignments, hand in answers, and show solutions
 
 
 def handing_in_routes(
@@ -474,7 +480,7 @@ def handing_in_routes(
 
         The titles of exercises are in the reader's language.
         """
-        from dh_grader.courses.learner_view import own_view
+        from dh_grader.courses.gradebook import own_view
 
         caller = access.caller(request)
         learner, now = _learner(caller, None), datetime.now(UTC)
@@ -552,7 +558,7 @@ def handing_in_routes(
     ) -> Response:
         """Show a learner the model solution, once the assignment allows it."""
         from dh_grader.courses.assignments import assigned
-        from dh_grader.courses.learner_view import has_full_marks
+        from dh_grader.courses.gradebook import has_full_marks
 
         learner = _learner(access.caller(request), None)
         named = exercise_or_404(catalogue, exercise_id)
@@ -617,7 +623,7 @@ def _learner(caller: Caller, named: str | None) -> str:
     return named
 
 
-# Routes for tutors: the gradebook, missing hand-ins, and a course as one learner sees it.
+# --- Routes for tutors: the gradebook, missing hand-ins, and a course as one learner sees it
 
 
 _CSV: Final[dict[str, Any]] = {"schema": {"type": "string"}}
@@ -691,7 +697,7 @@ def gradebook_routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIR
         course_id: CourseId, learner: Annotated[Learner, Path(description="The id of a learner.")]
     ) -> Response:
         """Show a course as one of its learners sees it; for tutors of the course."""
-        from dh_grader.courses.learner_view import own_view
+        from dh_grader.courses.gradebook import own_view
 
         now = datetime.now(UTC)
         view = await read(store, lambda it: own_view(it, learner, course_id, catalogue, now))
@@ -707,7 +713,7 @@ def _file(course_id: str, ending: str) -> dict[str, str]:
     return {"Cache-Control": "no-store", "Content-Disposition": attachment}
 
 
-# Routes for tutors: delete courses and assignments, and remove learners.
+# --- Routes for tutors: delete courses and assignments, and remove learners
 
 
 def deletion_routes(store: "AttemptStore | None") -> APIRouter:
@@ -778,7 +784,7 @@ def deletion_routes(store: "AttemptStore | None") -> APIRouter:
     return router
 
 
-# Routes for tutors: assignments, and extensions (changed dates for single learners).
+# --- Routes for tutors: assignments, and extensions (changed dates for single learners)
 
 
 def assignments_routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:

@@ -1,7 +1,4 @@
-"""Convert the schemas of the OpenAPI document to a form that suits client generators.
-
-A generated client needs a name for each model, and must know which fields may be absent.
-"""
+"""The OpenAPI document: schemas that suit client generators, error responses, and examples."""
 
 import json
 from collections.abc import Mapping
@@ -12,6 +9,11 @@ from typing import Any, Final
 from pydantic import BaseModel
 
 from dh_grader.contract import MEDIA_TYPE, ProblemDocument
+
+# --- Convert the schemas of the OpenAPI document to a form that suits client generators
+#
+# A generated client needs a name for each model, and must know which fields may be absent.
+
 
 Schema = dict[str, Any]
 
@@ -176,7 +178,7 @@ def _texts(schema: Schema) -> Schema:
     return {"description": schema["description"].replace("``", "`")}
 
 
-# The OpenAPI document of the HTTP interface, with schemas, error responses and examples.
+# --- The OpenAPI document of the HTTP interface, with schemas, error responses and examples
 #
 # The examples are stored in files. A test compares them with real responses.
 

@@ -1,4 +1,4 @@
-"""The route that computes where to draw the frames of a DH table and the links of a robot."""
+"""The routes that show without grading: previews of a text, frames of a table, and figures."""
 
 import base64
 import hashlib
@@ -85,13 +85,13 @@ from dh_grader.figures.table_figure import (
     table_frames,
     table_to_draw,
 )
-from dh_grader.grading.reading.preview import CellPreview, preview_entries, preview_pasted
+from dh_grader.grading.reading import CellPreview, preview_entries, preview_pasted
 from dh_grader.grading.report import Finding, UnreadableAnswerError, WorkBudget
 from dh_grader.kinematics import Matrices, Numbers
 from dh_grader.slices import checkpoint
 from dh_grader.translations import Language, Sentence, say, say_count
 
-# The routes that show how the grader reads a text while a student is typing.
+# --- The routes that show how the grader reads a text while a student is typing
 
 
 JOINTS: Final = range(1, 10)
@@ -230,6 +230,9 @@ def _exercise(catalogue: Catalogue, body: PreviewRequest) -> Exercise | None:
     if exercise is not None and body.part is not None:
         require_parts(exercise, [(body.part, ("part",))])
     return exercise
+
+
+# --- The route that computes where to draw the frames of a DH table and the links of a robot
 
 
 _MOST_MECHANISMS: Final = 64
@@ -529,7 +532,7 @@ def _plain(numbers: Numbers) -> Any:
     return (np.round(numbers, 12) + 0.0).tolist()
 
 
-# The route that draws an exercise's mechanism.
+# --- The route that draws an exercise's mechanism
 
 
 _THEME = Query(

@@ -1,4 +1,7 @@
-"""The routes that grade submissions."""
+"""The routes that grade, and what belongs to it: exercises, hints, solutions, practice, tokens.
+
+Nothing is recorded here: ``recording.py`` has the routes that record attempts.
+"""
 
 import asyncio
 import logging
@@ -94,7 +97,7 @@ if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
 
 
-# The route that makes tokens for learners.
+# --- The route that makes tokens for learners
 
 
 def tokens_routes(catalogue: Catalogue, access: Access) -> APIRouter:
@@ -146,7 +149,7 @@ def tokens_routes(catalogue: Catalogue, access: Access) -> APIRouter:
     return router
 
 
-# The routes that show model solutions: to tutors, and to students with full marks.
+# --- The routes that show model solutions: to tutors, and to students with full marks
 
 
 _SOLUTION: Final = TypeAdapter(ModelSolution)
@@ -229,7 +232,7 @@ def _not_shown() -> ProblemError:
     )
 
 
-# The page /docs, which documents the HTTP interface.
+# --- The page /docs, which documents the HTTP interface
 #
 # Swagger UI draws the page. The service has a copy of Swagger UI, so the page works without the
 # internet.
@@ -266,7 +269,7 @@ def reference_routes() -> APIRouter:
     return router
 
 
-# The route that gives students generated robots to practise with.
+# --- The route that gives students generated robots to practise with
 
 
 _LEVEL = Query(ge=1, le=4, description="From 1, robots with two or three joints, to 4.")
@@ -327,7 +330,7 @@ def practice_routes(catalogue: Catalogue) -> APIRouter:
     return router
 
 
-# The routes for hints, for pictures of DH rules, and for alternatives to a correct table.
+# --- The routes for hints, for pictures of DH rules, and for alternatives to a correct table
 
 
 _RULE = fastapi_Path(max_length=60, description="The name of a rule.", examples=["link_twist"])
@@ -477,7 +480,7 @@ def _drawn(rule: RuleName, convention: Convention, theme: Theme) -> bytes:
     return rule_picture(rule, convention, theme).encode()
 
 
-# The routes for health checks.
+# --- The routes for health checks
 
 
 # The seconds that the database may take to answer.
@@ -561,6 +564,9 @@ def _no_exercises() -> ProblemError:
         "The service has nothing to grade",
         headers={"Retry-After": "5"},
     )
+
+
+# --- The routes that grade submissions
 
 
 _log = logging.getLogger(__name__)
@@ -671,7 +677,7 @@ def _problem(problem: ProblemError, path: str, i: int, language: Language) -> by
     return b'{"problem":%b}' % content
 
 
-# The routes that list and describe exercises, without their correct answers.
+# --- The routes that list and describe exercises, without their correct answers
 
 
 def exercises_routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVariants) -> APIRouter:

@@ -1,4 +1,7 @@
-"""Check whether a learner's assignments allow practice."""
+"""What an assignment allows a learner: practice, a paid hint, a solution, an own variant.
+
+The routes that grade ask here, so they need no database if there are no courses.
+"""
 
 from datetime import UTC, datetime
 from http import HTTPStatus
@@ -27,6 +30,9 @@ if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
 
 
+# --- Check whether a learner's assignments allow practice
+
+
 class PracticeGate:
     """Refuses practice, free hints and solutions that an assignment of the learner forbids now."""
 
@@ -46,7 +52,7 @@ class PracticeGate:
         learner = caller.learner
         if self._store is None or learner is None:
             return
-        from dh_grader.courses.learner_view import has_priced_hints
+        from dh_grader.courses.gradebook import has_priced_hints
 
         now, alike = datetime.now(UTC), self._alike(exercise.plain_id)
         priced = await ask(
@@ -70,7 +76,7 @@ class PracticeGate:
         learner = caller.learner
         if self._store is None or learner is None:
             return
-        from dh_grader.courses.learner_view import hides_solution
+        from dh_grader.courses.gradebook import hides_solution
 
         now, alike = datetime.now(UTC), self._alike(exercise)
         hidden = await ask(
@@ -92,7 +98,7 @@ class PracticeGate:
         learner = caller.learner
         if self._store is None or learner is None:
             return None
-        from dh_grader.courses.learner_view import closed_practice
+        from dh_grader.courses.gradebook import closed_practice
 
         now, alike = datetime.now(UTC), self._alike(exercise)
         try:
@@ -134,11 +140,10 @@ class PracticeGate:
         }
 
 
-# Find a learner's own variant of an exercise, for requests that name an assignment.
+# --- Find a learner's own variant of an exercise, for requests that name an assignment
 #
 # The query ``?course=…&assignment=…`` names the assignment; the token names the learner.
-
-
+#
 # The response has the id of the exercise, not of the variant.
 
 

@@ -1,4 +1,7 @@
-"""Compute slow results in a thread, one at a time, and memoize them."""
+"""What all routes share: bodies, problem details, languages, compression, slow work in threads.
+
+It knows HTTP and nothing about exercises but their ids.
+"""
 
 import asyncio
 import json
@@ -55,6 +58,9 @@ from dh_grader.translations import (
     told,
 )
 
+# --- Compute slow results in a thread, one at a time, and memoize them
+
+
 # A course has a few dozen exercises. A solution or figure takes about ten kilobytes.
 MOST_RESULTS: Final = 128
 
@@ -78,7 +84,7 @@ class MemoizedResults:
         return self._results[key]
 
 
-# Compression of responses with gzip.
+# --- Compression of responses with gzip
 
 
 # Of nine levels. Higher ones take twice as long and save 1 %.
@@ -100,7 +106,7 @@ class CompressedGets:
         await (self._packed if is_get else self.app)(scope, receive, send)
 
 
-# A response whose content is in memory and is sent in chunks.
+# --- A response whose content is in memory and is sent in chunks
 
 
 # Bytes of a chunk.
@@ -119,7 +125,7 @@ class ChunkedResponse(Response):
             await send({"type": "http.response.body", "body": piece, "more_body": more})
 
 
-# Error responses in the format of RFC 9457 (problem details).
+# --- Error responses in the format of RFC 9457 (problem details)
 
 
 MAX_ERRORS = 20
@@ -337,7 +343,7 @@ def _other_method(request: Request) -> ProblemError:
     return ProblemError(HTTPStatus.METHOD_NOT_ALLOWED, detail, headers={"Allow": allow})
 
 
-# Optional query parameters that several routes have, in the document and checked alike.
+# --- Optional query parameters that several routes have, in the document and checked alike
 
 
 @dataclass(frozen=True)
@@ -389,7 +395,7 @@ def with_parameters(options: Mapping[str, Any], *parameters: QueryParameter) -> 
     }
 
 
-# The request that is being answered: its id, its route, and when it arrived.
+# --- The request that is being answered: its id, its route, and when it arrived
 
 
 # The header with the id of a request. The id of a client is kept, and sent with the answer.
@@ -433,7 +439,7 @@ def end_request() -> None:
     _current.set(None)
 
 
-# The language of the reader who sends a request.
+# --- The language of the reader who sends a request
 
 
 # The field of a query that chooses a language, and the cookie that keeps the choice.
@@ -470,7 +476,7 @@ def keep_language(request: HTTPConnection, response: Response) -> None:
         )
 
 
-# Headers and parameters of responses in the language of the reader.
+# --- Headers and parameters of responses in the language of the reader
 
 
 _LANGUAGE: Final = QueryParameter(
@@ -505,7 +511,7 @@ def told_json(
     return fastapi_Response(content, status, named, "application/json")
 
 
-# Do slow work in a thread, one task at a time, with a short queue.
+# --- Do slow work in a thread, one task at a time, with a short queue
 
 
 T = TypeVar("T")
@@ -539,7 +545,7 @@ class BoundedWork:
             self._accepted -= 1
 
 
-# Find the exercises and the parts of exercises that a request names.
+# --- Find the exercises and the parts of exercises that a request names
 
 
 Catalogue = Mapping[str, Exercise]
@@ -611,7 +617,7 @@ def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -
         raise replace(problem, name="unknown-part", title=say("The exercise has no such part"))
 
 
-# Read the body of a request and validate it as an instance of a pydantic model.
+# --- Read the body of a request and validate it as an instance of a pydantic model
 
 
 M = TypeVar("M", bound=BaseModel)
@@ -672,7 +678,7 @@ def _is_json(content_type: str) -> bool:
     return header.get_content_subtype().rpartition("+")[2] == "json"
 
 
-# Share the processor fairly between the requests of clients.
+# --- Share the processor fairly between the requests of clients
 
 
 R = TypeVar("R")
@@ -733,7 +739,7 @@ async def run_in_turns(request: Request, work: Callable[[], R]) -> R:
     return await in_slices(work, partial(give_way, request))
 
 
-# The interface through which the application counts requests and reports in the metrics.
+# --- The interface through which the application counts requests and reports in the metrics
 
 
 class Monitor(Protocol):

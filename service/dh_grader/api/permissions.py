@@ -1,6 +1,6 @@
-"""A table with the right that each route needs.
+"""Which right each route needs, and whether the caller of a request has it.
 
-docs/keys.md contains a list made from this table.
+The table of rights is here; keys, tokens and limits of rates are in ``dh_grader.access``.
 """
 
 import base64
@@ -45,6 +45,10 @@ from dh_grader.api.http import (
     store_down,
 )
 from dh_grader.translations import SentenceValue, say, template
+
+# --- A table with the right that each route needs
+#
+# docs/keys.md contains a list made from this table.
 
 
 class Reach(Enum):
@@ -219,7 +223,7 @@ def right_of(request: Request) -> Right:
     return RIGHTS[f"{request.method} {request.scope['route'].path}"]
 
 
-# The errors for requests that the caller has no right to make.
+# --- The errors for requests that the caller has no right to make
 
 
 _BEARER: Final = "Bearer"
@@ -368,12 +372,11 @@ def token_for_token() -> ProblemError:
     )
 
 
-# Check that each caller has the right that the requested route needs.
+# --- Check that each caller has the right that the requested route needs
 #
 # While the service has no API keys, everybody may grade and record. Only the users of this machine
 # are tutors then.
-
-
+#
 # A request that a proxy has forwarded does not count as a tutor's, because the proxy also forwards
 # requests of students.
 
@@ -682,7 +685,7 @@ def _credential(header: str) -> tuple[str, bool]:
     return "", False
 
 
-# Middleware that authenticates the callers of requests and limits their rates.
+# --- Middleware that authenticates the callers of requests and limits their rates
 
 
 # Parts of the paths that count towards limits, after any prefix of a proxy; pages and files do not.

@@ -1,4 +1,7 @@
-"""Routes for tutors: export and change recorded attempts."""
+"""The routes that record attempts, and those that list, export and change recorded attempts.
+
+Which attempt counts is decided in ``dh_grader.store``.
+"""
 
 import hashlib
 import json
@@ -93,6 +96,10 @@ if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
     from dh_grader.store.regrades import RegradedAttempt, Regrading
     from dh_grader.store.results import AttemptHistory
+
+
+# --- Routes for tutors: export and change recorded attempts
+
 
 # Bytes of an export that are sent at once.
 _PIECE: Final = 64 * 1024
@@ -351,7 +358,7 @@ def _author(caller: Caller, given: str | None) -> str:
     return f"{given} ({by})" if given else by
 
 
-# Grade and record one attempt at an exercise, perhaps in an assignment of a course.
+# --- Grade and record one attempt at an exercise, perhaps in an assignment of a course
 
 
 @dataclass(frozen=True, slots=True)
@@ -532,7 +539,7 @@ def _digest(content: object) -> str:
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
-# The route that records attempts.
+# --- The route that records attempts
 
 
 IDEMPOTENCY_KEY: Final = Header(
@@ -612,7 +619,7 @@ def not_recorded() -> ProblemError:
     )
 
 
-# Access to the recorded attempts for routes, with errors as HTTP responses.
+# --- Access to the recorded attempts for routes, with errors as HTTP responses
 
 
 R = TypeVar("R")
@@ -656,7 +663,7 @@ def private_json(content: bytes) -> Response:
     return Response(content, HTTPStatus.OK, NO_STORE, "application/json")
 
 
-# Routes for tutors and for learners with a token: read recorded attempts.
+# --- Routes for tutors and for learners with a token: read recorded attempts
 
 
 def _in_utc(moment: datetime) -> datetime:
@@ -860,7 +867,7 @@ def _earlier(row: "Row[Any]", language: Language) -> dict[str, Any]:
     }
 
 
-# Helper functions for the routes of courses.
+# --- Helper functions for the routes of courses
 
 
 CourseId = Annotated[CourseName, Path(description="The id of a course.")]

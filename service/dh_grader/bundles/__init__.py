@@ -1,4 +1,7 @@
-"""Bundles for grading platforms: zip files with the program, an assignment and scripts."""
+"""Bundles for grading platforms: zip files with the program, an assignment and scripts.
+
+The scripts are in ``templates``. How a platform shows a report is in ``dh_grader.formats``.
+"""
 
 import base64
 import csv
@@ -16,12 +19,12 @@ from pathlib import Path
 from typing import Any, Final
 
 from dh_grader.catalogue import Exercise, load_exercise, shipped_folder
-from dh_grader.submissions.assignment import Assignment
+from dh_grader.submissions import Assignment
 from dh_grader.translations.catalogues import compiled_catalogue
 from dh_grader.typeset import statement_html
 from dh_grader.variants import hidden_variant, seed_of
 
-# Pack files into a reproducible zip file.
+# --- Pack files into a reproducible zip file
 
 
 # The earliest time that a zip file can represent.
@@ -50,7 +53,7 @@ def zipped(files: Iterable[BundledFile]) -> bytes:
     return written.getvalue()
 
 
-# The variants of a bundle: which seed (and so which numbers) a student gets.
+# --- The variants of a bundle: which seed (and so which numbers) a student gets
 
 
 # The number of variants on PrairieLearn if no seeds are deployed.
@@ -120,7 +123,7 @@ def _read(file: Path) -> Any:
         raise UnknownStudentError(f"{file} cannot be read: {error}") from error
 
 
-# Build a wheel of the running program from its installed files.
+# --- Build a wheel of the running program from its installed files
 #
 # So a bundle contains exactly this version, whether installed from a wheel or a checkout. Source:
 # https://packaging.python.org/en/latest/specifications/binary-distribution-format/.
@@ -187,7 +190,7 @@ def _record(files: list[BundledFile], record: str) -> bytes:
     return written.getvalue().encode()
 
 
-# The content of every bundle: the program, its dependencies, the assignment, its exercises.
+# --- The content of every bundle: the program, its dependencies, the assignment, its exercises
 
 
 _TEMPLATES = Path(__file__).parent / "templates"
@@ -280,7 +283,7 @@ def _content_below(path: Path, file: Path) -> str:
     return name
 
 
-# The bundle for PrairieLearn's external grader: an image, and a question that it grades.
+# --- The bundle for PrairieLearn's external grader: an image, and a question that it grades
 #
 # Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/.
 
@@ -393,7 +396,7 @@ def _braces(html: str) -> str:
     return html.replace("{", "&#123;").replace("}", "&#125;")
 
 
-# The bundle for Gradescope: ``setup.sh`` builds the image, ``run_autograder`` grades.
+# --- The bundle for Gradescope: ``setup.sh`` builds the image, ``run_autograder`` grades
 #
 # Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "File hierarchy".
 
@@ -410,7 +413,7 @@ def gradescope_files(content: BundleContent) -> list[BundledFile]:
     ]
 
 
-# The bundle for jobs of continuous integration on any platform; see docs/ci.
+# --- The bundle for jobs of continuous integration on any platform; see docs/ci
 
 
 def ci_files(content: BundleContent) -> list[BundledFile]:
@@ -424,6 +427,9 @@ def ci_files(content: BundleContent) -> list[BundledFile]:
         setup_script(),
         BundledFile("grade", template("ci", "grade"), is_executable=True),
     ]
+
+
+# --- Bundles for grading platforms: zip files with the program, an assignment and scripts
 
 
 __all__ = ["BUNDLES", "BundleContent", "BundleError", "BundledFile", "content_of", "zipped"]

@@ -1,4 +1,7 @@
-"""Choose the place for temporary folders that several processes share."""
+"""Read a file of an author, and say what is wrong in it with field and line.
+
+It knows TOML and pydantic's errors, and nothing about robots.
+"""
 
 import difflib
 import errno
@@ -31,6 +34,9 @@ from dh_grader.catalogue.schema import (
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, joined, say, template
 
+# --- Choose the place for temporary folders that several processes share
+
+
 # A folder in memory, which is writable even in a container with a read-only file system.
 _MEMORY: Final = Path("/dev/shm")
 
@@ -45,7 +51,7 @@ def temporary_place() -> Path:
         return Path.cwd()
 
 
-# Read regular files only.
+# --- Read regular files only
 
 
 def read_regular(file: Path, most: int) -> bytes:
@@ -70,7 +76,7 @@ def _open_nonblocking(name: str, flags: int) -> int:
     return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-# Turn pydantic's errors into messages for the authors of exercise files.
+# --- Turn pydantic's errors into messages for the authors of exercise files
 
 
 _Detail = Mapping[str, Any]
@@ -296,7 +302,7 @@ def table_in(annotation: object) -> type[BaseModel] | None:
     return next(filter(None, map(table_in, get_args(annotation))), None)
 
 
-# Find the line of each value in a TOML text.
+# --- Find the line of each value in a TOML text
 #
 # The text must be valid TOML: this module does not check its syntax.
 
@@ -419,7 +425,7 @@ class _LineFinder:
         return self._text.count("\n", 0, self._at) + 1
 
 
-# Read a tutor's TOML file and report faults with field and line.
+# --- Read a tutor's TOML file and report faults with field and line
 
 
 # The largest shipped exercise has 8 kB.

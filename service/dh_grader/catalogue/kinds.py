@@ -1,4 +1,7 @@
-"""The answer kinds in exercise files: the subclass of ``PartSpec`` of each kind."""
+"""The answer kinds in exercise files: one subclass of ``PartSpec`` for each kind.
+
+They say what a part asks and check that it can be asked. Judging is in ``grading/kinds``.
+"""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
@@ -52,7 +55,7 @@ from dh_grader.expressions import Kind
 from dh_grader.kinematics import COLUMNS, Convention, Numbers, dh1_residual, dh2_residual
 from dh_grader.translations import say, template
 
-# Answer kind ``vector``: a list of values, such as (p_x, p_y, φ).
+# --- Answer kind ``vector``: a list of values, such as (p_x, p_y, φ)
 
 
 class ComponentSpec(StrictModel):
@@ -88,7 +91,7 @@ class VectorSpec(PartSpec):
         return list_shape((each.name, each.quantity) for each in self.components)
 
 
-# Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector.
+# --- Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector
 
 
 class TransformSpec(PosePartSpec):
@@ -109,7 +112,7 @@ class TransformSpec(PosePartSpec):
         return matrix_shape(4, 4)
 
 
-# Answer kind ``screw_axes``: the screw axis of each joint.
+# --- Answer kind ``screw_axes``: the screw axis of each joint
 
 
 class ScrewAxesShape(AnswerShape):
@@ -161,7 +164,7 @@ class ScrewAxesSpec(PartSpec):
         )
 
 
-# Answer kind ``rotation``: a rotation matrix.
+# --- Answer kind ``rotation``: a rotation matrix
 
 
 class StepSpec(StrictModel):
@@ -200,7 +203,7 @@ class RotationSpec(PosePartSpec):
         return matrix_shape(3, 3)
 
 
-# Answer kind ``position``: the coordinates of a point, such as the end effector's.
+# --- Answer kind ``position``: the coordinates of a point, such as the end effector's
 
 
 class PositionSpec(PosePartSpec):
@@ -240,7 +243,7 @@ class PositionSpec(PosePartSpec):
         return self
 
 
-# Answer kind ``matrix``: any matrix, such as a Jacobian.
+# --- Answer kind ``matrix``: any matrix, such as a Jacobian
 
 
 class MatrixSpec(PartSpec):
@@ -297,7 +300,7 @@ class MatrixSpec(PartSpec):
         return self
 
 
-# Answer kind ``link_transforms``: the transform of each row of a table.
+# --- Answer kind ``link_transforms``: the transform of each row of a table
 
 
 class LinkTransformsShape(AnswerShape):
@@ -343,7 +346,7 @@ class LinkTransformsSpec(TablePartSpec):
         )
 
 
-# Answer kind ``frames``: the frames that the student places on the joint axes.
+# --- Answer kind ``frames``: the frames that the student places on the joint axes
 
 
 # The labels of a frame's cells.
@@ -417,7 +420,7 @@ def frame_labels(robot: Robot, convention: Convention) -> list[str]:
     return [str(first + i) for i in range(rows - 1)]
 
 
-# Answer kind ``euler_angles``: three angles that describe a rotation.
+# --- Answer kind ``euler_angles``: three angles that describe a rotation
 
 
 class EulerAnglesSpec(PosePartSpec):
@@ -464,7 +467,7 @@ class EulerAnglesSpec(PosePartSpec):
         return self
 
 
-# Answer kind ``dh_table``: a Denavit-Hartenberg table of the robot.
+# --- Answer kind ``dh_table``: a Denavit-Hartenberg table of the robot
 
 
 # The meaning of an empty cell: unread, or 0.
@@ -608,7 +611,7 @@ class DhTableSpec(TablePartSpec):
         return self
 
 
-# Answer kind ``find_slip``: the one mistake (slip) in a given Denavit-Hartenberg table.
+# --- Answer kind ``find_slip``: the one mistake (slip) in a given Denavit-Hartenberg table
 
 
 # The codes of the misconceptions that a table can be given.
@@ -722,7 +725,7 @@ class FindSlipSpec(TablePartSpec):
         return self
 
 
-# Answer kind ``dh_row``: the DH row of a transform, or "none" if it has no row.
+# --- Answer kind ``dh_row``: the DH row of a transform, or "none" if it has no row
 
 
 class DhRowShape(AnswerShape):
@@ -772,6 +775,9 @@ class DhRowSpec(PartSpec):
     def shape(self, _: Reference | None) -> DhRowShape:
         """Return the shape of an answer: one row, or "none"."""
         return DhRowShape(columns=list(COLUMNS), convention=self.convention)
+
+
+# --- The answer kinds in exercise files: the subclass of ``PartSpec`` of each kind
 
 
 SPECS: Final[Mapping[str, type[PartSpec]]] = {

@@ -1,4 +1,4 @@
-"""Load exercise files from folders."""
+"""Load exercise files from folders: once, again after a change, as variants, and as drafts."""
 
 import hashlib
 import json
@@ -16,8 +16,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, Final
 
-from dh_grader.catalogue.compile import compile_exercise
-from dh_grader.catalogue.exercise import Exercise
+from dh_grader.catalogue.exercise import Exercise, compile_exercise
 from dh_grader.catalogue.files import (
     CatalogueError,
     Fault,
@@ -34,7 +33,7 @@ from dh_grader.catalogue.varying import Vary
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# Catalogues of a running service: of the files as they were, or as they are now.
+# --- Catalogues of a running service: of the files as they were, or as they are now
 
 
 # The time between two checks of the files (seconds).
@@ -188,7 +187,7 @@ def _reread(file: Path, last_good: Exercise | None) -> Exercise | None:
         return last_good
 
 
-# Build an exercise, or one of its variants, from the content of its file.
+# --- Build an exercise, or one of its variants, from the content of its file
 
 
 def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
@@ -215,7 +214,7 @@ def _filled(exercise_id: str, vary: Vary, seed: str) -> Exercise:
     return replace(built, id=variant, version=vary.version(values), vary=vary, seed=seed)
 
 
-# The order of the exercises in the catalogue.
+# --- The order of the exercises in the catalogue
 
 
 _LEVELS: Final = tuple(ExerciseLevel)
@@ -249,6 +248,9 @@ def exercise_after(exercise_id: str, exercises: Iterable[Exercise]) -> Exercise 
 def _place(exercise: Exercise) -> tuple[int, bool, int]:
     level = len(_LEVELS) if exercise.level is None else _LEVELS.index(exercise.level)
     return level, exercise.order is None, exercise.order or 0
+
+
+# --- Load exercise files from folders
 
 
 ID_ADVICE = say("write small letters and digits, with - or _ between them, such as elbow-arm")
@@ -367,7 +369,7 @@ def _folder_reason(error: OSError) -> str:
             return fault_reason(error)
 
 
-# Drafts (exercises that are still being written) for the preview in the editor.
+# --- Drafts (exercises that are still being written) for the preview in the editor
 
 
 MOST_DRAFTS: Final = 32

@@ -1,4 +1,4 @@
-"""The base classes of answer kinds, which are the modules of ``parts/``."""
+"""What all answer kinds have in common in a file, and the shape of an answer."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator
@@ -20,7 +20,7 @@ from dh_grader.expressions import Kind
 from dh_grader.kinematics import Convention
 from dh_grader.translations import say
 
-# The shape of an answer, which students see before they answer.
+# --- The shape of an answer, which students see before they answer
 
 
 class AnswerShape(BaseModel, ABC):
@@ -102,6 +102,9 @@ def choices(**stated: str) -> Iterator[str]:
 
 
 _NAMES = {"base": "base frame", "tool": "tool frame"}
+
+
+# --- The base classes of answer kinds, which are the modules of ``parts/``
 
 
 class PartSpec(StrictModel, ABC):

@@ -1,4 +1,7 @@
-"""A reference robot given by a DH table: its formulas and their numbers."""
+"""The reference robot of an exercise, by a DH table or by screw axes, and its formulas.
+
+It turns an author's texts into formulas and numbers; it does not handle students' answers.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -26,7 +29,7 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import say
 
-# The variables of an exercise, and trial values to check an author's formulas.
+# --- The variables of an exercise, and trial values to check an author's formulas
 
 
 # The number of trial values at which an author's formula is evaluated.
@@ -55,7 +58,7 @@ def trial_values(variables: tuple[Variable, ...]) -> SymbolValues:
     return {v.name: rng.uniform(v.low, v.high, TRIALS) for v in variables}
 
 
-# Read the formulas of an exercise file, and evaluate them at trial values of their symbols.
+# --- Read the formulas of an exercise file, and evaluate them at trial values of their symbols
 #
 # The values show faults in right answers, for example a matrix that is not a rotation.
 
@@ -233,6 +236,9 @@ def _check_screws(field: str, numbers: Numbers) -> None:
             )
 
 
+# --- A reference robot given by a DH table: its formulas and their numbers
+
+
 FormulaRow = Row[Expression]
 
 # The quantities of the cells of a row, in the order of ``COLUMNS``.
@@ -389,7 +395,7 @@ def _is_zero(formula: Expression) -> bool:
     return not formula.symbols and float(formula.evaluate({})) == 0.0
 
 
-# The reference robot given by its product of exponentials: a home pose and screw axes.
+# --- The reference robot given by its product of exponentials: a home pose and screw axes
 
 
 @dataclass(frozen=True, slots=True)

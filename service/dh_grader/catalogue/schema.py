@@ -1,4 +1,4 @@
-"""The pydantic models of an exercise file."""
+"""The pydantic models of an exercise file, and the check of its translations."""
 
 import re
 from collections import Counter
@@ -34,6 +34,9 @@ from dh_grader.expressions import Kind
 from dh_grader.kinematics import Convention
 from dh_grader.regex import regex
 from dh_grader.translations import say, template
+
+# --- The pydantic models of an exercise file
+
 
 Structure = Annotated[
     str,
@@ -308,7 +311,7 @@ class ExerciseSpec(StrictModel):
         return self
 
 
-# Check the texts in other languages against the English texts.
+# --- Check the texts in other languages against the English texts
 
 
 LANGUAGE_CODES: Final = ("de", "es", "fr", "zh")

@@ -1,4 +1,4 @@
-"""The levels of the catalogue."""
+"""The values that several tables of an exercise file have: levels, formulas, rules of attempts."""
 
 from enum import StrEnum
 from typing import Annotated, Final, Literal
@@ -21,6 +21,8 @@ from pydantic.fields import FieldInfo
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, say, template
 
+# --- The levels of the catalogue
+
 
 class ExerciseLevel(StrEnum):
     """The level of an exercise, from the first to the hardest."""
@@ -31,7 +33,7 @@ class ExerciseLevel(StrEnum):
     INDUSTRIAL = "industrial"
 
 
-# The levels of feedback in a report.
+# --- The levels of feedback in a report
 
 
 class FeedbackLevel(StrEnum):
@@ -55,11 +57,10 @@ def least(*levels: FeedbackLevel) -> FeedbackLevel:
     return max(levels, key=_FROM_THE_MOST.index)
 
 
-# The pydantic types of values in an exercise file.
+# --- The pydantic types of values in an exercise file
 #
 # A formula is text in the students' notation (``"l1 + 0.1"``, ``"-90deg"``). ``compile.py`` reads
-# it,
-# because it needs the exercise's symbols.
+# it, because it needs the exercise's symbols.
 
 
 def _no_boolean(value: object) -> object:
@@ -134,7 +135,7 @@ class StrictModel(BaseModel):
     model_config = ConfigDict(extra="forbid", frozen=True, defer_build=True)
 
 
-# The rules for recorded attempts in an exercise file: how many, when, and the marks if late.
+# --- The rules for recorded attempts in an exercise file: how many, when, and the marks if late
 
 
 Worth = Annotated[float, Field(ge=0, le=1)]

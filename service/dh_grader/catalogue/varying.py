@@ -1,4 +1,4 @@
-"""The possible values of each name in ``[vary]``: a list, or a range with a step."""
+"""The table ``[vary]``: possible values, conditions, and the values that a seed chooses."""
 
 import hashlib
 import json
@@ -16,6 +16,9 @@ from dh_grader.catalogue.schema_fields import IDENTIFIER
 from dh_grader.expressions import Expression, ExpressionError, Symbol, Vocabulary, read
 from dh_grader.regex import regex
 from dh_grader.translations import say, say_count
+
+# --- The possible values of each name in ``[vary]``: a list, or a range with a step
+
 
 # A number or text, or a group of them: {{side.sign}} is the field ``sign`` of the group ``side``.
 VaryValue: TypeAlias = Decimal | str | Mapping[str, Decimal | str]
@@ -160,7 +163,7 @@ def _range(field: str, written: Mapping[str, object]) -> Sequence[Decimal]:
     return [low + i * step for i in range(count)]
 
 
-# The conditions in ``[vary]``: comparisons of formulas with the varied numbers.
+# --- The conditions in ``[vary]``: comparisons of formulas with the varied numbers
 
 
 # Signs of two characters come first.
@@ -247,7 +250,7 @@ def read_condition(field: str, text: str, vocabulary: Vocabulary) -> Condition:
     return Condition(left, signs[0], right)
 
 
-# Choose the values of a variant by its seed, and put them into the exercise file's content.
+# --- Choose the values of a variant by its seed, and put them into the exercise file's content
 #
 # The same exercise id and seed give the same values in every process and Python version.
 

@@ -1,4 +1,4 @@
-"""`dh-grader attempts`: the recorded attempts of this installation."""
+"""`dh-grader attempts`, `learners`, `backup` and `restore`: what the database has recorded."""
 
 import getpass
 import json
@@ -16,6 +16,7 @@ from sqlalchemy import Engine, func, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from dh_grader.catalogue import Exercise
+from dh_grader.cli import spoken
 from dh_grader.cli.grade import write
 from dh_grader.cli.terminal import (
     complain,
@@ -23,7 +24,6 @@ from dh_grader.cli.terminal import (
     installed,
     installed_exercise,
     progress,
-    spoken,
     stdout,
     tell,
 )
@@ -49,28 +49,26 @@ from dh_grader.store.database import (
     unfit,
     unmigrated_database,
 )
-from dh_grader.store.learner_data import (
+from dh_grader.store.regrades import BATCH, RegradedAttempt, Regrading
+from dh_grader.store.results import (
     LearnerData,
+    counting_rules,
     data_of,
     delete_older,
     everything_of,
+    exercise_statistics,
     forget,
+    graded_attempts,
     is_older,
     months_before,
     override,
-)
-from dh_grader.store.regrades import BATCH, RegradedAttempt, Regrading
-from dh_grader.store.results import (
-    counting_rules,
-    exercise_statistics,
-    graded_attempts,
     page,
     written,
 )
 from dh_grader.store.tables import attempts
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count
 
-# Regrade the attempts at an exercise in one process or several.
+# --- Regrade the attempts at an exercise in one process or several
 
 
 # The time between two counts of the queue, and to wait for other processes at the end (seconds).
@@ -189,6 +187,9 @@ attempts_commands = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
 )
+
+# --- `dh-grader attempts`: the recorded attempts of this installation
+
 
 _MOST_SLIPS: Final = 15
 _MOST_LISTED: Final = 1_000_000
@@ -552,7 +553,7 @@ def _counts(data: LearnerData) -> str:
     )
 
 
-# `dh-grader learners`: the data about one learner.
+# --- `dh-grader learners`: the data about one learner
 
 
 learners_commands = typer.Typer(
@@ -581,7 +582,7 @@ def learners_export(
     write([f"{text}\n".encode()], output, at_once=True)
 
 
-# `dh-grader backup`: copy the database while the service runs.
+# --- `dh-grader backup`: copy the database while the service runs
 
 
 backup_commands = typer.Typer(add_completion=False)
@@ -636,7 +637,7 @@ def _backup_is_there(file: Path) -> str:
     return say("{file} is there already. Choose another name.", file=str(file))
 
 
-# `dh-grader restore`: replace the database by a backup.
+# --- `dh-grader restore`: replace the database by a backup
 
 
 restore_commands = typer.Typer(add_completion=False)

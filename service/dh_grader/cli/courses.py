@@ -1,4 +1,4 @@
-"""`dh-grader courses`: courses with learners, links, assignments and a gradebook."""
+"""`dh-grader courses` and `assignments`: courses with learners, links, dates and a gradebook."""
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -14,18 +14,11 @@ from sqlalchemy import Connection
 
 from dh_grader import courses
 from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.cli import spoken
 from dh_grader.cli.attempts import database, encodable
 from dh_grader.cli.exercises import warn_of_unread
 from dh_grader.cli.grade import write
-from dh_grader.cli.terminal import (
-    complain,
-    give_up,
-    installed,
-    installed_exercise,
-    spoken,
-    stdout,
-    tell,
-)
+from dh_grader.cli.terminal import complain, give_up, installed, installed_exercise, stdout, tell
 from dh_grader.contract.courses import (
     LONGEST_LINK_DAYS,
     AssignedPoints,
@@ -62,13 +55,13 @@ from dh_grader.courses.gradebook import gradebook, gradebook_workbook, missing, 
 from dh_grader.formats.texts import number, percent, visible
 from dh_grader.settings import load_settings
 from dh_grader.store.database import in_transaction
+from dh_grader.submissions import AssignedExercise, Assignment, load_assignment
 from dh_grader.submissions.answers import ExerciseAnswers, answers_in, of_file
-from dh_grader.submissions.assignment import AssignedExercise, Assignment, load_assignment
 from dh_grader.submissions.bodies import field_error, find_exercise
 from dh_grader.submissions.files import HandedIn, all_handed_in
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count, template
 
-# Change and delete courses from the command line.
+# --- Change and delete courses from the command line
 
 
 D = TypeVar("D", bound=DeletionRequest)
@@ -120,7 +113,7 @@ def deleted(
     tell(say("Deleted {name}: {counts}.", name=name, counts=counts))
 
 
-# The lines that the command line prints about an assignment of a course.
+# --- The lines that the command line prints about an assignment of a course
 
 
 def assignment_lines(
@@ -191,7 +184,7 @@ def _time(moment: datetime) -> str:
     return f"{moment:%Y-%m-%d %H:%M %Z}"
 
 
-# `dh-grader courses assignments`: the assignments of a course, and extensions.
+# --- `dh-grader courses assignments`: the assignments of a course, and extensions
 
 
 M = TypeVar("M", bound=BaseModel)
@@ -503,6 +496,7 @@ def _print(assignment: CourseAssignment) -> None:
 
 
 courses_commands = typer.Typer(
+    # --- `dh-grader courses`: courses with learners, links, assignments and a gradebook
     help="Courses: learners, links, assignments, gradebook.",
     no_args_is_help=True,
     add_completion=False,
@@ -741,7 +735,7 @@ def show_missing(
     screen.print(spoken(incomplete))
 
 
-# `dh-grader assignments`: check assignment files, each of which lists several exercises.
+# --- `dh-grader assignments`: check assignment files, each of which lists several exercises
 
 
 assignments_commands = typer.Typer(

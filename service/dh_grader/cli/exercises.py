@@ -1,4 +1,4 @@
-"""`dh-grader exercises`: list, show, check and create exercises."""
+"""`dh-grader exercises` and `bundle`: list, check, import, export, deploy and pack exercises."""
 
 import os
 import sys
@@ -33,6 +33,7 @@ from dh_grader.catalogue import (
 )
 from dh_grader.catalogue.files import line_of, read_regular, value_lines, with_line
 from dh_grader.catalogue.robot import Robot
+from dh_grader.cli import spoken, user_language
 from dh_grader.cli.grade import chosen_assignment, write
 from dh_grader.cli.terminal import (
     UNUSABLE,
@@ -42,11 +43,9 @@ from dh_grader.cli.terminal import (
     installed_exercise,
     installed_file,
     named_exercise,
-    spoken,
     stdout,
     unreadable,
     unwritable,
-    user_language,
 )
 from dh_grader.figures import exercise_figure, reference_figure
 from dh_grader.figures.drawing import Theme
@@ -68,17 +67,16 @@ from dh_grader.regex import regex
 from dh_grader.settings import load_settings
 from dh_grader.solutions import ModelSolution, Shown, solve
 from dh_grader.translations import joined, say, say_count
-from dh_grader.variants import (
+from dh_grader.variants import NoVariantError, built
+from dh_grader.variants.deployment import (
     CheckedVariant,
-    NoVariantError,
     TooFewVariantsError,
-    built,
     checked_variant,
     deploy,
     with_deployed,
 )
 
-# Write new exercise files without replacing existing ones.
+# --- Write new exercise files without replacing existing ones
 
 
 def write_new(folder: Path, exercise_id: str, text: str) -> Path:
@@ -114,7 +112,7 @@ def warn_of_unread(exercises: Iterable[str]) -> None:
         )
 
 
-# `dh-grader exercises import`: a robot from a URDF file or a pasted table -> an exercise file.
+# --- `dh-grader exercises import`: a robot from a URDF file or a pasted table -> an exercise file
 
 
 def import_robot_command(
@@ -256,7 +254,7 @@ def _answer(question: Question) -> str:
     return str(typer.prompt(text, type=choices, show_choices=False))
 
 
-# `dh-grader exercises export`: the robot of an exercise as URDF or as a script.
+# --- `dh-grader exercises export`: the robot of an exercise as URDF or as a script
 
 
 class ExportFormat(StrEnum):
@@ -292,7 +290,7 @@ def export_robot_command(
     stdout().print(write(at_home, exercise.id), soft_wrap=True, end="")
 
 
-# `dh-grader exercises check`: find faults in exercise files.
+# --- `dh-grader exercises check`: find faults in exercise files
 
 
 FAILED = 1
@@ -384,7 +382,7 @@ def _summary(files: int, unusable: int, found: Counter[Level]) -> str:
     return spoken(joined(", ", [ok, *filter(None, others)]))
 
 
-# `dh-grader exercises check --seeds` and `deploy`: many variants of one exercise.
+# --- `dh-grader exercises check --seeds` and `deploy`: many variants of one exercise
 
 
 # The most faults that are printed, each with the first seed that has it.
@@ -539,6 +537,9 @@ def _draw(exercise: Exercise, seeds: Iterable[str], folder: Path) -> None:
             (folder / f"{variant.id}.svg").write_text(exercise_figure(variant), encoding="utf-8")
     except OSError as error:
         give_up(unwritable(folder, error))
+
+
+# --- `dh-grader exercises`: list, show, check and create exercises
 
 
 _NARROWEST = 24
@@ -706,7 +707,7 @@ def _sections(solution: ModelSolution, *, links: bool) -> Iterator[tuple[str, Sh
         yield spoken(say("Pose of the tool in the base frame")), solution.pose
 
 
-# `dh-grader bundle`: write a zip file for a grading platform.
+# --- `dh-grader bundle`: write a zip file for a grading platform
 
 
 _SECRET: Final = regex(r"[0-9a-f]{64}")

@@ -1,4 +1,7 @@
-"""`dh-grader grade`: grade submissions in files."""
+"""`dh-grader grade` and `merge`: grade submissions in files, and write their reports.
+
+No file of a student is ever overwritten, and no output is left half written.
+"""
 
 import io
 import json
@@ -19,6 +22,7 @@ import typer
 from rich.console import Console
 
 from dh_grader.catalogue import load_exercise, read_regular
+from dh_grader.cli import spoken
 from dh_grader.cli.remote import REQUESTS, graded_by, require_no_own_files, server_of, set_exercise
 from dh_grader.cli.running import (
     Shard,
@@ -43,7 +47,6 @@ from dh_grader.cli.terminal import (
     own_file,
     progress,
     report_language,
-    spoken,
     stdout,
     unreadable,
     unwritable,
@@ -70,8 +73,7 @@ from dh_grader.formats.worksheets import (
 )
 from dh_grader.grading import FeedbackLevel
 from dh_grader.settings import Settings, load_settings
-from dh_grader.submissions.answers import of_file
-from dh_grader.submissions.assignment import (
+from dh_grader.submissions import (
     Assignment,
     SetExercise,
     UnknownPartNameError,
@@ -79,6 +81,7 @@ from dh_grader.submissions.assignment import (
     of_one,
     with_seeds,
 )
+from dh_grader.submissions.answers import of_file
 from dh_grader.submissions.files import HandedIn, UnusableClassError, all_handed_in
 from dh_grader.translations import Language, Sentence, joined, say, say_count
 from dh_grader.variants import NoVariantError
@@ -87,7 +90,7 @@ if TYPE_CHECKING:
     from dh_grader.client import GraderClient
 
 
-# Remember which files earlier runs have written, to protect the files of students.
+# --- Remember which files earlier runs have written, to protect the files of students
 
 
 def require_no_input(output: Path, read: Iterable[Path]) -> None:
@@ -164,7 +167,7 @@ def _written(output: Path) -> list[str]:
         return []
 
 
-# Write a folder of documents completely or not at all.
+# --- Write a folder of documents completely or not at all
 
 
 # The name of a folder that is still being written begins with this.
@@ -291,7 +294,7 @@ def _exchange(folder: Path, written: Path, old: Iterable[Path]) -> None:
         raise
 
 
-# Write reports to the screen or to a file. An incomplete file never appears.
+# --- Write reports to the screen or to a file. An incomplete file never appears
 
 
 # Larger documents are buffered on the disk (bytes).
@@ -351,7 +354,7 @@ def _write_file(pieces: Iterable[bytes], output: Path) -> None:
                 written.unlink()
 
 
-# `dh-grader merge`: combine results of a class that several machines have graded.
+# --- `dh-grader merge`: combine results of a class that several machines have graded
 
 
 merge_commands = typer.Typer(add_completion=False)
@@ -408,6 +411,9 @@ class _MergeRun:
 
 
 grade_commands = typer.Typer(add_completion=False)
+
+
+# --- `dh-grader grade`: grade submissions in files
 
 
 # The most earlier outputs that one sentence names.

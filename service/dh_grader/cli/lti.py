@@ -1,4 +1,4 @@
-"""`dh-grader lti`: the registered platforms, and our keys for signing messages to them."""
+"""`dh-grader lti`: registered platforms, how they join, our keys, and the scores of a course."""
 
 import json
 from collections.abc import Callable
@@ -11,13 +11,21 @@ from pydantic import ValidationError
 from rich.cells import cell_len, set_cell_size
 from sqlalchemy import Connection
 
+from dh_grader import lti
 from dh_grader.access import Secret
+from dh_grader.cli import spoken, user_language
 from dh_grader.cli.attempts import database, encodable
 from dh_grader.cli.courses import CourseOption, changed
-from dh_grader.cli.terminal import give_up, spoken, stdout, tell, tell_verdict, user_language
+from dh_grader.cli.terminal import give_up, stdout, tell, tell_verdict
 from dh_grader.contract.courses import SendAgainRequest
 from dh_grader.formats.texts import number, visible
-from dh_grader.lti import registrations
+from dh_grader.lti import (
+    LtiError,
+    NewRegistration,
+    Registration,
+    RegistrationError,
+    unusable,
+)
 from dh_grader.lti.fetching import ensure_key, own_key_list, rotate, signing_key
 from dh_grader.lti.joining import (
     LONGEST_DAYS,
@@ -27,20 +35,13 @@ from dh_grader.lti.joining import (
     invite,
 )
 from dh_grader.lti.outbox import scores_of, send_again
-from dh_grader.lti.registrations import (
-    LtiError,
-    NewRegistration,
-    Registration,
-    RegistrationError,
-    unusable,
-)
 from dh_grader.lti.roster import RosterError, ask_for_roster, enrol_members, read_roster
 from dh_grader.settings import load_settings
 from dh_grader.store.database import in_transaction
 from dh_grader.submissions.bodies import field_error
 from dh_grader.translations import joined, say
 
-# `dh-grader lti scores`: the scores of a course at its platform.
+# --- `dh-grader lti scores`: the scores of a course at its platform
 
 
 def scores(
@@ -64,7 +65,7 @@ def scores(
         stdout().print("  ".join(map(visible, line)), soft_wrap=True)
 
 
-# `dh-grader lti invite`, `allow` and `canvas`: how platforms join.
+# --- `dh-grader lti invite`, `allow` and `canvas`: how platforms join
 
 
 Address = Annotated[
@@ -128,6 +129,9 @@ def own_address(option: str | None) -> str:
     if found is None:
         give_up(say("Give the address of this service: set DH_GRADER_PUBLIC_URL, or --address."))
     return found.rstrip("/")
+
+
+# --- `dh-grader lti`: the registered platforms, and our keys for signing messages to them
 
 
 R = TypeVar("R")
@@ -208,7 +212,7 @@ def register(
 
     def added(connection: Connection) -> Registration:
         ensure_key(connection, secret, now)
-        return registrations.add_registration(connection, new, now)
+        return lti.add_registration(connection, new, now)
 
     _show(_done(added, create=True), new.deployments)
 
@@ -216,10 +220,8 @@ def register(
 @lti_commands.command("list")
 def list_registrations() -> None:
     """List the registered platforms."""
-    found = _done(registrations.all_registrations)
-    deployments = _done(
-        lambda it: {each.id: registrations.deployments_of(it, each.id) for each in found}
-    )
+    found = _done(lti.all_registrations)
+    deployments = _done(lambda it: {each.id: lti.deployments_of(it, each.id) for each in found})
     for each in found:
         launched = say("never launched")
         if each.launched_at:
@@ -233,21 +235,21 @@ def list_registrations() -> None:
 @lti_commands.command("show")
 def show(registration: RegistrationId) -> None:
     """Show a registration, and the values to paste at the platform."""
-    found = _done(lambda it: registrations.registration(it, registration))
-    _show(found, _done(lambda it: registrations.deployments_of(it, registration)))
+    found = _done(lambda it: lti.registration(it, registration))
+    _show(found, _done(lambda it: lti.deployments_of(it, registration)))
 
 
 @lti_commands.command("remove")
 def remove(registration: RegistrationId) -> None:
     """Remove a registration. Its courses and their attempts stay, and launch no more."""
-    _done(lambda it: registrations.remove_registration(it, registration))
+    _done(lambda it: lti.remove_registration(it, registration))
     tell(say("Removed. Pages that are open work until their tokens end, at most twelve hours."))
 
 
 @lti_commands.command("check")
 def check(registration: RegistrationId) -> None:
     """Test one registration: keys, clocks, last launch. The exit code is 1 if a test fails."""
-    found = _done(lambda it: registrations.registration(it, registration))
+    found = _done(lambda it: lti.registration(it, registration))
     secret, now, is_wrong = _secret(), datetime.now(UTC), False
     key = _done(lambda it: signing_key(it, secret, now))
     for line in check_registration(found, key):

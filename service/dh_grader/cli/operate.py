@@ -1,4 +1,4 @@
-"""`dh-grader doctor`: check this installation, and say what is wrong and how to mend it."""
+"""`dh-grader serve`, `keys` and `doctor`: run the service, its keys, and a check of all."""
 
 import gc
 import os
@@ -12,29 +12,13 @@ from sqlalchemy import Connection, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from dh_grader import courses as courses_courses
-from dh_grader.access import (
-    WRONG_SECRET,
-    Key,
-    Scope,
-    add_key,
-    all_keys,
-    fits,
-    new_key_text,
-    revoke_key,
-    settle,
-)
+from dh_grader.access import WRONG_SECRET, Key, Scope, new_key_text
+from dh_grader.access.keys import add_key, all_keys, fits, revoke_key, settle
 from dh_grader.api.permissions import is_loopback
 from dh_grader.catalogue import CatalogueError, load_catalogue
+from dh_grader.cli import spoken
 from dh_grader.cli.attempts import database, encodable
-from dh_grader.cli.terminal import (
-    complain,
-    give_up,
-    installed_exercise,
-    spoken,
-    stdout,
-    tell,
-    tell_verdict,
-)
+from dh_grader.cli.terminal import complain, give_up, installed_exercise, stdout, tell, tell_verdict
 from dh_grader.courses import CourseError, zone_named
 from dh_grader.formats.texts import visible
 from dh_grader.settings import Settings, SettingsError, load_settings
@@ -52,6 +36,9 @@ from dh_grader.store.database import (
 )
 from dh_grader.store.tables import courses
 from dh_grader.translations import Sentence, joined, say, say_count, template
+
+# --- `dh-grader doctor`: check this installation, and say what is wrong and how to mend it
+
 
 doctor_commands = typer.Typer(add_completion=False)
 
@@ -302,7 +289,7 @@ _CHECKS: Final[dict[str, Callable[[Settings], Iterator[str]]]] = {
 }
 
 
-# `dh-grader serve`: run the service on this machine.
+# --- `dh-grader serve`: run the service on this machine
 
 
 serve_commands = typer.Typer(add_completion=False)
@@ -338,7 +325,7 @@ def serve_command(
         )
 
 
-# `dh-grader keys`: create, list and revoke API keys.
+# --- `dh-grader keys`: create, list and revoke API keys
 
 
 keys_commands = typer.Typer(

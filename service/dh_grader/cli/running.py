@@ -1,7 +1,4 @@
-"""Divide the submissions of a class between machines, and merge the results.
-
-Shard 3 of 16 has the submissions 3, 19, 35, and so on.
-"""
+"""Grade many submissions at once: in threads, in processes, or in shards on several machines."""
 
 import hashlib
 import json
@@ -27,6 +24,11 @@ if TYPE_CHECKING:
     from multiprocessing.connection import Connection
     from multiprocessing.pool import AsyncResult
 
+
+# --- Divide the submissions of a class between machines, and merge the results
+#
+# Shard 3 of 16 has the submissions 3, 19, 35, and so on.
+#
 # The first line of a shard's file is a header that describes the division, so that merging notices
 # a missing, incomplete or foreign file.
 
@@ -183,7 +185,7 @@ def _whole_lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
         yield line
 
 
-# Map a function that waits for I/O over many items in several threads.
+# --- Map a function that waits for I/O over many items in several threads
 
 
 Item = TypeVar("Item")
@@ -211,7 +213,7 @@ def _in_order(begun: Iterator["AsyncResult[Result]"], ahead: int) -> Iterator[Re
         waiting.extend(islice(begun, 1))
 
 
-# Map a function over items in several processes; the results keep the order of the items.
+# --- Map a function over items in several processes; the results keep the order of the items
 
 
 _Result = TypeVar("_Result")

@@ -1,4 +1,7 @@
-"""The bodies of the statistics of an exercise."""
+"""The bodies that go over HTTP, besides submissions and reports: what requests and answers have.
+
+This package has pydantic models only. What happens to them is in ``dh_grader.api``.
+"""
 
 from collections.abc import Mapping
 from datetime import datetime
@@ -15,6 +18,8 @@ from dh_grader.grading import Report
 from dh_grader.hints import STEPS
 from dh_grader.kinematics import Convention
 from dh_grader.submissions.bodies import GradeRequest
+
+# --- The bodies of the statistics of an exercise
 
 
 class ShareCorrect(BaseModel):
@@ -96,7 +101,7 @@ class ExerciseStatistics(BaseModel):
     identical: list[IdenticalAnswers] = Field(description="The largest groups first.")
 
 
-# RFC 9457 problem details: the body of every unsuccessful response.
+# --- RFC 9457 problem details: the body of every unsuccessful response
 
 
 MEDIA_TYPE: Final = "application/problem+json"
@@ -247,7 +252,7 @@ class ProblemDocument(BaseModel):
     errors: list[Reason] | None = None
 
 
-# The bodies of requests about grading, about hints, and about alternatives to a correct table.
+# --- The bodies of requests about grading, about hints, and about alternatives to a correct table
 
 
 _Label = Annotated[str, Field(max_length=40)]
@@ -344,7 +349,7 @@ class GradeManyResponse(BaseModel):
     results: list[GradeResult]
 
 
-# The bodies that list and describe exercises and generated robots, without their answers.
+# --- The bodies that list and describe exercises and generated robots, without their answers
 
 
 class PartSummary(BaseModel):
@@ -445,7 +450,7 @@ class PracticeRobot(BaseModel):
     )
 
 
-# The bodies of new and recorded attempts.
+# --- The bodies of new and recorded attempts
 
 
 # Characters that are invisible or look alike in a list (Unicode: controls, format characters, all
@@ -603,7 +608,7 @@ class AttemptDetail(BaseModel):
     )
 
 
-# The bodies of requests with which tutors change recorded attempts or get tokens for learners.
+# --- The bodies of requests with which tutors change recorded attempts or get tokens for learners
 
 
 # The longest validity, which limits the damage of a lost token. A course page renews its token.

@@ -1,4 +1,4 @@
-"""The bodies of courses: learners, assignments, links and the gradebook."""
+"""The bodies of courses: learners, assignments, links, scores, and what a learner sees."""
 
 import re
 from datetime import date, datetime, time
@@ -13,6 +13,9 @@ from dh_grader.contract import Attempt, Learner, TakenHint
 from dh_grader.regex import regex
 from dh_grader.submissions.bodies import GradeRequest
 from dh_grader.translations import say
+
+# --- The bodies of courses: learners, assignments, links and the gradebook
+
 
 MOST_LEARNERS: Final = 5000
 MOST_EXERCISES: Final = 100
@@ -418,7 +421,7 @@ class DeletedData(BaseModel):
     )
 
 
-# The bodies of routes about the scores that are sent to learning platforms.
+# --- The bodies of routes about the scores that are sent to learning platforms
 
 
 ScoreState = Literal["waiting", "sent", "refused"]
@@ -462,7 +465,7 @@ class SentAgain(BaseModel):
     queued: int
 
 
-# The bodies of routes for learners: hand-ins, and the learner's own courses and attempts.
+# --- The bodies of routes for learners: hand-ins, and the learner's own courses and attempts
 
 
 class HandInRequest(GradeRequest):

@@ -1,4 +1,7 @@
-"""Database functions for courses and their learners."""
+"""Courses in the database: learners, class lists, personal links, names and time zones.
+
+Assignments, results and the routes are in other files; grading knows nothing about courses.
+"""
 
 import codecs
 import csv
@@ -14,7 +17,8 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 from pydantic import ValidationError
 from sqlalchemy import ColumnElement, Connection, Row, func, insert, select, true, update
 
-from dh_grader.access import WRONG_SECRET, Key, Scope, Secret, insert_key, link_keys, settle
+from dh_grader.access import WRONG_SECRET, Key, Scope, Secret
+from dh_grader.access.keys import insert_key, link_keys, settle
 from dh_grader.contract.courses import (
     MOST_LEARNERS,
     Course,
@@ -35,6 +39,8 @@ from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.tables import course_learners, courses, keys
 from dh_grader.translations import say
+
+# --- Database functions for courses and their learners
 
 
 def add_course(connection: Connection, new: NewCourse, now: datetime) -> Course:
@@ -124,7 +130,7 @@ def add_learners(connection: Connection, course_id: str, new: Iterable[NewLearne
     return len(known) - count
 
 
-# Dates in the time zone of a course.
+# --- Dates in the time zone of a course
 
 
 def zone_named(name: str) -> ZoneInfo:
@@ -188,11 +194,10 @@ def with_own_dates(assignment: CourseAssignment, extension: Extension) -> Extens
     return extension.model_copy(update={"due": due, "closes": closes})
 
 
-# Personal links: each contains an API key for one learner.
+# --- Personal links: each contains an API key for one learner
 #
 # The key is computed from the secret of the installation. Only a hash of the key is stored.
-
-
+#
 # The service can compute the key again, so a tutor can print the links of a class twice.
 
 
@@ -282,7 +287,7 @@ def _chosen(
     return [row for row in rows if row.learner in set(only)]
 
 
-# The names of learners in lists for tutors, and their alphabetical order.
+# --- The names of learners in lists for tutors, and their alphabetical order
 
 
 def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, str]:
@@ -308,7 +313,7 @@ def _plain(text: str) -> str:
     return "".join(each for each in letters if not unicodedata.combining(each))
 
 
-# The errors of courses.
+# --- The errors of courses
 
 
 CourseFault = Literal[
@@ -353,7 +358,7 @@ def links_need_a_secret() -> CourseError:
     return CourseError("unusable", message)
 
 
-# Read a class list in CSV, such as an export of Moodle or Canvas.
+# --- Read a class list in CSV, such as an export of Moodle or Canvas
 
 
 # The headings of each field in small letters, the preferred one first, as English, German, Spanish,

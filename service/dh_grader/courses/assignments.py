@@ -1,4 +1,4 @@
-"""Database functions for the assignments of a course and the extensions of learners."""
+"""The assignments of a course: dates, limits and extensions of a learner, variants, deletion."""
 
 import json
 import secrets
@@ -53,7 +53,7 @@ from dh_grader.courses import (
 )
 from dh_grader.store.attempts import insert_or_ignore, points_after
 from dh_grader.store.database import Priority, queue_scores
-from dh_grader.store.learner_data import delete_attempts
+from dh_grader.store.results import delete_attempts
 from dh_grader.store.tables import (
     assignments,
     attempts,
@@ -70,6 +70,8 @@ from dh_grader.store.tables import courses as tables_courses
 from dh_grader.submissions.bodies import nearest
 from dh_grader.translations import paragraph, say, template
 from dh_grader.variants import NoVariantError, choices_of, hidden_variant, pinned, seed_of
+
+# --- Database functions for the assignments of a course and the extensions of learners
 
 
 def add_assignment(
@@ -294,7 +296,7 @@ def _excuse(connection: Connection, row: Row[Any], zone: ZoneInfo) -> None:
         queue_scores(connection, attempts.c.number.in_(excused))
 
 
-# The rules of an assignment for one learner: dates, limit, feedback, practice and solution.
+# --- The rules of an assignment for one learner: dates, limit, feedback, practice and solution
 
 
 _EXTENDED: Final = ("due", "closes", "max_attempts")
@@ -463,7 +465,7 @@ def extended(
     )
 
 
-# Database functions that delete courses and assignments, and that remove learners.
+# --- Database functions that delete courses and assignments, and that remove learners
 
 
 _COURSE_HAS_ATTEMPTS = template(
@@ -590,7 +592,7 @@ def _count(connection: Connection, table: Table, condition: ColumnElement[bool])
     return connection.scalar(select(func.count()).select_from(table).where(condition)) or 0
 
 
-# Choose the variant of an exercise for each learner in an assignment.
+# --- Choose the variant of an exercise for each learner in an assignment
 #
 # A secret of the assignment determines the variants, so that learners cannot guess them.
 

@@ -1,4 +1,7 @@
-"""Greek letters and their ASCII names."""
+"""Typed text -> plain characters, each with its position in the typed text.
+
+It knows Unicode, Greek letters, LaTeX commands and decimal commas, but no grammar.
+"""
 
 import re
 import unicodedata
@@ -9,6 +12,9 @@ from typing import Final
 
 from dh_grader.expressions.errors import LIMITS, Cause, Span, UnreadableError
 from dh_grader.regex import regex
+
+# --- Greek letters and their ASCII names
+
 
 NAMES: Final = {
     "α": "alpha", "β": "beta", "γ": "gamma", "δ": "delta", "ε": "epsilon", "ζ": "zeta",
@@ -36,7 +42,7 @@ def spellings(name: str) -> set[str]:
     return {"".join(choice) for choice in product(*parts)}
 
 
-# Single characters: their plain spellings, and look-alikes of plain characters.
+# --- Single characters: their plain spellings, and look-alikes of plain characters
 
 
 # Brackets around a fraction with a bar, and the star that marks a joint variable. No student can
@@ -129,7 +135,7 @@ def cause(letter: str) -> Cause:
     return _CAUSES.get(letter) or ("invisible" if is_invisible(letter) else "character")
 
 
-# LaTeX commands and their plain spellings.
+# --- LaTeX commands and their plain spellings
 
 
 FUNCTIONS: Final = {
@@ -219,7 +225,7 @@ def brace_partners(source: str) -> dict[int, int]:
     return partners
 
 
-# Collect plain characters with their positions in the typed text.
+# --- Collect plain characters with their positions in the typed text
 
 
 _DECIMAL_COMMA: Final = regex(r"(?<=[0-9])\{,\}(?=[0-9])")
@@ -348,7 +354,7 @@ class CharacterWriter:
         return place
 
 
-# Convert typed text to plain characters, each with its position in the typed text.
+# --- Convert typed text to plain characters, each with its position in the typed text
 #
 # Unambiguous characters (× · − ² ₁ ½ ° π, variants of Greek letters) and LaTeX are converted.
 # Look-alike or invisible characters are errors. \frac{a}{b} becomes ⟨{a}/{b}⟩, where ⟨ and ⟩ are
@@ -657,7 +663,7 @@ class _Normaliser(CharacterWriter):
         return after
 
 
-# Numbers with a decimal comma, for exercises that allow it: 1,5 is 1.5.
+# --- Numbers with a decimal comma, for exercises that allow it: 1,5 is 1.5
 #
 # A semicolon separates arguments: atan2(1,5; 2).
 

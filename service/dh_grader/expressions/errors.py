@@ -14,7 +14,7 @@ Spans are [from, to) in the text that the student typed.
 from dataclasses import dataclass
 from typing import Any, Final, Literal
 
-# The limits on the size of one expression.
+# --- The limits on the size of one expression
 
 
 @dataclass(frozen=True, slots=True)

@@ -1,15 +1,4 @@
-"""Compile a tree to a program that computes its values at all samples at once.
-
-A program is one flat tuple of the tree's parts. Each part has a key (its formula in reverse Polish
-notation), then its function and the places of its operands. The program of 2*cos(theta1) is:
-
-     0  "#2.0", None, 2.0
-     3  "theta1", None
-     5  "theta1 cos", "cos", 3, None
-     9  "#2.0 theta1 cos *", "*", 0, 5
-
-Equal parts have equal keys, so programs with a common ``memo`` compute cos(theta1) only once.
-"""
+"""A syntax tree -> its values: at all samples at once, or for one value of each symbol."""
 
 import math
 import operator
@@ -22,7 +11,7 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,
@@ -33,6 +22,19 @@ from dh_grader.expressions.tree import (
     children,
 )
 
+# --- Compile a tree to a program that computes its values at all samples at once
+#
+# A program is one flat tuple of the tree's parts. Each part has a key (its formula in reverse
+# Polish notation), then its function and the places of its operands. The program of 2*cos(theta1)
+# is:
+#
+#      0  "#2.0", None, 2.0
+#      3  "theta1", None
+#      5  "theta1 cos", "cos", 3, None
+#      9  "#2.0 theta1 cos *", "*", 0, 5
+#
+# Equal parts have equal keys, so programs with a common ``memo`` compute cos(theta1) only once.
+#
 # Parts without symbols are folded to constants. The programs of thousands of texts are memoized as
 # flat tuples, because the garbage collector skips a tuple of strings and numbers but visits every
 # tree and closure.
@@ -239,11 +241,10 @@ class _Compiler:
             return self._constant(float(_SAMPLES_FUNCTIONS[name](*values)))
 
 
-# Evaluate many trees for one value of each symbol, in plain floats.
+# --- Evaluate many trees for one value of each symbol, in plain floats
 #
 # The trees share most of their nodes, so the value of a shared node is computed once. To evaluate
-# one
-# tree at many samples, use ``samples``.
+# one tree at many samples, use ``samples``.
 
 
 Known = dict[int, float]

@@ -1,4 +1,7 @@
-"""Split plain characters into tokens: numbers, operators, brackets and words."""
+"""Plain characters -> tokens: numbers, operators, brackets and words, with notes on them.
+
+``words.py`` splits a run of letters; ``parser.py`` builds the tree.
+"""
 
 import math
 import re
@@ -8,15 +11,21 @@ from typing import Final
 
 from dh_grader.expressions.characters import CLOSE, MARKER, OPEN
 from dh_grader.expressions.errors import Note, Span, UnreadableError
-from dh_grader.expressions.tree import Binary, Call, Negation, Node, Number, Pi, SymbolNode
 from dh_grader.expressions.vocabulary import (
     FUNCTIONS_OF_DEGREES,
     IN_DEGREES,
     MODULES,
     TRIGONOMETRIC,
     UNIT_FUNCTIONS,
+    Binary,
+    Call,
+    Negation,
+    Node,
+    Number,
     Operand,
+    Pi,
     Symbol,
+    SymbolNode,
 )
 from dh_grader.expressions.words import (
     END,
@@ -46,7 +55,7 @@ from dh_grader.expressions.words import (
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# Notes on formulas that are read literally although the student may mean something else.
+# --- Notes on formulas that are read literally although the student may mean something else
 #
 # ``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine plus 2, and
 # ``0·5`` is 0.
@@ -170,7 +179,7 @@ def _last_joint(argument: Node) -> int | None:
     return last.symbol.joint if type(last) is SymbolNode else None
 
 
-# Turn words into tokens: names, functions with their powers, units, and indices in brackets.
+# --- Turn words into tokens: names, functions with their powers, units, and indices in brackets
 
 
 _FUNCTION_POWER: Final = regex(r"\s*(?:\^|\*\*)\s*")
@@ -405,6 +414,9 @@ class WordLexer(TokenWriter):
             return UnreadableError("not_finite", span)
         called = self.text[end : end + 1] == "("
         return UnreadableError("name", span, run=run, called=called, before=self.last)
+
+
+# --- Split plain characters into tokens: numbers, operators, brackets and words
 
 
 NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"

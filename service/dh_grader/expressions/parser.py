@@ -1,4 +1,6 @@
-r"""Parse tokens into a syntax tree, by recursive descent.
+r"""Tokens -> a syntax tree, by recursive descent; ambiguous passages are noted or refused.
+
+It also knows equations and bare degrees. It knows no typed characters.
 
 In the grammar, a word in capitals is a token, and { } may be repeated or left out:
 
@@ -19,10 +21,6 @@ the argument of a function without brackets: ``sin 2q1`` is ``sin(2q1)``. A func
 brackets takes one operand, so ``sin q1 * l1`` is ``sin(q1)*l1``. ``OPEN`` and ``CLOSE`` enclose a
 fraction that is one operand, ``½`` or ``\frac{a}{b}``. A power of a power is ambiguous, so
 ``2^3^2`` is not in the grammar.
-
-Only brackets are parsed by recursion, and the lexer allows at most ``LIMITS.depth`` open brackets.
-Everything else that can be repeated (signs, roots, powers, functions without brackets) is kept in a
-list until its operand is parsed, so no text comes near Python's recursion limit.
 """
 
 import re
@@ -33,7 +31,12 @@ from typing import Final, NamedTuple
 from dh_grader.expressions import characters
 from dh_grader.expressions.errors import LIMITS, Note, Span, UnreadableError, shortened
 from dh_grader.expressions.lexer import on_call, on_product, on_shorthand, on_sum
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
+    ARITY,
+    BUILT,
+    INVERSE,
+    OF_DEGREES,
+    TRIGONOMETRIC,
     Binary,
     Call,
     Negation,
@@ -41,25 +44,28 @@ from dh_grader.expressions.tree import (
     Number,
     Operator,
     Pi,
+    Symbol,
     SymbolNode,
     Unit,
     UnitName,
-    children,
-)
-from dh_grader.expressions.vocabulary import (
-    ARITY,
-    BUILT,
-    INVERSE,
-    OF_DEGREES,
-    TRIGONOMETRIC,
-    Symbol,
     Vocabulary,
+    children,
 )
 from dh_grader.expressions.words import END, Token, split
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# Build the syntax tree of a formula, and note its ambiguous passages.
+# --- Parse tokens into a syntax tree, by recursive descent
+#
+
+
+#
+# Only brackets are parsed by recursion, and the lexer allows at most ``LIMITS.depth`` open
+# brackets. Everything else that can be repeated (signs, roots, powers, functions without brackets)
+# is kept in a list until its operand is parsed, so no text comes near Python's recursion limit.
+
+
+# --- Build the syntax tree of a formula, and note its ambiguous passages
 #
 # The parser calls one method for each rule of the grammar.
 
@@ -540,7 +546,7 @@ class _Parser:
         return self.builder.call(function, arguments, self.take("RIGHT")[3])
 
 
-# Refuse two values that look like a product: ``90° (π/2)``, ``a2 (0.4318)``, ``θ1 (0)``.
+# --- Refuse two values that look like a product: ``90° (π/2)``, ``a2 (0.4318)``, ``θ1 (0)``
 #
 # Students write a value in brackets after its name, or after the same angle in another unit.
 
@@ -638,11 +644,10 @@ def _parts_of(node: Node) -> list[Node]:
     return found
 
 
-# Equations whose left side is a name or empty: x = l1 c1, T(1,4) := l1 c1, = cos(q1).
+# --- Equations whose left side is a name or empty: x = l1 c1, T(1,4) := l1 c1, = cos(q1)
 #
 # Only the right side is read. The left side is replaced by blanks, so that the positions of the
-# other
-# characters do not change.
+# other characters do not change.
 
 
 _STYLE: Final = r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)\s*"
@@ -714,12 +719,11 @@ def _equation_is_name(found: re.Match[str], vocabulary: Vocabulary) -> bool:
     return pieces[0].kind != "function" and not _OF_NAMES.search(found["brackets"])
 
 
-# Add the unit of degrees to bare numbers in a tree, for a student who works in degrees.
+# --- Add the unit of degrees to bare numbers in a tree, for a student who works in degrees
 #
 # An angle context is the argument of sin, cos or tan, or a whole entry that is an angle. In an
-# angle
-# context, a constant term is in degrees unless it contains π, a unit or an inverse function; joint
-# variables and angle symbols are in radians. ``cos(q1 + 90)`` becomes ``cos(q1 + 90deg)``.
+# angle context, a constant term is in degrees unless it contains π, a unit or an inverse function;
+# joint variables and angle symbols are in radians. ``cos(q1 + 90)`` becomes ``cos(q1 + 90deg)``.
 #
 # The argument of sind, cosd or tand is an angle context for every student; these functions become
 # sin, cos and tan.
@@ -839,7 +843,7 @@ def _facts(node: Node, below: list[_Facts]) -> _Facts:
             return _Facts(constant, angle, pi)
 
 
-# Build functions such as sec, pow and hypot from the functions that a tree may contain.
+# --- Build functions such as sec, pow and hypot from the functions that a tree may contain
 #
 # For example, sec(x) gets the same tree as 1/cos(x).
 
@@ -868,7 +872,7 @@ def build_function(name: str, arguments: Sequence[Node], start: int, end: int) -
     return whole
 
 
-# Refuse ambiguous degree signs: π/2° may mean π/2 or 90°.
+# --- Refuse ambiguous degree signs: π/2° may mean π/2 or 90°
 
 
 # With one of these numbers, π belongs to a conversion, as in (q*180/π)°.

@@ -1,7 +1,6 @@
-"""A student's spelling: the names of symbols, the unit of angles and the shorthand in formulas.
+"""A syntax tree -> text, LaTeX or MathML, in the student's own spelling.
 
-Reports print formulas in the student's spelling: a student who writes ``q1 - 90°`` does not read
-``theta1 - pi/2``.
+Formulas are never rearranged; reading the printed text gives the same tree.
 """
 
 from collections import Counter
@@ -11,7 +10,7 @@ from html import escape
 from typing import Final, NamedTuple
 
 from dh_grader.expressions import characters
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,
@@ -19,12 +18,20 @@ from dh_grader.expressions.tree import (
     Number,
     Operator,
     Pi,
+    Symbol,
     SymbolNode,
     Unit,
+    Vocabulary,
     children,
+    normal_form,
 )
-from dh_grader.expressions.vocabulary import Symbol, Vocabulary, normal_form
 from dh_grader.regex import regex
+
+# --- A student's spelling: the names of symbols, the unit of angles and the shorthand in formulas
+#
+# Reports print formulas in the student's spelling: a student who writes ``q1 - 90°`` does not read
+# ``theta1 - pi/2``.
+
 
 _LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 # A word followed by an index: θ_1, th1, q₁; not LaTeX and not q[0].
@@ -249,7 +256,7 @@ def _names_by_analogy(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[
     return found
 
 
-# Print a tree as plain text. Reading the text gives the same tree.
+# --- Print a tree as plain text. Reading the text gives the same tree
 
 
 def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
@@ -303,7 +310,7 @@ def _text_at(node: Node, place: int, spelling: Spelling, *, first: bool = False)
     return f"({text})" if needs_brackets(node, place, signed=signed, drawn=False) else text
 
 
-# Print a tree as LaTeX, without rearranging the formula.
+# --- Print a tree as LaTeX, without rearranging the formula
 
 
 _FUNCTIONS: Final = {
@@ -373,7 +380,7 @@ def _latex_at(node: Node, place: int, *, first: bool = False) -> str:
     return rf"\left({latex}\right)" if needs_brackets(node, place, signed=signed) else latex
 
 
-# Split a symbol's name into stem and index: theta1 is θ with index 1.
+# --- Split a symbol's name into stem and index: theta1 is θ with index 1
 
 
 _SYMBOL_NAMES_INDEXED: Final = regex(r"([A-Za-z]+?)_?([0-9]+)")
@@ -401,12 +408,11 @@ def symbol_latex(symbol: Symbol) -> str:
     return f"{stem}_{{\\mathrm{{{index}}}}}" if upright else f"{stem}_{{{index}}}"
 
 
-# The rule for brackets in formulas that are printed as text, LaTeX or MathML.
+# --- The rule for brackets in formulas that are printed as text, LaTeX or MathML
 #
 # An operand needs brackets if it binds less tightly than the operator next to it, or if its sign
 # would follow that operator. In LaTeX and MathML, a fraction bar replaces brackets.
-
-
+#
 # A drawn formula needs more brackets than text for the base of a power, because ``90°`` and
 # ``1·10⁻³`` consist of several signs.
 
@@ -474,7 +480,7 @@ def begins_with_digit(node: Node) -> bool:
             return False
 
 
-# Print a tree as presentation MathML, without rearranging the formula.
+# --- Print a tree as presentation MathML, without rearranging the formula
 
 
 _NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}

@@ -1,4 +1,7 @@
-"""Read a typed formula in four stages: characters, tokens, syntax tree, program."""
+"""Read a typed formula: characters, tokens, tree, program; its cost is known before.
+
+The results are memoized. What a refused text may have meant is in ``repairs``.
+"""
 
 import math
 from bisect import bisect_left
@@ -28,24 +31,25 @@ from dh_grader.expressions.parser import (
 )
 from dh_grader.expressions.printing import TypedFormula, to_latex, to_mathml, to_text
 from dh_grader.expressions.repairs import Failure, explain
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
+    Kind,
     Negation,
     Node,
     Number,
+    Symbol,
     SymbolNode,
     Unit,
+    Vocabulary,
     children,
 )
-from dh_grader.expressions.vocabulary import Kind, Symbol, Vocabulary
 from dh_grader.expressions.words import END, Token
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 
-# Estimate the cost of reading a text before it is read.
-
-
+# --- Estimate the cost of reading a text before it is read
+#
 # Every machine gets the same result.
 
 
@@ -160,6 +164,9 @@ def _scanned(text: str) -> _Count:
 
 _reading_work_memoized: Final = lru_cache(maxsize=8192)(_by_words)
 _of_word: Final = lru_cache(maxsize=2048)(_packed)
+
+
+# --- Read a typed formula in four stages: characters, tokens, syntax tree, program
 
 
 AngleUnit = Literal["radians", "degrees"]
@@ -478,12 +485,11 @@ def _is_run(node: Binary) -> bool:
     return type(node.left) is Binary and node.left.operator in _RUNS[node.operator]
 
 
-# Find the rounded decimals of a formula, and evaluate it with slightly different decimals.
+# --- Find the rounded decimals of a formula, and evaluate it with slightly different decimals
 #
 # A decimal number with three or more figures is assumed to be rounded or cut off: 1.57 may mean
-# π/2.
-# The *unit* of a decimal is 1 in its last place, 0.01 for 1.57. A *shift* is the number of units by
-# which the intended number exceeds the written one.
+# π/2. The *unit* of a decimal is 1 in its last place, 0.01 for 1.57. A *shift* is the number of
+# units by which the intended number exceeds the written one.
 
 
 # With two figures, half a unit could be five per cent: 1.6 does not mean π/2.

@@ -1,13 +1,16 @@
-"""The functions and units that an expression may use, and their spellings."""
+"""The names that a formula may use (functions, units, symbols), and the tree that has them."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import lru_cache
 from typing import Final, Literal
 
 from dh_grader.expressions import characters
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- The functions and units that an expression may use, and their spellings
+
 
 PieceKind = Literal[
     "symbol", "pi", "constant", "function", "number", "unit", "shorthand", "invalid_shorthand"
@@ -99,7 +102,7 @@ REFUSED: Final = frozenset({
 RESERVED: Final = frozenset({*SPELLINGS, *UNITS, *PI})
 
 
-# The names that an expression may use.
+# --- The names that an expression may use
 
 
 Kind = Literal["angle", "length", "number"]
@@ -232,3 +235,94 @@ class Vocabulary:
 
     def __repr__(self) -> str:
         return f"Vocabulary({list(self.symbols)!r})"
+
+
+# --- The syntax tree, whose leaves are these names
+#
+# The classes are not frozen, because a frozen dataclass takes four times as long to construct.
+
+
+UnitName = Literal["deg", "rad"]
+Operator = Literal["+", "-", "*", "/", "^"]
+
+
+@dataclass(slots=True)
+class Number:
+    """A numeric constant, never negative; ``literal`` is its text."""
+
+    value: float
+    literal: str = field(compare=False)
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Pi:
+    """The constant π."""
+
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class SymbolNode:
+    """A declared symbol."""
+
+    symbol: Symbol
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Unit:
+    """An operand with an explicit angle unit."""
+
+    operand: "Node"
+    unit: UnitName
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Negation:
+    """A minus sign and its operand."""
+
+    operand: "Node"
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Binary:
+    """Two operands joined by an operator."""
+
+    operator: Operator
+    left: "Node"
+    right: "Node"
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+@dataclass(slots=True)
+class Call:
+    """A function call."""
+
+    function: str
+    arguments: tuple["Node", ...]
+    start: int = field(default=0, compare=False)
+    end: int = field(default=0, compare=False)
+
+
+Node = Number | Pi | SymbolNode | Unit | Negation | Binary | Call
+
+
+def children(node: Node) -> tuple[Node, ...]:
+    """Return the operands or arguments of ``node``, from left to right."""
+    kind = type(node)
+    if kind is Binary:
+        return (node.left, node.right)  # type: ignore[union-attr]
+    if kind is Call:
+        return node.arguments  # type: ignore[union-attr]
+    if kind is Negation or kind is Unit:
+        return (node.operand,)  # type: ignore[union-attr]
+    return ()

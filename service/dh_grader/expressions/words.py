@@ -1,8 +1,6 @@
 """Split a run of letters and digits into names, functions and units.
 
-``l1c1`` is l1·c1 and ``2sinq1`` is 2·sin(q1). The longest known name comes first; a shorter one is
-taken only if the rest of the run would otherwise have no meaning. A name never ends between two
-digits, so q12 is not q1·2.
+It knows the spellings of programs, indices, letter case and open brackets.
 """
 
 from dataclasses import dataclass, replace
@@ -15,7 +13,6 @@ from dh_grader.expressions import characters
 from dh_grader.expressions import vocabulary as functions
 from dh_grader.expressions.characters import BREAKS, CLOSE, OPEN, Characters
 from dh_grader.expressions.errors import LIMITS, Note, Span, UnreadableError, quoted
-from dh_grader.expressions.tree import Binary, Call, Node, Number, Pi, SymbolNode
 from dh_grader.expressions.vocabulary import (
     CAPITALS,
     CONSTANTS,
@@ -23,15 +20,28 @@ from dh_grader.expressions.vocabulary import (
     OF_DEGREES,
     PI_CAPITALS,
     RESERVED,
+    Binary,
+    Call,
+    Node,
+    Number,
     Operand,
+    Pi,
     PieceKind,
     Symbol,
+    SymbolNode,
     Vocabulary,
 )
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# Tokens, and a writer that adds the missing product sign in texts such as 2q1.
+# --- Split a run of letters and digits into names, functions and units
+#
+# ``l1c1`` is l1·c1 and ``2sinq1`` is 2·sin(q1). The longest known name comes first; a shorter one
+# is taken only if the rest of the run would otherwise have no meaning. A name never ends between
+# two digits, so q12 is not q1·2.
+
+
+# --- Tokens, and a writer that adds the missing product sign in texts such as 2q1
 
 
 # A token: its terminal, its value, and its [start, end) in the text as typed. The value is a node
@@ -112,7 +122,7 @@ class TokenWriter:
         return type(value) is SymbolNode and value.symbol.joint is not None
 
 
-# Words in the notation of programs: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi.
+# --- Words in the notation of programs: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi
 
 
 MEMBER: Final = regex(r"(?:\.|::)(?=[^\W\d_])")
@@ -159,7 +169,7 @@ def constant(name: str, start: int, end: int) -> Node:
     return Binary("/", Number(1.0, "1", start, end), root, start, end)
 
 
-# The star after a joint variable: the marker that tables print, or a product.
+# --- The star after a joint variable: the marker that tables print, or a product
 #
 # Followed by nothing    θ1*, (d3*), atan2(q1*, k)    the marker
 # Followed by +          θ1* + 90°, d3*+l1            the marker: nobody writes a product like this
@@ -168,8 +178,7 @@ def constant(name: str, start: int, end: int) -> Node:
 # Followed by other text q1*k                         a product
 #
 # A raised star is always the marker.
-
-
+#
 # A marked variable is the first factor of its term. If another factor precedes it (k*q1*+s1), a
 # star before + or before a subtracted angle is ambiguous. If a blank precedes the star (q1 * + k),
 # a star before + is ambiguous.
@@ -427,7 +436,7 @@ def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
     return (whole,) if whole in vocabulary.joints else digits
 
 
-# Add notes on single words that could also mean something else.
+# --- Add notes on single words that could also mean something else
 
 
 _MARKER: Final = say("The * after the joint variable was read as its mark, not as a product.")
@@ -539,7 +548,7 @@ class WordNotes:
             self._add("function_name", message, (a, b))
 
 
-# Names in another letter case than declared: l1 if only L1 is declared.
+# --- Names in another letter case than declared: l1 if only L1 is declared
 #
 # Such a name is accepted if it has no other meaning and fits only one symbol.
 
@@ -592,7 +601,7 @@ def _with_other_capitals(vocabulary: Vocabulary) -> Vocabulary:
     )
 
 
-# Indices as programs write them: q[0] in Python and q(1) or q{1} in MATLAB are both joint 1.
+# --- Indices as programs write them: q[0] in Python and q(1) or q{1} in MATLAB are both joint 1
 
 
 Style = Literal["[", "("]
@@ -650,7 +659,7 @@ def _first(run: str, vocabulary: Vocabulary) -> int:
     return 1
 
 
-# The stack of open brackets while a text is read.
+# --- The stack of open brackets while a text is read
 
 
 PARTNERS: Final = {"(": ")", "[": "]", "{": "}", "|": "|", OPEN: CLOSE}

@@ -1,4 +1,7 @@
-"""The light and dark colours of figures, as style sheets inside the SVG."""
+"""Draw on a sheet: a mechanism, frames, dimension lines, and labels that find room.
+
+What is drawn is computed in ``mechanism.py`` and ``table_figure.py``.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -36,6 +39,8 @@ from dh_grader.figures.solids import (
 )
 from dh_grader.kinematics import Matrices, Numbers
 from dh_grader.regex import regex
+
+# --- The light and dark colours of figures, as style sheets inside the SVG
 
 
 class Theme(StrEnum):
@@ -133,7 +138,7 @@ def _colours(of: Mapping[str, str]) -> str:
     return "".join(f"{chosen}{{{rule}}}\n" for chosen, rule in rules.items())
 
 
-# Labels for names of symbols: θ with index 1 for theta1, and the room that a label needs.
+# --- Labels for names of symbols: θ with index 1 for theta1, and the room that a label needs
 
 
 # The font size in pixels; the size of an index as a share of it, and how much it is lowered.
@@ -229,7 +234,7 @@ def _width(text: str) -> float:
     return sum(_WIDTHS.get(character, _NAMES_WIDEST) for character in text)
 
 
-# Keep track of the taken room in a picture, and find the best place for each label.
+# --- Keep track of the taken room in a picture, and find the best place for each label
 #
 # All lengths are in pixels, x to the right and y down. Placing is deterministic.
 
@@ -435,7 +440,7 @@ def _farther(wanted: list[Numbers]) -> Iterator[Numbers]:
         yield from around(wanted[0], 12.0 * i)[:12]
 
 
-# Arrows that show how a joint moves: around its axis, or along it.
+# --- Arrows that show how a joint moves: around its axis, or along it
 
 
 _MOTION_ARROWS_HEAD = 8.0
@@ -530,7 +535,7 @@ def sliding_arrow(
     return MotionArrow(best, both)
 
 
-# The sheet that a figure is drawn on: its layers, its labels' room, and the SVG.
+# --- The sheet that a figure is drawn on: its layers, its labels' room, and the SVG
 
 
 # The room for the mechanism in pixels: its width, height and longest distance. Lengths and names
@@ -620,7 +625,7 @@ def camera_for(points: Numbers, view: View, room: tuple[float, float, float]) ->
     return Camera.of(view, scale)
 
 
-# Draw a mechanism: ground, links, joints and gripper, from the farthest to the nearest.
+# --- Draw a mechanism: ground, links, joints and gripper, from the farthest to the nearest
 
 
 _BOX_WIDTH = 1.05 * JOINT_RADIUS
@@ -722,7 +727,7 @@ def _surface(
     return np.asarray(start + min(inside * mechanism.size, 0.5 * length) * direction)
 
 
-# Draw frames with the names of their axes: x red, y green, z blue.
+# --- Draw frames with the names of their axes: x red, y green, z blue
 
 
 _SAME = 1e-6
@@ -839,7 +844,7 @@ def _beyond(tip: Numbers, ahead: Numbers, label: Label) -> Numbers:
     return np.asarray(tip + near * ahead)
 
 
-# Dimension lines: a line next to a piece of the mechanism, with the name of its length.
+# --- Dimension lines: a line next to a piece of the mechanism, with the name of its length
 
 
 # The possible distances of a dimension line from its piece, as shares of the mechanism's extent.

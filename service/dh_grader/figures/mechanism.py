@@ -1,7 +1,6 @@
 """The mechanism that a picture shows: joints on their axes, links between them, base and tool.
 
-A joint may be drawn anywhere on its axis. Joints are moved along their axes until none of them
-hides a neighbour.
+It has numbers and places only; ``drawing.py`` and a 3D view draw them.
 """
 
 import re
@@ -34,7 +33,13 @@ from dh_grader.kinematics import (
     moved,
 )
 
-# The numbers that a figure uses for symbols.
+# --- The mechanism that a picture shows: joints on their axes, links between them, base and tool
+#
+# A joint may be drawn anywhere on its axis. Joints are moved along their axes until none of them
+# hides a neighbour.
+
+
+# --- The numbers that a figure uses for symbols
 
 
 # The displacement of a prismatic joint as a share of its range: less than half, so that there is
@@ -58,7 +63,7 @@ def _number(variable: Variable) -> float:
     return float(f"{variable.low + share * (variable.high - variable.low):.3g}")
 
 
-# Find the lengths in a figure that have a name: a symbol, a sum or a number.
+# --- Find the lengths in a figure that have a name: a symbol, a sum or a number
 
 
 _EXACT = 1e-9
@@ -123,11 +128,10 @@ def _sum_of(step: Numbers, terms: Numbers) -> Numbers | None:
     return share if exact and plain else None
 
 
-# The chain as a path of straight pieces from the base frame to the tool.
+# --- The chain as a path of straight pieces from the base frame to the tool
 #
 # A piece is along the axis of a joint, or across from one axis to the next.
-
-
+#
 # A table gives both kinds: Z_i is along an axis, X_i is across (``kinematics.chain``). For a robot
 # with screw axes, the path follows the common normals between the axes.
 
@@ -582,7 +586,7 @@ def _foot(
     return origin - depth * along, along
 
 
-# The direction from which a figure is seen, in parallel projection with z0 upwards.
+# --- The direction from which a figure is seen, in parallel projection with z0 upwards
 
 
 _AZIMUTHS = (-60, 30, -50, 40, -40, 50, -30, 60, -70, 20, -20, 70, 120, -150, 130, -140, 150, -120)
@@ -659,7 +663,7 @@ def _different(rows: Numbers, alike: Callable[[Numbers, Numbers], NDArray[np.boo
     return kept
 
 
-# The frames that an exercise gives, such as the base and tool frames.
+# --- The frames that an exercise gives, such as the base and tool frames
 
 
 @dataclass(frozen=True, slots=True)

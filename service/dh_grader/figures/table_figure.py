@@ -1,7 +1,4 @@
-"""The figure of a student's table: its frames, drawn over the mechanism or alone.
-
-The figure replaces the 3D view in browsers without 3D graphics.
-"""
+"""The figure of a student's table, right or wrong: its frames over the mechanism or alone."""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
@@ -14,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dh_grader.catalogue import Exercise, Joint, Variable
-from dh_grader.catalogue.compile import DEFAULT_RANGES
+from dh_grader.catalogue.exercise import DEFAULT_RANGES
 from dh_grader.catalogue.kinds import FRAME_CELLS, FramesSpec, frame_labels
 from dh_grader.catalogue.robot import at_home
 from dh_grader.expressions import (
@@ -78,11 +75,15 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import listed
 
-# The pose of a table, multiplied out as text: sums of products of sines and cosines.
+# --- The figure of a student's table: its frames, drawn over the mechanism or alone
+#
+# The figure replaces the 3D view in browsers without 3D graphics.
+
+
+# --- The pose of a table, multiplied out as text: sums of products of sines and cosines
 #
 # Angles about parallel axes are added before their sine is taken, as in textbooks.
-
-
+#
 # The chain is X_0 Z_1 X_1 Z_2 …. Each entry is a sum of terms. The number of terms is bounded, and
 # the terms are not simplified afterwards.
 
@@ -268,7 +269,7 @@ def _text(terms: Terms) -> str:
     return _sum_text(ordered) or "0"
 
 
-# The symbols and joints that a drawn table may use, from an exercise or from textbooks.
+# --- The symbols and joints that a drawn table may use, from an exercise or from textbooks
 
 
 # The rows of a free table: ten joints and up to two fixed rows.
@@ -324,7 +325,7 @@ def _variable(symbol: Symbol) -> Variable:
     return Variable(symbol.name, symbol.kind, unit, "", low, high, symbol.joint)
 
 
-# The formulas of a table: its cells, its equivalent in the other convention, and its pose.
+# --- The formulas of a table: its cells, its equivalent in the other convention, and its pose
 
 
 _ZERO_TEXT = "0"
@@ -420,7 +421,7 @@ def _pose(
     return pose if all(_may_print(entry, budget) for row in pose for entry in row) else ()
 
 
-# The frames of a student's table, right or wrong, at given joint values.
+# --- The frames of a student's table, right or wrong, at given joint values
 
 
 # The number of random configurations that represent a generic one.
@@ -599,7 +600,7 @@ def _one_axis(together: Sequence[int], scope: DrawingScope) -> FreedomLoss:
     return FreedomLoss(tuple(joint.index for joint in joints), f"Joints {named} {motion}.")
 
 
-# The frames that a student places on joint axes, right or wrong, to be drawn on the robot.
+# --- The frames that a student places on joint axes, right or wrong, to be drawn on the robot
 
 
 @dataclass(frozen=True, slots=True)

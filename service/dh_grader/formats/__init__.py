@@ -1,6 +1,6 @@
-"""Report formats for people and programs.
+"""Report formats for people and programs: the table of all formats.
 
-``documents/`` and ``platforms/`` have one file for each format, ``shared/`` helpers of several.
+``documents.py`` has files to read, ``platforms.py`` those that a platform takes.
 """
 
 from collections.abc import Mapping

@@ -1,4 +1,7 @@
-"""The overview of a class: a folder with an index and a page for each submission."""
+"""The overview of a class: a folder with an index and a page for each submission.
+
+It also recognises what this program has written, so that nothing else is replaced.
+"""
 
 import io
 import os
@@ -27,11 +30,11 @@ from dh_grader.formats.worksheets import is_worksheet
 from dh_grader.grading import Place, Verdict
 from dh_grader.regex import regex
 from dh_grader.statistics import ClassStatistics, CountedSlip, ScoreBin, Share, columns
-from dh_grader.submissions.documents import UNREADABLE_ARCHIVE
 from dh_grader.submissions.files import MAX_START, ClassEntry
+from dh_grader.submissions.office_files import UNREADABLE_ARCHIVE
 from dh_grader.translations import Language, joined, say, say_count, told
 
-# Recognise what this program has written, and the worksheets of platforms, by their contents.
+# --- Recognise what this program has written, and the worksheets of platforms, by their contents
 #
 # Tutors keep reports and worksheets in the folder of the submissions, so these files come back as
 # entries of the class. And an output may replace only an earlier output.
@@ -104,10 +107,13 @@ def is_earlier_output(file: Path) -> bool:
         return False
 
 
+# --- The overview of a class: a folder with an index and a page for each submission
+
+
 __all__ = ["FEEDBACK", "INDEX", "class_folder", "feedback_zip"]
 
 
-# The data of the index, collected from submissions one by one.
+# --- The data of the index, collected from submissions one by one
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +226,7 @@ def _path(file: str, folder: Path | None) -> str:
         return Path(file).absolute().as_uri()
 
 
-# The index of a class, for tutors: scores, success, identical mistakes, and all submissions.
+# --- The index of a class, for tutors: scores, success, identical mistakes, and all submissions
 
 
 INDEX: Final = "index.html"
@@ -314,7 +320,7 @@ def _bars_of(each: ScoreBin, highest: int) -> Iterator[tuple[str, str, str]]:
             yield side, f"{top:.2f}", f"{height:.2f}"
 
 
-# Safe file names made from the names of submissions, which are untrusted.
+# --- Safe file names made from the names of submissions, which are untrusted
 
 
 # Characters. A file name has 255 bytes on most systems, and a letter up to four bytes.
@@ -354,7 +360,7 @@ def _compared(stem: str) -> str:
     return unicodedata.normalize("NFKC", stem).casefold()
 
 
-# The folder of a class: a page for each submission, then the index.
+# --- The folder of a class: a page for each submission, then the index
 
 
 # The subfolder of the pages.

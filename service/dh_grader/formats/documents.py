@@ -1,7 +1,4 @@
-"""A report for the terminal: each part as a table with its messages, and a total.
-
-Signs carry the meaning, so the report can also be read without colours.
-"""
+"""Formats to read or to keep: text, Markdown, JSON, JSON lines, HTML, gradebook, CSV."""
 
 import json
 import re
@@ -55,6 +52,11 @@ from dh_grader.grading import PartReport, Report, RowReport, Severity, Verdict
 from dh_grader.grading.report import messages_of
 from dh_grader.regex import regex
 from dh_grader.translations import Language, Translation, joined, say, told
+
+# --- A report for the terminal: each part as a table with its messages, and a total
+#
+# Signs carry the meaning, so the report can also be read without colours.
+
 
 _COLOURS: Final[Mapping[Verdict, str]] = {
     Verdict.CORRECT: "green",
@@ -289,7 +291,7 @@ _TEXT_MARK: Final = regex(
 TEXT: Final = ReportFormat(_text_pieces, _TEXT_MARK, is_stream=True)
 
 
-# GitHub's Markdown for the summary of a job or a comment on a pull request.
+# --- GitHub's Markdown for the summary of a job or a comment on a pull request
 #
 # GitHub takes 1 MiB of summary for a step and 65,536 characters of a comment.
 
@@ -332,7 +334,7 @@ _MARKDOWN_MARK: Final = regex(rb"(?:\| [^|\n]{1,40} ){4}\|\n" + re.escape(_ALIGN
 MARKDOWN: Final = ReportFormat(_markdown_pieces, _MARKDOWN_MARK, for_students=True)
 
 
-# Reports as a JSON list with one entry for each file.
+# --- Reports as a JSON list with one entry for each file
 
 
 _REPORT: Final = TypeAdapter(Report)
@@ -387,7 +389,7 @@ def _json_pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterato
 JSON: Final = ReportFormat(_json_pieces, regex(rb'\[\n\{"submission": "'))
 
 
-# Reports as JSON lines: one line for each file, written as soon as the file is graded.
+# --- Reports as JSON lines: one line for each file, written as soon as the file is graded
 
 
 def _jsonl_pieces(submissions: Iterable[GradedSubmission], _: Setting) -> Iterator[bytes]:
@@ -401,7 +403,7 @@ _JSONL_MARK: Final = regex(rb'\{"submission": "|\{"shard": \d+, "shards": ')
 JSONL: Final = ReportFormat(_jsonl_pieces, _JSONL_MARK, is_stream=True)
 
 
-# A page for students: a card for each part, which shows how each entry was read.
+# --- A page for students: a card for each part, which shows how each entry was read
 
 
 STYLE: Final = style_sheet(Path(__file__).with_name("templates") / "html.css")
@@ -456,7 +458,7 @@ HTML: Final = ReportFormat(
 )
 
 
-# Grades for the gradebook of a course: one line for each learner, with Moodle's headings.
+# --- Grades for the gradebook of a course: one line for each learner, with Moodle's headings
 
 
 def _gradebook_pieces(submissions: Iterable[GradedSubmission], setting: Setting) -> Iterator[bytes]:
@@ -498,7 +500,7 @@ _GRADEBOOK_MARK: Final = regex(re.escape(",".join(texts.GRADEBOOK_HEAD)).encode(
 GRADEBOOK: Final = ReportFormat(_gradebook_pieces, _GRADEBOOK_MARK)
 
 
-# Points as comma-separated values: a line for each submission, a column for each part.
+# --- Points as comma-separated values: a line for each submission, a column for each part
 
 
 _CSV_HEAD: Final = ("submission", "points", "max_points", "score", "passed", "problem", "messages")

@@ -1,4 +1,4 @@
-"""Submissions with their reports: the input of every format."""
+"""What every format gets: submissions with their reports, told in a language, safe as JSON."""
 
 import json
 import re
@@ -23,14 +23,14 @@ from dh_grader.grading import (
 )
 from dh_grader.grading.report import messages_of, rounded_points, was_read, was_read_in_full
 from dh_grader.regex import regex
-from dh_grader.submissions.assignment import SetExercise
+from dh_grader.submissions import SetExercise
 from dh_grader.translations import ENGLISH, Language, joined, paragraph, say, told
 
 if TYPE_CHECKING:
     from rich.console import Console
 
 
-# JSON that is safe to print to a terminal or the log of a build.
+# --- JSON that is safe to print to a terminal or the log of a build
 
 
 # In UTF-8: the start of a build's command (`##[…]`), and control characters that JSON allows.
@@ -47,6 +47,9 @@ def json_document(content: Mapping[str, object]) -> bytes:
 def printable(document: bytes) -> bytes:
     """Return equivalent JSON that is safe to print to a terminal or the log of a build."""
     return _UNPRINTABLE.sub(lambda sign: b"\\u%04x" % ord(sign[0].decode()), document)
+
+
+# --- Submissions with their reports: the input of every format
 
 
 # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.
@@ -314,7 +317,7 @@ class Visibility(StrEnum):
     HIDDEN = "hidden"
 
 
-# The type of report formats, and what a format needs besides the submissions.
+# --- The type of report formats, and what a format needs besides the submissions
 
 
 @dataclass(frozen=True, slots=True)
@@ -389,7 +392,7 @@ def single(
     return pieces
 
 
-# Reports in the language of their reader.
+# --- Reports in the language of their reader
 
 
 # Returns a text of a report, changed.

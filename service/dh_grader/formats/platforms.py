@@ -1,8 +1,4 @@
-"""The ``results.json`` of a PrairieLearn external grader.
-
-Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading results". An
-unreadable submission is reported as not gradable, so it costs no attempt.
-"""
+"""Formats of platforms: PrairieLearn, JUnit, Gradescope, GitHub annotations, Classroom 50."""
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
@@ -35,6 +31,11 @@ from dh_grader.formats.texts import (
 from dh_grader.grading import Verdict
 from dh_grader.regex import regex
 from dh_grader.translations import Language, Translation, paragraph, say, told
+
+# --- The ``results.json`` of a PrairieLearn external grader
+#
+# Source: https://prairielearn.readthedocs.io/en/latest/externalGrading/, "Grading results". An
+# unreadable submission is reported as not gradable, so it costs no attempt.
 
 
 def _prairielearn_document(submission: GradedSubmission, setting: Setting) -> bytes:
@@ -86,7 +87,7 @@ PRAIRIELEARN: Final = ReportFormat(
 )
 
 
-# JUnit XML for GitLab and GitHub Actions: a suite for each submission, a test for each part.
+# --- JUnit XML for GitLab and GitHub Actions: a suite for each submission, a test for each part
 #
 # Sources: https://docs.gitlab.com/ci/testing/unit_test_reports/ and the schema ``junit-10.xsd`` of
 # Jenkins (https://github.com/jenkinsci/xunit-plugin). GitLab shows the name of the class as the
@@ -148,7 +149,7 @@ _JUNIT_MARK: Final = regex(rb'<\?xml [^>]*>\s*<testsuites name="dh-grader">')
 JUNIT: Final = ReportFormat(_junit_pieces, _JUNIT_MARK, for_students=True)
 
 
-# The ``results.json`` of a Gradescope autograder: a test for each part, with its rows.
+# --- The ``results.json`` of a Gradescope autograder: a test for each part, with its rows
 #
 # Source: https://gradescope-autograders.readthedocs.io/en/latest/specs/, "Output format".
 
@@ -208,13 +209,12 @@ GRADESCOPE: Final = ReportFormat(
 )
 
 
-# Annotations of GitHub Actions: one for each part that lost points, and one for the total.
+# --- Annotations of GitHub Actions: one for each part that lost points, and one for the total
 #
 # Source: https://docs.github.com/en/actions/reference/workflow-commands-for-github-actions, and the
 # code with which the runner parses them, ``src/Runner.Common/ActionCommand.cs`` of
 # https://github.com/actions/runner. The runner shows only ten errors of a step, so all messages on
-# a
-# part share one annotation.
+# a part share one annotation.
 
 
 # Percent comes first, because all replacements contain it.
@@ -266,12 +266,11 @@ _GITHUB_MARK: Final = regex(rb"::(?:notice|warning|error) (?:file|title)=")
 GITHUB: Final = ReportFormat(_github_pieces, _GITHUB_MARK, is_stream=True, for_students=True)
 
 
-# The ``result.json`` of a Classroom 50 autograder, schema ``classroom50/result/v1``.
+# --- The ``result.json`` of a Classroom 50 autograder, schema ``classroom50/result/v1``
 #
 # Source: https://github.com/foundation50/classroom50, ``schemas/result-v1.schema.json``, and its
 # wiki, "Advanced Autograding". In Classroom 50, a score is a whole number, so the scores in this
-# file
-# count hundredths of a point.
+# file count hundredths of a point.
 
 
 # Each field with the environment variables of the runner; the first that is set counts.

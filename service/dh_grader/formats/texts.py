@@ -1,4 +1,4 @@
-"""Untrusted texts, and numbers, as short text that is safe to print."""
+"""The texts that formats share: safe short texts, CSV, HTML, Markdown, messages, summaries."""
 
 import base64
 import csv
@@ -17,7 +17,6 @@ from rich.cells import cell_len, set_cell_size
 from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.segment import Segment, Segments
-from rich.table import Table
 from rich.text import Text
 
 from dh_grader import typeset as typeset_typeset
@@ -47,6 +46,10 @@ from dh_grader.translations import (
 
 if TYPE_CHECKING:
     from jinja2 import Environment
+
+
+# --- Untrusted texts, and numbers, as short text that is safe to print
+
 
 # Builds read commands in the output of programs: GitHub `::` at the start of a line and `##[`
 # anywhere, Azure `##vso[`, TeamCity `##teamcity[`. No formula has these signs twice in a row.
@@ -125,7 +128,7 @@ def number(value: float) -> str:
     return f"{value:.2f}".rstrip("0").rstrip(".")
 
 
-# Lines of comma-separated values (RFC 4180, UTF-8) that no spreadsheet reads as formulas.
+# --- Lines of comma-separated values (RFC 4180, UTF-8) that no spreadsheet reads as formulas
 
 
 # Some spreadsheets run a cell with such a beginning as a formula (OWASP, "CSV Injection"). Where a
@@ -154,7 +157,7 @@ def without_formulas(text: str) -> str:
     return _FORMULA.sub("'", visible(text))
 
 
-# HTML from Jinja2 templates, which are named by their path below ``service/``.
+# --- HTML from Jinja2 templates, which are named by their path below ``service/``
 #
 # Only HTML that the service itself made (``own_html``) is not escaped. Each language has its own
 # Jinja2 environment.
@@ -305,7 +308,7 @@ def _filled(text: str, language: Language, values: Mapping[str, object]) -> Mark
     return own_html(text) % {name: _finalize(language, each) for name, each in values.items()}
 
 
-# The messages of a report as text: their places, corrections and counterexamples.
+# --- The messages of a report as text: their places, corrections and counterexamples
 
 
 # The sign of each verdict.
@@ -521,7 +524,7 @@ def _counterexample(values: Mapping[str, float | str]) -> str:
     )
 
 
-# The results of a submission, part by part; platforms show each as a test.
+# --- The results of a submission, part by part; platforms show each as a test
 
 
 # Platforms limit a result: an annotation to 64 KB, a whole result to 1 MB.
@@ -645,7 +648,7 @@ def distinct_names() -> Callable[[str], str]:
     return distinct
 
 
-# Untrusted texts as GitHub's Markdown, which is also safe in similar kinds of Markdown.
+# --- Untrusted texts as GitHub's Markdown, which is also safe in similar kinds of Markdown
 
 
 # A character reference is plain text in every dialect; backslashes escape different characters in
@@ -716,7 +719,7 @@ def _pieces(message: Message) -> Iterator[str]:
     yield escaped(shortened(message.example, LONGEST))
 
 
-# A summary of a class in a few lines: how many passed, and the most frequent mistakes.
+# --- A summary of a class in a few lines: how many passed, and the most frequent mistakes
 
 
 _SLIPS: Final = 10
@@ -810,7 +813,7 @@ class ClassSummary:
             yield Text.assemble(f"{slip.count:>4,}  {sentence} ", (self._told(place), "dim"))
 
 
-# Tables of short texts with aligned columns, for a terminal.
+# --- Tables of short texts with aligned columns, for a terminal
 
 
 _GAP: Final = 2
@@ -865,7 +868,10 @@ class AlignedTable:
             segments[-1] = Segment.line()
         return Segments(segments)
 
-    def _narrowed(self) -> Table:
+    def _narrowed(self) -> RenderableType:
+        # It takes long to load, and few tables are too wide.
+        from rich.table import Table
+
         table = Table(
             box=None,
             pad_edge=False,

@@ -8,11 +8,17 @@ from typing import Final
 from dh_grader import VERSION
 from dh_grader.catalogue import Exercise, FeedbackLevel, PartSpec
 from dh_grader.expressions import AngleUnit
-from dh_grader.grading.follow_through import STANDS_STILL, can_carry, follows_from
-from dh_grader.grading.frames.rows import OWN_FRAME_CHOICE
-from dh_grader.grading.grading import Grading, Judged, StudentChain
+from dh_grader.grading.frames import OWN_FRAME_CHOICE
+from dh_grader.grading.judging import Grading, Judged, StudentChain
 from dh_grader.grading.kinds import KINDS
-from dh_grader.grading.marks import has_earned, part_report, unjudged_report
+from dh_grader.grading.marks import (
+    STANDS_STILL,
+    can_carry,
+    follows_from,
+    has_earned,
+    part_report,
+    unjudged_report,
+)
 from dh_grader.grading.numbers import draw
 from dh_grader.grading.reading.entries import Reader
 from dh_grader.grading.report import (

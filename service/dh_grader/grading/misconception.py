@@ -1,5 +1,7 @@
 """The list of all misconceptions, and the search for the one that explains a wrong answer.
 
+The misconceptions are in ``diagnosis``; they only say which numbers a slip would give.
+
 A misconception is a function and its description (record). The function takes a wrong answer and
 yields hypotheses: numbers to compare with the answer, each with its message. ::
 
@@ -32,7 +34,7 @@ from numpy.typing import ArrayLike, NDArray
 from dh_grader.catalogue import Exercise, Joint
 from dh_grader.expressions import Expression
 from dh_grader.expressions.printing import PLAIN, Spelling, to_latex, to_text
-from dh_grader.expressions.tree import Binary, Negation, Node, Number, Pi, SymbolNode, Unit
+from dh_grader.expressions.vocabulary import Binary, Negation, Node, Number, Pi, SymbolNode, Unit
 from dh_grader.grading.numbers import (
     CONSTANT,
     HALF,
@@ -50,7 +52,7 @@ from dh_grader.kinematics import ALPHA, THETA, Numbers
 from dh_grader.slices import checkpoint
 from dh_grader.translations import Sentence, listed, say
 
-# Phrases that several kinds of messages contain.
+# --- Phrases that several kinds of messages contain
 
 
 __all__ = [
@@ -369,7 +371,7 @@ def diagnosed(case: WrongAnswer, source: object = None, of: type | None = None) 
     return found.findings[0] if found else None
 
 
-# Wrong values, table cells and arrays, and how misconceptions explain them.
+# --- Wrong values, table cells and arrays, and how misconceptions explain them
 
 
 Mask = NDArray[np.bool_]
@@ -601,7 +603,7 @@ def _printed(case: WrongValue, value: float) -> float:
     return 0.0 if abs(number) < PRINTED_NUMBER else float(f"{number:.4g}")
 
 
-# Find the formula that a student would write for given numbers.
+# --- Find the formula that a student would write for given numbers
 
 
 # A term of a sum and its sign.

@@ -1,8 +1,4 @@
-"""All tolerances of grading, with their reasons.
-
-Unless stated otherwise, lengths are in units of the exercise's typical length, and angles are in
-radians.
-"""
+"""Numbers at random joint values: the samples, tolerances, and how values are compared."""
 
 import hashlib
 import json
@@ -21,6 +17,11 @@ from dh_grader.catalogue import Exercise, Joint, Variable
 from dh_grader.expressions import Decimals, Expression, decimals_of
 from dh_grader.kinematics import LARGEST_ANGLE, LARGEST_LENGTH, Numbers
 
+# --- All tolerances of grading, with their reasons
+#
+# Unless stated otherwise, lengths are in units of the exercise's typical length, and angles are in
+# radians.
+#
 # Tolerances of poses are in kinematics.
 
 
@@ -91,11 +92,10 @@ SAME_AXIS: Final = 2e-2
 NO_MOTION: Final = 1e-3
 
 
-# The random values of symbols at which the answers in a submission are compared.
+# --- The random values of symbols at which the answers in a submission are compared
 #
 # The seed is a hash of the exercise and the answers, so that a regrade uses the same values.
-
-
+#
 # So students cannot predict the values, and a regrade uses them to the last bit, on every machine
 # and with every version of numpy.
 
@@ -278,7 +278,7 @@ def _uniform(seed: str, count: int) -> Numbers:
     return np.frombuffer(stream, dtype="<u4") * 2.0**-32
 
 
-# Find how values change when only the joints move.
+# --- Find how values change when only the joints move
 
 
 def halves(values: Numbers) -> tuple[Numbers, Numbers]:
@@ -349,13 +349,11 @@ def coefficients(
     return [tuple(cell) if is_linear else None for cell, is_linear in found]
 
 
-# Compare values with the expected ones.
+# --- Compare values with the expected ones
 #
 # Values must be equal at all samples (random joint values). Decimals with at least three figures
-# may
-# be rounded.
-
-
+# may be rounded.
+#
 # Arrays are ``(..., samples)``. No tolerance depends on the drawn samples, so that every draw gives
 # the same result. A rounded decimal is right if it is the true number, rounded or cut off
 # (``expressions.evaluation.decimals``). So an entry is right if shifts of its decimals, each no

@@ -1,6 +1,6 @@
-"""The report: the result of a grading, in the shape that the HTTP contract names.
+"""The report, its findings and levels, the sentences on lost points, and the work budget.
 
-Plain frozen dataclasses. A field that is None is left out where a report is sent.
+It is the result of a grading in the shape that the HTTP contract names.
 """
 
 import math
@@ -18,7 +18,12 @@ from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 from dh_grader.translations import Sentence, listed, say, say_count, template
 
-# Limit the work for grading one submission.
+# --- The report: the result of a grading, in the shape that the HTTP contract names
+#
+# Plain frozen dataclasses. A field that is None is left out where a report is sent.
+
+
+# --- Limit the work for grading one submission
 #
 # Work is counted instead of timed, so that the same submission gives the same report.
 
@@ -429,7 +434,7 @@ def row_report(
     return RowReport(label, combined([cell.verdict for cell in cells]), 0.0, 0.0, cells, feedback)
 
 
-# The sentences that say where points were lost.
+# --- The sentences that say where points were lost
 
 
 CELLS: Final = "cells"
@@ -529,7 +534,7 @@ def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
     return LittleWorth(labels, rounded_points(sum(row.max_points for row in found)), message)
 
 
-# Findings (hints with corrections), and the messages that each feedback level shows.
+# --- Findings (hints with corrections), and the messages that each feedback level shows
 
 
 # In a counterexample, what the entry gives, and the right number, which only a tutor is told.

@@ -14,9 +14,11 @@ from dh_grader.expressions import AngleUnit
 from dh_grader.importing.exercise_text import (
     Draft,
     HomeRobot,
+    Snaps,
     UnevenLettersError,
     exercise_text,
     lettered,
+    number_text,
 )
 from dh_grader.importing.pasted_robot import (
     OpenQuestionsError,
@@ -26,7 +28,6 @@ from dh_grader.importing.pasted_robot import (
     UnusableTableError,
     pasted_robot,
 )
-from dh_grader.importing.snapping import Snaps, number_text
 from dh_grader.importing.urdf import (
     Placed,
     UnclearAxesError,

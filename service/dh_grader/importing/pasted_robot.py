@@ -1,4 +1,4 @@
-"""Read a pasted DH table as a robot: what the text says, and what its author must be asked."""
+"""A pasted DH table as a robot: what the text says, and what its author must be asked."""
 
 import math
 import re
@@ -16,16 +16,22 @@ from dh_grader.grading.reading.entries import Entry, Reader, stated_units
 from dh_grader.grading.reading.headers import ANGLE_UNITS, METRES, read_header
 from dh_grader.grading.reading.pasted_table import PastedTable, entries_of, read_pasted_table
 from dh_grader.grading.report import WorkBudget
-from dh_grader.importing.exercise_text import HomeRobot, sum_text
-from dh_grader.importing.snapping import Snaps, angle_text, decimals_of, exact_text, is_multiple
+from dh_grader.importing.exercise_text import (
+    HomeRobot,
+    Snaps,
+    angle_text,
+    decimals_of,
+    exact_text,
+    is_multiple,
+    sum_text,
+)
 from dh_grader.kinematics import ALPHA, COLUMNS, THETA, A, Convention, D, Numbers, Row, Table
 from dh_grader.pasting import GridError
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, joined, listed, say
 
-# The rows of an imported DH table, and the robot that they describe.
-
-
+# --- The rows of an imported DH table, and the robot that they describe
+#
 # A table is a chain of factors X_0 Z_1 X_1 … Z_n X_n (see ``kinematics.chain``). Z and X are turned
 # over and joined here without solving any equation, so the poses stay the same.
 

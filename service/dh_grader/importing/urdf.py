@@ -1,4 +1,4 @@
-"""Read a serial robot arm from a URDF file: its joints, their places and their axes."""
+"""A serial arm from a URDF file: its joints, their axes, and a DH table for them."""
 
 import math
 from collections.abc import Callable, Iterator, Mapping
@@ -9,7 +9,7 @@ from xml.parsers import expat
 
 import numpy as np
 
-from dh_grader.importing.snapping import Snaps
+from dh_grader.importing.exercise_text import Snaps
 from dh_grader.kinematics import (
     ALPHA,
     COLUMNS,
@@ -26,6 +26,9 @@ from dh_grader.kinematics import (
 )
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- Read a serial robot arm from a URDF file: its joints, their places and their axes
+
 
 MOST_BYTES: Final = 2**20
 _MOST_LINKS: Final = 200
@@ -325,7 +328,7 @@ def _numbers(joint: _Joint, text: str) -> Iterator[str]:
     yield from words
 
 
-# The joint axes of an arm at home, in the coordinates of its base link.
+# --- The joint axes of an arm at home, in the coordinates of its base link
 
 
 PARALLEL = 1e-6
@@ -412,13 +415,11 @@ def common_normal(first: HomeAxis, second: HomeAxis) -> tuple[Numbers, Numbers]:
     )
 
 
-# Make a standard DH table from joint axes, by the rules that are taught.
+# --- Make a standard DH table from joint axes, by the rules that are taught
 #
 # z_{i-1} is along the axis of joint i, in its positive direction. x_i is along the common normal.
-# On
-# parallel axes d_i = 0.
-
-
+# On parallel axes d_i = 0.
+#
 # If the sign of x_i is free, the sign with fewer offsets is chosen.
 
 

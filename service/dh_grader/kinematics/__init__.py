@@ -1,6 +1,6 @@
-"""Every tolerance of the kinematics, each with its reason.
+"""Transforms, rotations, screws, DH links, chains, Jacobians; tolerances with their reasons.
 
-Poses are compared in a unit of length that suits the robot.
+All is numpy on batches. Nothing here knows exercises or students.
 """
 
 from collections.abc import Sequence
@@ -12,6 +12,10 @@ from typing import Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+# --- Every tolerance of the kinematics, each with its reason
+#
+# Poses are compared in a unit of length that suits the robot.
+#
 # A product of twenty matrices in double precision has an error of about 1e-15; different choices of
 # a student differ by at least about 1e-4.
 
@@ -57,13 +61,11 @@ LARGEST_ANGLE: Final = 4.0
 LARGEST_LENGTH: Final = 1.5
 
 
-# Homogeneous transforms, for whole arrays at once.
+# --- Homogeneous transforms, for whole arrays at once
 #
 # Arguments are scalars or arrays that broadcast to one shape ``(...)``; results are ``(..., 4,
-# 4)``.
-# Angles are in radians.
-
-
+# 4)``. Angles are in radians.
+#
 # Lengths are in any one unit. Results are float64.
 
 
@@ -138,15 +140,14 @@ def is_rigid(transform: Matrices, tolerance: float) -> NDArray[np.bool_]:
     return np.asarray((np.maximum(error, last_row) < tolerance) & right_handed)
 
 
-# Screw axes, their exponentials and the product of exponentials.
+# --- Screw axes, their exponentials and the product of exponentials
 #
 # A screw axis is a six-vector (ω; v) with a unit vector ω along the axis and v = −ω × q + h ω,
-# where
-# q is a point on the axis and h the pitch. For a prismatic joint, ω is 0 and v is a unit vector.
+# where q is a point on the axis and h the pitch. For a prismatic joint, ω is 0 and v is a unit
+# vector.
 #
 # Source: Lynch and Park, *Modern Robotics*, chapters 3 and 4.
-
-
+#
 # All functions are batched: screw axes are (..., 6). A prismatic joint has infinite pitch. Angles
 # are in radians, lengths in any one unit. The source also uses the order (ω; v).
 
@@ -254,11 +255,10 @@ def product_in_body(screws: Numbers, amounts: Numbers, home: Matrices) -> Matric
     return np.asarray(home @ reduce(np.matmul, exponential(screws, amounts)))
 
 
-# Rotations about coordinate axes, and Euler angles.
+# --- Rotations about coordinate axes, and Euler angles
 #
 # A sequence names three axes, such as "ZYZ". Rotations are ``(..., 3, 3)``; angles are in radians.
-
-
+#
 # With moving axes, R = R_1(a_1) R_2(a_2) R_3(a_3). With fixed axes, R = R_3(a_3) R_2(a_2) R_1(a_1).
 # Triples of angles are (..., 3), in the order of the sequence.
 
@@ -372,7 +372,7 @@ def last_angle(sequence: str, first_two: Numbers, rotation: Matrices) -> Numbers
     return np.asarray(np.arctan2(rest[..., up, across], rest[..., across, across]))
 
 
-# Link transforms of the two Denavit-Hartenberg conventions, for whole arrays at once.
+# --- Link transforms of the two Denavit-Hartenberg conventions, for whole arrays at once
 #
 # Parameters are scalars or arrays that broadcast to one shape ``(...)``, with angles in radians.
 # Results are ``(..., 4, 4)``.
@@ -445,14 +445,13 @@ def link_transforms(
     return link(a, alpha, d, theta)
 
 
-# Check the two DH conditions of a transform, and find its DH row.
+# --- Check the two DH conditions of a transform, and find its DH row
 #
 # A transform has a DH row only if two axes are perpendicular (condition DH1) and meet (condition
 # DH2). The axes are x_1 and z_0 in the standard convention, x_0 and z_1 in the modified one.
 #
 # Source: Spong, Hutchinson, Vidyasagar, *Robot Modeling and Control*, §3.2.1.
-
-
+#
 # Also *Direct Kinematics (Part 2)*, §2.3. The inverse of a modified link transform is a standard
 # one with all four numbers negated, so one formula serves both.
 
@@ -508,12 +507,11 @@ def is_unreachable(transform: Matrices, length_scale: float) -> NDArray[np.bool_
     return np.asarray((tilt > PARALLEL) | (distance > PARALLEL * length_scale))
 
 
-# A serial chain as the alternating product X_0 Z_1 X_1 Z_2 X_2 … Z_m X_m.
+# --- A serial chain as the alternating product X_0 Z_1 X_1 Z_2 X_2 … Z_m X_m
 #
 # Here Z_i = Rot_z(θ_i) Trans_z(d_i) and X_i = Trans_x(a_i) Rot_x(α_i). A table is an array ``(rows,
 # 4, ...)`` with the columns a, α, d, θ; angles are in radians.
-
-
+#
 # The two factors of each Z_i and X_i commute. The standard table groups the product as (Z_1
 # X_1)(Z_2 X_2)…, the modified table as (X_0 Z_1)(X_1 Z_2)…. So converting a table means moving (a,
 # α) by one row, without solving any equation. Numbers and formulas are regrouped the same way. The
@@ -613,13 +611,12 @@ def pose(table: Table, convention: Convention) -> Matrices:
     return compound(links(table, convention))
 
 
-# The space Jacobian of a table, and its rank.
+# --- The space Jacobian of a table, and its rank
 #
 # Each column of the Jacobian is the screw (ω; v) of a joint: six numbers in the base frame.
 #
 # Source: Lynch and Park, *Modern Robotics*, §5.1.1, eq. 5.11.
-
-
+#
 # ω = z and v = −ω × o for a revolute joint with the axis z through o; ω = 0 and v = z for a
 # prismatic joint along z.
 #
@@ -677,14 +674,13 @@ def dependent(jacobian: Screws) -> NDArray[np.bool_]:
     return np.asarray((np.abs(null).max(axis=1) > np.sqrt(ZERO_SINGULAR_VALUE)).all(axis=0))
 
 
-# A table as a product of factors: alternating screw motions about x and z.
+# --- A table as a product of factors: alternating screw motions about x and z
 #
-# A screw motion is a shift along an axis and a turn about it. The factors are
-# X = Trans_x(a) Rot_x(α) and Z = Rot_z(θ) Trans_z(d).
+# A screw motion is a shift along an axis and a turn about it. The factors are X = Trans_x(a)
+# Rot_x(α) and Z = Rot_z(θ) Trans_z(d).
 #
 # Shapes: L samples, K factors; a table is ``(rows, 4, L)`` with the columns a, α, d, θ.
-
-
+#
 # Shift and turn of a factor commute. A standard table is Z_1 X_1 Z_2 X_2 …, a modified table X_0
 # Z_1 X_1 Z_2 …. The cells include the joint variables; angles are in radians. Axes are numbered: 0
 # is x, 2 is z.

@@ -1,10 +1,6 @@
-"""Find the correct table that is nearest to the student's table.
+"""Which DH rows describe the same robot: the correct table nearest to the student's table.
 
-Students may choose their own frames. The search goes from the base to the tool, and keeps only the
-best candidates.
-
-Shapes: H candidates, N ways to continue them, L samples; a row is ``(4, L)`` with the columns a, α,
-d, θ.
+A beam over the rows compares a student's chain of links with the reference, link by link.
 """
 
 from collections.abc import Sequence
@@ -39,13 +35,20 @@ from dh_grader.kinematics import (
     standard_link,
 )
 
-# Find all DH rows that lead from a frame to the next joint axis, or to the tool.
+# --- Find the correct table that is nearest to the student's table
 #
-# Shapes: H hypotheses, K candidates for each, L samples; rows are ``(..., 4, L)`` with the columns
-# a,
+# Students may choose their own frames. The search goes from the base to the tool, and keeps only
+# the best candidates.
+#
+# Shapes: H candidates, N ways to continue them, L samples; a row is ``(4, L)`` with the columns a,
 # α, d, θ.
 
 
+# --- Find all DH rows that lead from a frame to the next joint axis, or to the tool
+#
+# Shapes: H hypotheses, K candidates for each, L samples; rows are ``(..., 4, L)`` with the columns
+# a, α, d, θ.
+#
 # A row moves by Rot_z(θ) Trans_z(d) Trans_x(a) Rot_x(α). The next target is a transform relative to
 # the frame before the row. Its kind decides what the row must match: the line of a revolute axis,
 # the direction of a prismatic axis, or the whole frame of the tool. A value is called open if the
@@ -234,13 +237,12 @@ def _rows(a: Numbers, alpha: Numbers, d: Numbers, theta: Numbers) -> Numbers:
     return rows
 
 
-# Compare a student's chain of links with the reference solution, link by link.
+# --- Compare a student's chain of links with the reference solution, link by link
 #
 # The *relative pose* at a joint is the pose of the student's frame in the reference's frame there.
 #
 # Shapes: L samples; a row is ``(4, L)`` with the columns a, α, d, θ.
-
-
+#
 # A chain is T(q) = C_0 M_1(q_1) C_1 … M_n(q_n) C_n with constant links C_i. Two tables describe one
 # mechanism if and only if constant transforms g_i exist with C_i(written) = g_i⁻¹ C_i(reference)
 # g_{i+1}, where g_i keeps joint axis i (docs/frame-choice.md). So g_{i+1} follows from g_i and the
@@ -392,11 +394,10 @@ def joint_signs_of(pose: Matrices) -> NDArray[np.int_]:
     return np.where(pose[:, 0, 2, 2] > 0, 1, -1)
 
 
-# The inverse of a chain of links, which leads from the tool to the base.
+# --- The inverse of a chain of links, which leads from the tool to the base
 #
 # Shapes: L samples; cells are ``(rows, 4, ...)`` with the columns a, α, d, θ.
-
-
+#
 # The inverse of X_0 Z_1 X_1 … Z_m X_m is X_m⁻¹ Z_m⁻¹ … X_1⁻¹ Z_1⁻¹ X_0⁻¹, again an alternating
 # product of screw motions about x and z. Its row j is the product Z X of Z_{m+1−j}⁻¹ and X_{m−j}⁻¹;
 # the first row has no Z. Row j leads to the frame after Z_{m−j}, which is on the same axis as the
@@ -454,13 +455,12 @@ def reversed_targets(targets: Sequence[Target], offsets: Matrices) -> list[Targe
     return [*found, Target(TargetKind.OPEN, inverse(here))]
 
 
-# Keep track of the positions that a freely chosen frame 0 may still have.
+# --- Keep track of the positions that a freely chosen frame 0 may still have
 #
 # Frame 0 may be turned about the axis of joint 1 and moved along this axis.
 #
 # Shapes: N candidate rows, L samples; rows are ``(N, 4, L)`` with the columns a, α, d, θ.
-
-
+#
 # If joint 1 is prismatic, frame 0 may be moved anywhere. The choice has an effect only where the
 # chain first leaves the axis of joint 1. So the search keeps the freedom from row to row until a
 # row depends on it; this row uses it up.
@@ -834,11 +834,10 @@ def _distinct(is_same: NDArray[np.bool_], cost: Numbers) -> NDArray[np.int_]:
     return np.asarray(order[~is_again][:BEAM_WIDTH])
 
 
-# Move a chain of links so that its joint axes coincide with those of another chain.
+# --- Move a chain of links so that its joint axes coincide with those of another chain
 #
 # The joint axes are the z axes of frames ``(joints, L, 4, 4)``, where L is the number of samples.
-
-
+#
 # The base frame of a chain is free. Both chains have the same joint values. The rotation follows
 # from the directions of the axes, then the translation from their positions. If the axes do not
 # determine the transform (all are parallel, for example), one of the possible transforms is

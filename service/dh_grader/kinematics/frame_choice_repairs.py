@@ -1,8 +1,4 @@
-"""Repair the pose of a table by changing one or two cells.
-
-Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``. Lengths are in a unit that suits the
-robot; angles are in radians.
-"""
+"""Repair the pose or the axes of a table by other values of few cells, or of one row."""
 
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
@@ -30,6 +26,11 @@ from dh_grader.kinematics import (
     screws,
 )
 
+# --- Repair the pose of a table by changing one or two cells
+#
+# Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``. Lengths are in a unit that suits the
+# robot; angles are in radians.
+#
 # The pose is a product of factors, screws about x and z in turn (factors). If one factor alone is
 # wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S the product after it and T
 # the true pose. If F is a screw about that factor's axis, the shift and the turn of F are the right
@@ -183,12 +184,11 @@ def _shift_of_a(
     return shifts
 
 
-# Repair the pose of a table by changing one row.
+# --- Repair the pose of a table by changing one row
 #
 # Shapes: L samples; a pose is ``(L, 4, 4)``. Lengths are in a unit that suits the robot; angles are
 # in radians.
-
-
+#
 # The pose is a product of link transforms. If one row alone is wrong, it has to be A = P⁻¹ T S⁻¹,
 # where P is the product before it, S the product after it and T the true pose. If A is a link
 # transform, its four numbers are the right row. The unit of length lets one tolerance serve lengths
@@ -234,12 +234,11 @@ def _changed(values: Numbers, written: Numbers) -> NDArray[np.bool_]:
     return np.asarray(np.abs(error).max(axis=-1) >= SAME_POSE)
 
 
-# Repair the joint axes of a table by changing one cell.
+# --- Repair the joint axes of a table by changing one cell
 #
 # Shapes: L samples, K factors (``factors``), n joints. Lengths are in a unit that suits the robot;
 # angles are in radians.
-
-
+#
 # The base or the tool is free. If one cell is wrong, the factors before and after that cell's
 # factor form two rigid bodies with fixed joint axes. The pose of the first body is known from a
 # given frame 0, or from its own axes, which lie on the reference's axes. Then each axis of the

@@ -1,4 +1,4 @@
-"""Read the requests of platforms for links to exercises (LtiDeepLinkingRequest)."""
+"""Deep linking: a platform asks for links to exercises, and gets them signed."""
 
 import secrets
 from collections.abc import Iterable, Mapping
@@ -9,12 +9,16 @@ from typing import Any, Final
 import jwt
 from sqlalchemy import Connection, update
 
-from dh_grader.access import Secret, settle
+from dh_grader.access import Secret
+from dh_grader.access.keys import settle
+from dh_grader.lti import LtiError, LtiRole, Registration, unusable
 from dh_grader.lti.fetching import ensure_key, signing_key
 from dh_grader.lti.handed_files import KIND
 from dh_grader.lti.launch import LTI, LaunchMessage, LinkingTicket, check_deployment, known_context
-from dh_grader.lti.registrations import LtiError, LtiRole, Registration, unusable
 from dh_grader.store import tables
+
+# --- Read the requests of platforms for links to exercises (LtiDeepLinkingRequest)
+
 
 LINKING: Final = "https://purl.imsglobal.org/spec/lti-dl/claim/"
 LINK: Final = "ltiResourceLink"
@@ -90,7 +94,7 @@ def _notices_url(message: LaunchMessage) -> str:
     return url
 
 
-# The response to a deep linking message: links, signed with our key.
+# --- The response to a deep linking message: links, signed with our key
 
 
 # How long the platform may take to read the answer.

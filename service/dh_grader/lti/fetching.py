@@ -1,8 +1,4 @@
-"""Fetch data from a platform safely, because the address comes from outside.
-
-Only HTTPS and public addresses are allowed, and no redirect to another host. Every exchange ends
-after five seconds in all, however slowly the platform sends.
-"""
+"""Fetch from a platform safely, because the address comes from outside; keys of both sides."""
 
 import asyncio
 import json
@@ -40,11 +36,17 @@ from sqlalchemy import Connection, Row, delete, insert, select
 
 from dh_grader import VERSION
 from dh_grader.access import Secret
-from dh_grader.lti.registrations import LOCAL_HOSTS, LtiError, Registration, origin_of, unusable
+from dh_grader.lti import LOCAL_HOSTS, LtiError, Registration, origin_of, unusable
 from dh_grader.store.tables import own_keys
 from dh_grader.translations import say
 
-# Threads that wait for platforms, so that no other work waits with them.
+# --- Fetch data from a platform safely, because the address comes from outside
+#
+# Only HTTPS and public addresses are allowed, and no redirect to another host. Every exchange ends
+# after five seconds in all, however slowly the platform sends.
+
+
+# --- Threads that wait for platforms, so that no other work waits with them
 
 
 R = TypeVar("R")
@@ -80,9 +82,8 @@ class PlatformThreads:
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 
-# The keys with which this service signs messages to platforms, and their rotation.
-
-
+# --- The keys with which this service signs messages to platforms, and their rotation
+#
 # A new key is published for a day before it signs, because platforms memoize our keys.
 
 
@@ -508,7 +509,7 @@ def _look_up(host: str, found: "Future[list[str]]") -> None:
         found.set_exception(failure)
 
 
-# The public keys of platforms, memoized in this process.
+# --- The public keys of platforms, memoized in this process
 
 
 # How long keys are used without a look whether they are still there (seconds), and how long at

@@ -1,4 +1,4 @@
-"""The services of a platform's gradebook (AGS): send scores, and find or make columns."""
+"""The services of a platform's gradebook (AGS): columns, scores, and access tokens."""
 
 import json
 import re
@@ -17,6 +17,7 @@ import jwt
 from sqlalchemy import Connection, Engine, select, update
 
 from dh_grader.access import Secret
+from dh_grader.lti import LtiError, Registration, origin_of, short_value, unusable
 from dh_grader.lti.fetching import (
     FetchError,
     SigningKey,
@@ -26,7 +27,6 @@ from dh_grader.lti.fetching import (
     ensure_key,
     signing_key,
 )
-from dh_grader.lti.registrations import LtiError, Registration, origin_of, short_value, unusable
 from dh_grader.regex import regex
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import in_transaction, queue_scores
@@ -34,7 +34,7 @@ from dh_grader.store.tables import assignments, attempts, line_items, resource_l
 from dh_grader.translations import ENGLISH, Language, Sentence, SentenceValue, say, template
 from dh_grader.translations import told as told_in
 
-# Line items: the columns of a platform's gradebook, one for each resource link.
+# --- Line items: the columns of a platform's gradebook, one for each resource link
 
 
 AGS: Final = "https://purl.imsglobal.org/spec/lti-ags/scope/"
@@ -92,7 +92,7 @@ def max_points(connection: Connection, assignment: int) -> float:
     return float(round(sum(each["points"] for each in json.loads(text)), 6))
 
 
-# The reasons why a score did not reach a platform, as sentences for tutors.
+# --- The reasons why a score did not reach a platform, as sentences for tutors
 
 
 # By their names. Braces are places for values.
@@ -189,7 +189,7 @@ def _unpacked(values: Mapping[str, Any]) -> dict[str, SentenceValue]:
     }
 
 
-# Get access tokens from platforms (OAuth client credentials).
+# --- Get access tokens from platforms (OAuth client credentials)
 
 
 _ASSERTION: Final = "urn:ietf:params:oauth:client-assertion-type:jwt-bearer"
@@ -290,6 +290,9 @@ def seconds_to_wait(headers: Mapping[str, str]) -> float | None:
     """Return the seconds of the header ``Retry-After``, or None."""
     text = headers.get("retry-after", "")
     return float(text) if re.fullmatch(r"\d{1,9}", text, re.ASCII) else None
+
+
+# --- The services of a platform's gradebook (AGS): send scores, and find or make columns
 
 
 _SCORE: Final = "application/vnd.ims.lis.v1.score+json"

@@ -1,4 +1,4 @@
-"""Database functions: reports on handed-in files that did not reach a platform."""
+"""Files that students hand in at a platform: notices, the queue, grading, and reports."""
 
 import base64
 import hashlib
@@ -25,6 +25,14 @@ from dh_grader.catalogue.schema_fields import least
 from dh_grader.formats.graded import GradedSubmission
 from dh_grader.formats.local_grading import GradingTerms, graded
 from dh_grader.formats.texts import points, points_in_words
+from dh_grader.lti import (
+    NOTICES_PATH,
+    LtiError,
+    Registration,
+    deployments_of,
+    registration,
+    unusable,
+)
 from dh_grader.lti.fetching import TIMEOUT, FetchError, TooLargeError, answer, content
 from dh_grader.lti.grade_services import (
     AccessTokens,
@@ -45,22 +53,17 @@ from dh_grader.lti.launch import (
     signed_claims,
 )
 from dh_grader.lti.outbox import utc_now
-from dh_grader.lti.registrations import (
-    NOTICES_PATH,
-    LtiError,
-    Registration,
-    deployments_of,
-    registration,
-    unusable,
-)
 from dh_grader.regex import regex
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import in_transaction
 from dh_grader.store.tables import contexts, course_learners, handed_files
-from dh_grader.submissions.assignment import PASS_MARK, Assignment, assigned
+from dh_grader.submissions import PASS_MARK, Assignment, assigned
 from dh_grader.submissions.files import PASTED_ENDINGS, HandedFile, HandedIn, most_bytes
 from dh_grader.translations import ENGLISH, Language, language_named, say
 from dh_grader.translations import told as translations_told
+
+# --- Database functions: reports on handed-in files that did not reach a platform
+
 
 _OVERVIEW_OF: Final = handed_files.c
 # Waiting reports have a refusal, too, if they were tried in vain.
@@ -127,7 +130,7 @@ def missing_counts(connection: Connection) -> Mapping[str, int]:
     return {row.registration: row.number for row in rows}
 
 
-# Notices of platforms (Platform Notification Service) about files that were handed in.
+# --- Notices of platforms (Platform Notification Service) about files that were handed in
 
 
 HANDED_IN: Final = "LtiAssetProcessorSubmissionNotice"
@@ -262,7 +265,7 @@ def _text(value: Any, problem: str, **more: str) -> str:
     return value
 
 
-# The queue of submissions to grade; each submission is leased to one process.
+# --- The queue of submissions to grade; each submission is leased to one process
 
 
 # In ``Connection.info``: True if the transaction has queued files.
@@ -376,7 +379,7 @@ def files_of(
     return None
 
 
-# The services of platforms for handed-in files: notices, files (assets), and reports on them.
+# --- The services of platforms for handed-in files: notices, files (assets), and reports on them
 
 
 _SCOPE: Final = "https://purl.imsglobal.org/spec/lti/scope/"
@@ -486,7 +489,7 @@ def _checked(data: bytes, file: FileAtPlatform) -> bytes:
     return data
 
 
-# Grade the files of a submission, and write the reports on them.
+# --- Grade the files of a submission, and write the reports on them
 
 
 # The type of our reports, and how long what they say may be.
@@ -628,7 +631,7 @@ def _problem(found: GradedSubmission, name: str) -> str:
     )
 
 
-# Grade handed-in files, one submission after the other.
+# --- Grade handed-in files, one submission after the other
 
 
 _log = logging.getLogger(__name__)

@@ -1,4 +1,4 @@
-"""Describe this service to a platform: as a registration request, or as a file for Canvas."""
+"""How a platform joins: our description, invitations, registration, and a self-test."""
 
 import json
 import secrets
@@ -15,11 +15,7 @@ from sqlalchemy import Connection, insert, select, update
 
 from dh_grader.courses import CourseError, zone_named
 from dh_grader.formats.texts import visible
-from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, usable_keys
-from dh_grader.lti.grade_services import SEND, ScoreError, fetched_token
-from dh_grader.lti.handed_files import NOTICES, READ, REPORT
-from dh_grader.lti.launch import DEEP_LINKING, digest
-from dh_grader.lti.registrations import (
+from dh_grader.lti import (
     KEYS_PATH,
     LAUNCH_PATH,
     LOCAL_HOSTS,
@@ -33,8 +29,15 @@ from dh_grader.lti.registrations import (
     registration,
     unusable,
 )
+from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, usable_keys
+from dh_grader.lti.grade_services import SEND, ScoreError, fetched_token
+from dh_grader.lti.handed_files import NOTICES, READ, REPORT
+from dh_grader.lti.launch import DEEP_LINKING, digest
 from dh_grader.store.tables import invitations, registrations
 from dh_grader.translations import joined, say
+
+# --- Describe this service to a platform: as a registration request, or as a file for Canvas
+
 
 NAME: Final = "DH Grader"
 DESCRIPTION: Final = "Forward kinematics and Denavit-Hartenberg tables, graded at once."
@@ -126,11 +129,10 @@ def canvas_configuration(address: str, *, files: bool = False) -> dict[str, Any]
     }
 
 
-# Invitations: one-time links by which a platform registers itself.
+# --- Invitations: one-time links by which a platform registers itself
 #
 # The database has only a digest of the secret text in a link.
-
-
+#
 # The secret text begins with ``held-`` if the registration must wait for ``dh-grader lti allow``.
 # Nobody can remove ``held-``, because it is part of the digested text.
 
@@ -237,7 +239,7 @@ def allow(connection: Connection, registration_id: str) -> None:
     connection.execute(update(registrations).where(mine).values(any_deployment=True))
 
 
-# Dynamic registration: read a platform's configuration, and register this service there.
+# --- Dynamic registration: read a platform's configuration, and register this service there
 
 
 _PLATFORM: Final = "https://purl.imsglobal.org/spec/lti-platform-configuration"
@@ -360,7 +362,7 @@ def _messages(found: Mapping[str, Any]) -> dict[str, list[str]] | None:
     return messages
 
 
-# The self-test of a platform's registration: keys, clocks, access token and last launch.
+# --- The self-test of a platform's registration: keys, clocks, access token and last launch
 
 
 # The greatest difference of clocks (seconds): messages may come from ten seconds ahead.

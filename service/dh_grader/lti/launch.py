@@ -1,7 +1,4 @@
-"""Tickets: short-lived signed texts in a tutor's page, which prove what the launch has allowed.
-
-A page in a frame has no cookie; its forms send the ticket instead.
-"""
+"""A launch: tickets, logins, the check of its message, and the course that it opens."""
 
 import hmac
 import json
@@ -20,13 +17,13 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
 from dh_grader import courses
-from dh_grader.access import Scope, Secret, add_key, keys_at, new_key_text, settle
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key, keys_at, settle
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import CourseAssignment, NewAssignment, NewCourse
 from dh_grader.courses import CourseError
 from dh_grader.courses.assignments import add_assignment, assignment_of, pin_choices
-from dh_grader.lti.grade_services import ensure_line_item, try_refused_again
-from dh_grader.lti.registrations import (
+from dh_grader.lti import (
     LtiError,
     LtiRole,
     Registration,
@@ -35,11 +32,17 @@ from dh_grader.lti.registrations import (
     role_of,
     same_place,
 )
+from dh_grader.lti.grade_services import ensure_line_item, try_refused_again
 from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.tables import assignments, course_learners, launches
 from dh_grader.store.tables import courses as tables_courses
 from dh_grader.translations import say
+
+# --- Tickets: short-lived signed texts in a tutor's page, which prove what the launch has allowed
+#
+# A page in a frame has no cookie; its forms send the ticket instead.
+
 
 TICKETS_LIFETIME: Final = timedelta(hours=1)
 _TICKETS_ALGORITHM: Final = "HS256"
@@ -115,7 +118,7 @@ def _key(secret: Secret) -> bytes:
     return hmac.digest(secret.lti_secret, b"tickets", "sha256")
 
 
-# Logins of a platform's users; each login can be used once.
+# --- Logins of a platform's users; each login can be used once
 #
 # The database has only digests of a login's state, nonce and browser secret.
 
@@ -257,7 +260,7 @@ def digest(text: str) -> str:
     return sha256(text.encode(errors="replace")).hexdigest()
 
 
-# Check the messages of platforms (id tokens); each fault has its own code.
+# --- Check the messages of platforms (id tokens); each fault has its own code
 
 
 LTI: Final = "https://purl.imsglobal.org/spec/lti/claim/"
@@ -509,12 +512,11 @@ def _address(value: Any) -> str | None:
     return value if isinstance(value, str) and 0 < len(value) <= _LONGEST_ADDRESS else None
 
 
-# Find the course, the assignment and the learner of a launch, or make them.
+# --- Find the course, the assignment and the learner of a launch, or make them
 #
 # A context of the platform is a course here, a resource link is an assignment, and a user is a
 # learner.
-
-
+#
 # Everything is done on one connection, in the transaction that uses up the login.
 
 

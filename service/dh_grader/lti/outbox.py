@@ -1,7 +1,4 @@
-"""The queue of scores to send; each score is leased to one process.
-
-If a process dies, its lease ends, and another process sends the score again.
-"""
+"""Scores on their way to platforms: the queue, the message, and the thread that sends."""
 
 import json
 import logging
@@ -34,6 +31,7 @@ from dh_grader.contract.courses import PlatformScore, SendAgainRequest
 from dh_grader.courses import place_of
 from dh_grader.courses.assignments import assignment_of
 from dh_grader.courses.gradebook import SHARE
+from dh_grader.lti import Registration, registration
 from dh_grader.lti.grade_services import (
     AccessTokens,
     Column,
@@ -46,7 +44,6 @@ from dh_grader.lti.grade_services import (
     available_key,
     told,
 )
-from dh_grader.lti.registrations import Registration, registration
 from dh_grader.store.database import FORGOTTEN, QUEUED, Priority, in_transaction
 from dh_grader.store.tables import (
     assignments,
@@ -59,7 +56,12 @@ from dh_grader.store.tables import (
 )
 from dh_grader.translations import ENGLISH, Language
 
-# Threads that send what is queued in the database.
+# --- The queue of scores to send; each score is leased to one process
+#
+# If a process dies, its lease ends, and another process sends the score again.
+
+
+# --- Threads that send what is queued in the database
 
 
 _sending_log = logging.getLogger(__name__)
@@ -126,7 +128,7 @@ class BackgroundSending:
             self._wake.wait(seconds)
 
 
-# Database functions: list a course's scores for tutors, and queue scores again.
+# --- Database functions: list a course's scores for tutors, and queue scores again
 
 
 def scores_of(
@@ -225,7 +227,7 @@ def _chosen(course: str, wanted: SendAgainRequest) -> ColumnElement[bool]:
     return and_(chosen)
 
 
-# Compute a learner's score in an assignment, and make the message that sends it to a platform.
+# --- Compute a learner's score in an assignment, and make the message that sends it to a platform
 
 
 _CANVAS: Final = "https://canvas.instructure.com/lti/submission"
@@ -540,9 +542,8 @@ def _is(line_item: int, learner: str) -> Any:
     return (scores.c.line_item == line_item) & (scores.c.learner == learner)
 
 
-# Send queued scores to platforms, one after the other.
-
-
+# --- Send queued scores to platforms, one after the other
+#
 # Several processes may send.
 
 

@@ -1,4 +1,4 @@
-"""Read the members of a course from its platform, page by page."""
+"""The members of a course from its platform, page by page, and what they change here."""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -14,10 +14,7 @@ from sqlalchemy import Connection, Row, bindparam, delete, select, update
 from dh_grader.access import Secret
 from dh_grader.contract.courses import MOST_LEARNERS
 from dh_grader.formats.texts import visible
-from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, ensure_key, signing_key
-from dh_grader.lti.grade_services import ScoreError, fetched_token
-from dh_grader.lti.launch import pseudonym, pseudonymous_name
-from dh_grader.lti.registrations import (
+from dh_grader.lti import (
     LtiError,
     LtiRole,
     Registration,
@@ -26,10 +23,16 @@ from dh_grader.lti.registrations import (
     role_of,
     unusable,
 )
+from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, ensure_key, signing_key
+from dh_grader.lti.grade_services import ScoreError, fetched_token
+from dh_grader.lti.launch import pseudonym, pseudonymous_name
 from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.tables import course_learners
 from dh_grader.translations import say
+
+# --- Read the members of a course from its platform, page by page
+
 
 SCOPE: Final = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly"
 _MEDIA_TYPE: Final = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json"
@@ -140,7 +143,7 @@ def _full(role: str) -> str:
     return f"http://purl.imsglobal.org/vocab/lis/v2/membership#{role}" if is_short else role
 
 
-# Update the learners of a course from the roster (list of members) of its platform.
+# --- Update the learners of a course from the roster (list of members) of its platform
 
 
 class RosterError(Exception):

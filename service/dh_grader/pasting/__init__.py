@@ -12,16 +12,14 @@ from typing import Final
 
 from dh_grader.pasting import latex
 from dh_grader.pasting.around import (
-    without_docstrings,
-    without_fence,
-    without_pictures,
-    without_titles,
-)
-from dh_grader.pasting.given_values import (
     ASSIGNMENT,
     check_script,
     without_definitions,
+    without_docstrings,
+    without_fence,
     without_given_values,
+    without_pictures,
+    without_titles,
     without_tuples,
 )
 from dh_grader.pasting.latex import FORMAT as LATEX
@@ -33,6 +31,7 @@ from dh_grader.pasting.matrices import (
     MATLAB_ROWS,
     WORD,
     identity,
+    list_lines,
 )
 from dh_grader.pasting.named_columns import (
     describes_columns,
@@ -44,7 +43,6 @@ from dh_grader.pasting.program import (
     MAKERS,
     TAIL,
     RobotTable,
-    lines_of,
     session_outputs,
     with_own_symbols,
     without_function,
@@ -109,7 +107,7 @@ __all__ = [
 ]
 
 
-# All formats of grids, in the order in which they are tried.
+# --- All formats of grids, in the order in which they are tried
 
 
 # Formats with sure signs (tags, commands, brackets) come first, then separators, then blanks.
@@ -240,7 +238,7 @@ def _format_of(source: SourceText) -> GridFormat | None:
     return None
 
 
-# Several matrices in one pasted text, each with the name before it.
+# --- Several matrices in one pasted text, each with the name before it
 #
 # The text may be ``A1 = […]`` above ``A2 = […]``, a list of matrices, or LaTeX with several
 # environments.
@@ -405,4 +403,4 @@ def _is_matrix(group: SourceText) -> bool:
     maker = group.text[: len(group.text) - len(content.text) - 2].strip().rpartition(".")[2]
     if maker:
         return maker in MAKERS
-    return len(split(content, ";")) > 1 or lines_of(content) is not None
+    return len(split(content, ";")) > 1 or list_lines(content) is not None

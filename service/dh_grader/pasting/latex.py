@@ -291,7 +291,7 @@ def _without_sizes(cell: SourceText) -> SourceText:
 FORMAT: Final = GridFormat(_matches, _parse)
 
 
-# Several matrices in one LaTeX text, each with its name: ``A_1 = \begin{bmatrix} … A_2 = …``.
+# --- Several matrices in one LaTeX text, each with its name: ``A_1 = \begin{bmatrix} … A_2 = …``
 
 
 _CLOSERS: Final = regex(r"(?:[ \t]|\\(?:right|[bB]igg?r?)\s?\\?[\])}.]|[\])}])*")

@@ -1,23 +1,24 @@
-"""The identity matrix by its name: ``eye(4)``, ``np.identity(3)``, ``I_4``, or only ``I``."""
+"""Matrices in pasted texts: one reader for each format, from Word to lists of lists."""
 
 import re
 from itertools import pairwise, zip_longest
 from typing import Final
 
 from dh_grader.expressions.errors import Note
-from dh_grader.pasting import program
 from dh_grader.pasting.program import (
     TAIL,
     WrittenMatrix,
     after_names,
     begins_as_matrix,
     text_around,
+    unquoted,
     unwrap,
     without_harmless_lines,
     without_remarks,
 )
 from dh_grader.pasting.source import (
     CLOSES,
+    GRID_LIMITS,
     Grid,
     GridError,
     GridFormat,
@@ -28,9 +29,14 @@ from dh_grader.pasting.source import (
     pairs,
     split,
     split_blanks,
+    strict_pairs,
+    too_many_rows,
 )
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- The identity matrix by its name: ``eye(4)``, ``np.identity(3)``, ``I_4``, or only ``I``
+
 
 # The format of a matrix whose text does not say its size. It has the most rows that are asked for.
 ANY_SIZE: Final = "identity-of-any-size"
@@ -64,11 +70,10 @@ def identity(source: SourceText) -> Grid | None:
     return Grid("identity" if stated else ANY_SIZE, tuple(map(tuple, cells)))
 
 
-# Matrices as Word writes them in one line: ``T=[■(a&b@c&d)]``, also ``■8(…)``, ``\matrix(…)``.
+# --- Matrices as Word writes them in one line: ``T=[■(a&b@c&d)]``, also ``■8(…)``, ``\matrix(…)``
 #
 # The sign @ separates rows and & separates values.
-
-
+#
 # Source: M. Sargent, UnicodeMath, Unicode Technical Note 28.
 
 
@@ -141,7 +146,7 @@ def _check_around(front: SourceText, rest: SourceText) -> None:
 WORD: Final = GridFormat(_word_matches, _word_parse)
 
 
-# Maple's matrices in angle brackets: by rows <<a|b>, <c|d>>, by columns <<a, c>|<b, d>>.
+# --- Maple's matrices in angle brackets: by rows <<a|b>, <c|d>>, by columns <<a, c>|<b, d>>
 
 
 _MAPLE_MATRIX: Final = regex(
@@ -168,7 +173,7 @@ def _maple_parse(source: SourceText) -> Grid:
 MAPLE: Final = GridFormat(lambda text: _maple_found(text) is not None, _maple_parse)
 
 
-# Matrices of Eigen in C++: ``R << 1, 0, 0, 1;``, with or without the declaration of ``R``.
+# --- Matrices of Eigen in C++: ``R << 1, 0, 0, 1;``, with or without the declaration of ``R``
 
 
 _COMMENT: Final = regex(r"//[^\n]*")
@@ -200,9 +205,9 @@ def _eigen_parse(source: SourceText) -> Grid:
     width = found["size"] or found["columns"] or found["width"]
     if height:
         # Eigen fills row by row, wherever the lines end.
-        rows = program.flat(content, WrittenMatrix((), shape=(int(height), int(width))))
+        rows = _flat_list(content, WrittenMatrix((), shape=(int(height), int(width))))
     else:
-        rows = program.rows([line for line in content.lines() if line.text.strip()])
+        rows = _list_rows([line for line in content.lines() if line.text.strip()])
     return grid("Eigen", rows, source.whole)
 
 
@@ -211,11 +216,10 @@ EIGEN: Final = GridFormat(
 )
 
 
-# Matrices drawn over several lines: SymPy's and Octave's ⎡…⎤, Maxima's [ … ], MATLAB's / … \.
+# --- Matrices drawn over several lines: SymPy's and Octave's ⎡…⎤, Maxima's [ … ], MATLAB's / … \
 #
 # A row is one line, followed by an empty line of the drawing. A matrix whose cells take several
-# lines
-# (powers, fractions) is refused.
+# lines (powers, fractions) is refused.
 
 
 _PIECES: Final = frozenset("⎡⎢⎣⎤⎥⎦⎛⎜⎝⎞⎟⎠⎧⎨⎩⎫⎬⎭")
@@ -275,7 +279,7 @@ def _refusal(line: SourceText) -> GridError:
 DRAWN_MATRIX: Final = GridFormat(_drawn_matrix_matches, _drawn_matrix_parse)
 
 
-# Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks.
+# --- Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks
 
 
 def rows_in_matlab(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
@@ -349,7 +353,7 @@ def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceTex
     )
 
 
-# MATLAB rows without brackets: each line ends with a semicolon.
+# --- MATLAB rows without brackets: each line ends with a semicolon
 
 
 def _matlab_rows_matches(text: str) -> bool:
@@ -366,7 +370,7 @@ def _matlab_rows_parse(source: SourceText) -> Grid:
 MATLAB_ROWS: Final = GridFormat(_matlab_rows_matches, _matlab_rows_parse)
 
 
-# Matrices in brackets: MATLAB's, and lists of lists from Python, NumPy, SymPy and JSON.
+# --- Matrices in brackets: MATLAB's, and lists of lists from Python, NumPy, SymPy and JSON
 
 
 # Functions of MATLAB that may enclose a matrix; "" if there is none.
@@ -391,16 +395,16 @@ def _bracketed_matches(text: str) -> bool:
 
 def _bracketed_parse(source: SourceText) -> Grid:
     if in_brackets := _lines(source):
-        return grid("brackets", program.rows(in_brackets), source.whole)
+        return grid("brackets", _list_rows(in_brackets), source.whole)
     matrix = unwrap(source)
     notes: tuple[Note, ...] = ()
     if len(matrix.groups) == 1:
         [content] = matrix.groups
-        lines = program.lines_of(content)
+        lines = list_lines(content)
         if lines is not None:
-            rows = program.rows(lines)
+            rows = _list_rows(lines)
         elif matrix.maker not in _MATLAB_FUNCTIONS and ";" not in content.text:
-            rows = program.flat(content, matrix)
+            rows = _flat_list(content, matrix)
         else:
             rows, notes = rows_in_matlab(content)
     else:
@@ -408,10 +412,10 @@ def _bracketed_parse(source: SourceText) -> Grid:
         for group in matrix.groups:
             if any(letter in ";\n" for letter in group.text):
                 raise text_around(matrix.groups[1])
-        rows = program.rows(list(matrix.groups))
+        rows = _list_rows(list(matrix.groups))
     _refuse_objects(rows)
-    unquoted = [[program.unquoted(cell.strip()) for cell in row] for row in rows]
-    return grid("brackets", unquoted, source.whole, notes)
+    values = [[unquoted(cell.strip()) for cell in row] for row in rows]
+    return grid("brackets", values, source.whole, notes)
 
 
 def _refuse_objects(rows: list[list[SourceText]]) -> None:
@@ -430,3 +434,83 @@ def _refuse_objects(rows: list[list[SourceText]]) -> None:
 
 
 BRACKETED: Final = GridFormat(_bracketed_matches, _bracketed_parse)
+
+
+# --- Lists of lists from Python, NumPy (also printed arrays), SymPy's Matrix([[…]]), and JSON
+
+
+_BETWEEN: Final = " \t\r\n,;"
+_COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMatrix"})
+
+
+def list_lines(content: SourceText) -> list[SourceText] | None:
+    """Return the text in each inner bracket of a list of lists; None for any other text.
+
+    Raises GridError for unbalanced brackets, and for too many brackets.
+    """
+    ends = strict_pairs(content)
+    text = content.text
+    lines: list[SourceText] = []
+    i = 0
+    while i < len(text):
+        if text[i] in CLOSES:
+            line = content.cut(i + 1, ends[i] - 1)
+            # (a + b), (c + d) are values in round brackets; (a, b), (c, d) are rows.
+            if text[i] == "(" and len(split(line, ",")) == 1:
+                return None
+            if len(lines) > GRID_LIMITS.rows:
+                raise too_many_rows(content.whole)
+            lines.append(line)
+            i = ends[i]
+        elif text[i] in _BETWEEN:
+            i += 1
+        else:
+            return None
+    return lines or None
+
+
+def _list_rows(lines: list[SourceText]) -> list[list[SourceText]]:
+    """Split each line into values at commas, or at blanks if it has no comma.
+
+    Raises GridError for a list of matrices.
+    """
+    found = []
+    for line in lines:
+        if line.text.lstrip()[:1] in {"[", "{"} and list_lines(line):
+            message = say("This is a list of matrices or tables; paste one of them.")
+            raise GridError("nested_too_deep", message, line.whole)
+        found.append(_values(line))
+    return found
+
+
+def _flat_list(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
+    """Return the rows of a matrix made from a flat list, as by SymPy's ``Matrix(2, 2, […])``.
+
+    Raises GridError if the number of values does not fit the shape.
+    """
+    # Without a shape, SymPy makes a column and NumPy a row.
+    values = _values(content)
+    if matrix.shape is None:
+        return [[value] for value in values] if matrix.maker in _COLUMN_MAKERS else [values]
+    height, width = matrix.shape
+    if height * width != len(values):
+        count = height * width
+        message = say(
+            "A {rows} × {columns} matrix has {number} values; yours has {found}.",
+            rows=height,
+            columns=width,
+            number=count,
+            found=len(values),
+        )
+        raise GridError("wrong_count", message, content.whole)
+    return [values[i * width : (i + 1) * width] for i in range(height)]
+
+
+def _values(line: SourceText) -> list[SourceText]:
+    pieces = split(line, ",")
+    if len(pieces) == 1:
+        # NumPy prints its arrays with blanks.
+        return list(split_blanks(line).elements)
+    if not pieces[-1].text.strip():
+        pieces.pop()
+    return pieces

@@ -1,9 +1,4 @@
-"""Read a DH table that is written as dictionaries in Python, or as objects in JSON.
-
-A list may hold one dictionary for each row: ``[{'a': a1, 'alpha': 0, …}, dict(a=a2, …)]``. A single
-dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, or single
-parameters, ``{alpha0: 0, a0: 0, d1: 0.75, …}``. Four named lists are read, too: ``a = [l1, l2]``.
-"""
+"""Tables of dictionaries or objects, and what robotics toolboxes print for a robot."""
 
 import re
 from collections.abc import Mapping
@@ -40,12 +35,19 @@ from dh_grader.pasting.source import (
 from dh_grader.regex import regex
 from dh_grader.translations import say, say_count
 
-# Read the table that P. Corke's Robotics Toolboxes print for a robot, in MATLAB and in Python.
+# --- Read a DH table that is written as dictionaries in Python, or as objects in JSON
+#
+# A list may hold one dictionary for each row: ``[{'a': a1, 'alpha': 0, …}, dict(a=a2, …)]``. A
+# single dictionary holds columns, ``{'a': [a1, a2], 'alpha': […], 'd': […], 'theta': […]}``, or
+# single parameters, ``{alpha0: 0, a0: 0, d1: 0.75, …}``. Four named lists are read, too: ``a = [l1,
+# l2]``.
+
+
+# --- Read the table that P. Corke's Robotics Toolboxes print for a robot, in MATLAB and in Python
 #
 # The first line names the convention: ``arm:: 3 axis, RRR, stdDH, slowRNE`` or ``DHRobot: arm, 3
 # joints (RRR), standard DH parameters``.
-
-
+#
 # Angles without a unit are in radians.
 
 

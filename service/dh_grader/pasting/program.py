@@ -1,7 +1,6 @@
-"""Names of a script for symbols with other names: ``t1 = symbols('theta1')``.
+"""The text of programs around an answer: statements, titles, sessions, later uses.
 
-The symbols are those of the exercise, so each name is replaced by its symbol wherever it stands.
-Declarations without another name, such as ``q1, q2 = symbols('q1 q2')``, are left to the readers.
+Programs are never run; they are cut into statements with the place of each character.
 """
 
 import re
@@ -19,12 +18,17 @@ from dh_grader.pasting.source import (
     joined,
     once,
     split,
-    split_blanks,
     strict_pairs,
     too_many_rows,
 )
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- Names of a script for symbols with other names: ``t1 = symbols('theta1')``
+#
+# The symbols are those of the exercise, so each name is replaced by its symbol wherever it stands.
+# Declarations without another name, such as ``q1, q2 = symbols('q1 q2')``, are left to the readers.
+
 
 _RENAMED_SYMBOLS_NAME: Final = r"[A-Za-z_θα]\w{0,30}"
 _DECLARES: Final = regex(
@@ -141,7 +145,7 @@ def _uncertain(source: SourceText, declaration: re.Match[str]) -> GridError:
     return GridError("given_value", message, line.whole)
 
 
-# Remove the style of names before values: ``- **T** =``, ``\boxed{T = …}``, ``T matrix``.
+# --- Remove the style of names before values: ``- **T** =``, ``\boxed{T = …}``, ``T matrix``
 
 
 _STYLED_NAMES_NAME: Final = r"\\?[^\W\d]\w{0,11}(?:\{\w{1,6}\})?"
@@ -224,11 +228,10 @@ def _named_matrices(source: SourceText) -> SourceText:
     return joined([*pieces, source.cut(start, len(source.text))], source.at) if pieces else source
 
 
-# Read the outputs of an interpreter session.
+# --- Read the outputs of an interpreter session
 #
 # Prompts and labels of outputs are ``>> A1``, ``Out[3]//MatrixForm=``, ``(%o4)`` and the like.
-
-
+#
 # Inputs that have no output are kept, too.
 
 
@@ -299,7 +302,7 @@ def _without_continuation(statement: SourceText) -> SourceText:
     return joined(statement.split(_CONTINUED), statement.at)
 
 
-# Remove the program text around a matrix: comments, line continuations, assignments, calls.
+# --- Remove the program text around a matrix: comments, line continuations, assignments, calls
 
 
 # Functions that make a matrix of their argument without changing its values.
@@ -646,7 +649,7 @@ def text_around(piece: SourceText) -> GridError:
     return GridError("text_around", message, piece.span(0, len(piece.text)))
 
 
-# Split a script in MATLAB or Python into statements and calls.
+# --- Split a script in MATLAB or Python into statements and calls
 
 
 _ENDS: Final = ";,\n\r\x85\u2028\u2029"
@@ -742,12 +745,11 @@ def excerpt(source: SourceText) -> str:
     return text if len(text) <= _SCRIPT_SHOWN else text[: _SCRIPT_SHOWN - 1] + "…"
 
 
-# Statements of a script that only use its DH table, such as ``T1 = dh(DH(1,:));`` below it.
+# --- Statements of a script that only use its DH table, such as ``T1 = dh(DH(1,:));`` below it
 #
 # Nothing is run. A statement is left out only if it cannot change the table, its units or its
 # order.
-
-
+#
 # The table and its rows may be arguments, but never a part of a calculation. An element, such as
 # DH(1,2), could tell that the columns have another order, and so could the name of a parameter.
 
@@ -963,88 +965,10 @@ def _is_argument(text: str, table: str, rows: set[str]) -> bool:
     return True
 
 
-# Lists of lists from Python, NumPy (also printed arrays), SymPy's Matrix([[…]]), and JSON.
-
-
-_BETWEEN: Final = " \t\r\n,;"
 # A character in UTF-16, of one or two units, or an escaped punctuation mark.
 _ESCAPE: Final = regex(
     r"\\(?:(u[dD][89abAB][0-9A-Fa-f]{2}\\u[dD][c-fC-F][0-9A-Fa-f]{2}|u[0-9A-Fa-f]{4})|([\\\"'/]))"
 )
-_COLUMN_MAKERS: Final = frozenset({"Matrix", "ImmutableMatrix", "MutableDenseMatrix"})
-
-
-def lines_of(content: SourceText) -> list[SourceText] | None:
-    """Return the text in each inner bracket of a list of lists; None for any other text.
-
-    Raises GridError for unbalanced brackets, and for too many brackets.
-    """
-    ends = strict_pairs(content)
-    text = content.text
-    lines: list[SourceText] = []
-    i = 0
-    while i < len(text):
-        if text[i] in CLOSES:
-            line = content.cut(i + 1, ends[i] - 1)
-            # (a + b), (c + d) are values in round brackets; (a, b), (c, d) are rows.
-            if text[i] == "(" and len(split(line, ",")) == 1:
-                return None
-            if len(lines) > GRID_LIMITS.rows:
-                raise too_many_rows(content.whole)
-            lines.append(line)
-            i = ends[i]
-        elif text[i] in _BETWEEN:
-            i += 1
-        else:
-            return None
-    return lines or None
-
-
-def rows(lines: list[SourceText]) -> list[list[SourceText]]:
-    """Split each line into values at commas, or at blanks if it has no comma.
-
-    Raises GridError for a list of matrices.
-    """
-    found = []
-    for line in lines:
-        if line.text.lstrip()[:1] in {"[", "{"} and lines_of(line):
-            message = say("This is a list of matrices or tables; paste one of them.")
-            raise GridError("nested_too_deep", message, line.whole)
-        found.append(_values(line))
-    return found
-
-
-def flat(content: SourceText, matrix: WrittenMatrix) -> list[list[SourceText]]:
-    """Return the rows of a matrix made from a flat list, as by SymPy's ``Matrix(2, 2, […])``.
-
-    Raises GridError if the number of values does not fit the shape.
-    """
-    # Without a shape, SymPy makes a column and NumPy a row.
-    values = _values(content)
-    if matrix.shape is None:
-        return [[value] for value in values] if matrix.maker in _COLUMN_MAKERS else [values]
-    height, width = matrix.shape
-    if height * width != len(values):
-        count = height * width
-        message = say(
-            "A {rows} × {columns} matrix has {number} values; yours has {found}.",
-            rows=height,
-            columns=width,
-            number=count,
-            found=len(values),
-        )
-        raise GridError("wrong_count", message, content.whole)
-    return [values[i * width : (i + 1) * width] for i in range(height)]
-
-
-def _values(line: SourceText) -> list[SourceText]:
-    pieces = split(line, ",")
-    if len(pieces) == 1:
-        # NumPy prints its arrays with blanks.
-        return list(split_blanks(line).elements)
-    if not pieces[-1].text.strip():
-        pieces.pop()
-    return pieces
 
 
 def unquoted(cell: SourceText) -> SourceText:

@@ -1,9 +1,4 @@
-"""Read one link of a robotics toolbox as a row of four DH parameters.
-
-The links are ``Link``, ``Revolute`` and ``Prismatic`` (Robotics Toolbox for MATLAB), ``DHLink``,
-``RevoluteDH`` and similar classes (Robotics Toolbox for Python), and vectors (both of MATLAB's
-toolboxes).
-"""
+"""Scripts for robotics toolboxes: links, named values, and the DH table of the robot."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence, Sized
@@ -13,7 +8,7 @@ from typing import Final
 
 from dh_grader.expressions.errors import Note
 from dh_grader.pasting import matrices
-from dh_grader.pasting.given_values import GivenValue, given_numbers_note
+from dh_grader.pasting.around import GivenValue, given_numbers_note
 from dh_grader.pasting.program import (
     RobotTable,
     arguments,
@@ -35,6 +30,13 @@ from dh_grader.pasting.source import (
 )
 from dh_grader.regex import regex
 from dh_grader.translations import say, say_count
+
+# --- Read one link of a robotics toolbox as a row of four DH parameters
+#
+# The links are ``Link``, ``Revolute`` and ``Prismatic`` (Robotics Toolbox for MATLAB), ``DHLink``,
+# ``RevoluteDH`` and similar classes (Robotics Toolbox for Python), and vectors (both of MATLAB's
+# toolboxes).
+
 
 PARAMETERS: Final = ("a", "alpha", "d", "theta")
 
@@ -340,7 +342,7 @@ def _is_zero(value: SourceText) -> bool:
     return _ZERO.fullmatch(value.text) is not None
 
 
-# The values of names in a script for a robot: links, matrices and numbers.
+# --- The values of names in a script for a robot: links, matrices and numbers
 
 
 # A name, one of its elements, or all of them: L, L(2), L{2}, L[1], L(:), DH(2,:).
@@ -544,12 +546,11 @@ def too_many_robots(source: SourceText) -> GridError:
     )
 
 
-# Read a script for a robotics toolbox as the DH table of its robot.
+# --- Read a script for a robotics toolbox as the DH table of its robot
 #
 # The script may use ``SerialLink`` and links in MATLAB, ``DHRobot`` and links in Python, or joints
 # with ``setFixedTransform``. Nothing is run. A script whose table is not certain is refused.
-
-
+#
 # Lines that only show or move the robot are ignored. Sources: P. Corke, Robotics Toolbox for
 # MATLAB, ``Link`` and ``SerialLink``; Robotics Toolbox for Python, ``DHRobot``; MathWorks, Robotics
 # System Toolbox, ``rigidBodyJoint/setFixedTransform``.

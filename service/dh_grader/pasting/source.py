@@ -1,4 +1,7 @@
-"""Search a pasted text for the same thing only once, though several formats ask for it."""
+"""A piece of text that knows where its characters were typed, cut into cells and pairs.
+
+It has the grid, the limits on its size, and the protocol of all formats.
+"""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -15,6 +18,9 @@ from dh_grader.expressions.vocabulary import SPELLINGS
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 from dh_grader.translations import say
+
+# --- Search a pasted text for the same thing only once, though several formats ask for it
+
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -70,7 +76,7 @@ def once(search: Callable[[str], R]) -> Callable[[str], R]:
     return searches
 
 
-# A piece of text that knows where each of its characters was typed.
+# --- A piece of text that knows where each of its characters was typed
 
 
 _LINE_END: Final = regex("\r\n|[\r\n\x85\u2028\u2029]")
@@ -171,7 +177,7 @@ def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
     )
 
 
-# Tags and entities of HTML in a cell of Markdown: ``&theta;<sub>1</sub>`` is ``θ_{1}``.
+# --- Tags and entities of HTML in a cell of Markdown: ``&theta;<sub>1</sub>`` is ``θ_{1}``
 
 
 _MARKUP: Final = regex(
@@ -205,7 +211,7 @@ def _plain(found: re.Match[str]) -> str:
     return inner if inner == "*" else f"^({inner})"
 
 
-# The limits on the size of a pasted text.
+# --- The limits on the size of a pasted text
 
 
 @dataclass(frozen=True, slots=True)
@@ -227,7 +233,7 @@ class GridLimits:
 GRID_LIMITS = GridLimits()
 
 
-# The grid that is read from a pasted text, and the protocol of all formats.
+# --- The grid that is read from a pasted text, and the protocol of all formats
 
 
 GridCell = SourceText
@@ -400,7 +406,7 @@ def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
     return rows
 
 
-# Find pairs of brackets and quotes. A separator inside a pair does not split a cell.
+# --- Find pairs of brackets and quotes. A separator inside a pair does not split a cell
 
 
 Ends = Mapping[int, int]
@@ -552,11 +558,10 @@ def split(source: SourceText, separators: str) -> list[SourceText]:
     return [source.cut(a + 1, b) for a, b in pairwise([-1, *places, len(text)])]
 
 
-# Split a row into elements at blanks, by MATLAB's rule for square brackets.
+# --- Split a row into elements at blanks, by MATLAB's rule for square brackets
 #
 # A sign with a blank before it but not after it begins a new element: ``[c1 -s1]`` has two
-# elements,
-# ``[c1 - s1]`` has one.
+# elements, ``[c1 - s1]`` has one.
 
 
 _BLANKS_SIGNS: Final = "+-−–"
@@ -624,7 +629,7 @@ def _words(text: str) -> Iterator[tuple[int, int]]:
             yield a + 1, b
 
 
-# Remove a separator after the last cell of a row, which separates nothing.
+# --- Remove a separator after the last cell of a row, which separates nothing
 
 
 _LINE_ENDS_SIGNS: Final = "\t;,"

@@ -1,8 +1,4 @@
-"""Decimal commas in a grid whose cells are separated by other signs: ``0,1625;90°;0,4``.
-
-Spreadsheets of most European countries write numbers so. A comma is never guessed to be a decimal
-comma: each comma after a digit must be one, and at least one number must have no other meaning.
-"""
+"""Tables in pasted texts: one reader for each format, from CSV to HTML and data frames."""
 
 import itertools
 import re
@@ -33,6 +29,12 @@ from dh_grader.pasting.source import (
 )
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- Decimal commas in a grid whose cells are separated by other signs: ``0,1625;90°;0,4``
+#
+# Spreadsheets of most European countries write numbers so. A comma is never guessed to be a decimal
+# comma: each comma after a digit must be one, and at least one number must have no other meaning.
+
 
 _NUMBER: Final = regex(r"(?<![\w.,])\d{1,15},\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII)
 # A number whose comma may stand between thousands: 1,000 or 12,500.
@@ -110,7 +112,7 @@ def _with_points(cell: GridCell) -> GridCell:
     return replace(cell, text="".join(letters))
 
 
-# Cells one below the other, as PDF readers and chats copy a table: each line is one cell.
+# --- Cells one below the other, as PDF readers and chats copy a table: each line is one cell
 
 
 _HEADER: Final = regex(
@@ -140,7 +142,7 @@ def _stacked_parse(source: SourceText) -> Grid:
 STACKED: Final = GridFormat(lambda text: bool(_stacked_rows(SourceText.of(text))), _stacked_parse)
 
 
-# Rows whose values have names: ``Link 1: a = l1, alpha = 90°, d = 0, theta = q1``.
+# --- Rows whose values have names: ``Link 1: a = l1, alpha = 90°, d = 0, theta = q1``
 #
 # The values may also be below each other, as in YAML, or arguments: ``DH('a', l1, 'alpha', 0, …)``.
 
@@ -290,9 +292,8 @@ def _named_values_matches(text: str) -> bool:
 NAMED_VALUES: Final = GridFormat(_named_values_matches, _named_values_parse)
 
 
-# HTML: the source of a table on a web page.
-
-
+# --- HTML: the source of a table on a web page
+#
 # This file has its own scanner, because html.parser does not give each character's place in the
 # pasted text, and does not take linear time for every text.
 
@@ -480,7 +481,7 @@ def _end_cell(source: SourceText, table: _Table) -> None:
 HTML: Final = GridFormat(_html_matches, _html_parse)
 
 
-# Cells between vertical bars: tables in Markdown and MediaWiki, and drawn tables.
+# --- Cells between vertical bars: tables in Markdown and MediaWiki, and drawn tables
 
 
 _BARS: Final = "|│┃║"
@@ -564,7 +565,7 @@ def _wiki_cell(piece: SourceText) -> SourceText:
 MARKDOWN: Final = GridFormat(_markdown_matches, _markdown_parse)
 
 
-# Split CSV, TSV and semicolon files into lines and cells, which may be quoted.
+# --- Split CSV, TSV and semicolon files into lines and cells, which may be quoted
 
 
 _LINE_ENDS = "\r\n\x85\u2028\u2029"
@@ -638,7 +639,7 @@ def _quoted(source: SourceText, start: int, stops: str) -> tuple[SourceText, int
     return joined(pieces, source.span(start + 1)[0]), end
 
 
-# Cells separated by tabs, the clipboard format of spreadsheets and web pages.
+# --- Cells separated by tabs, the clipboard format of spreadsheets and web pages
 
 
 # A tab after a comma, or at the beginning of each line, is only layout.
@@ -656,7 +657,7 @@ def _tsv_parse(source: SourceText) -> Grid:
 TSV: Final = GridFormat(_tsv_matches, _tsv_parse)
 
 
-# Cells separated by semicolons: CSV from a spreadsheet that uses decimal commas.
+# --- Cells separated by semicolons: CSV from a spreadsheet that uses decimal commas
 
 
 def _semicolons_matches(text: str) -> bool:
@@ -685,7 +686,7 @@ def _holds_several(cell: str) -> bool:
 SEMICOLONS: Final = GridFormat(_semicolons_matches, _semicolons_parse)
 
 
-# Cells separated by commas. A comma in brackets, as in atan2(y, x), is part of its cell.
+# --- Cells separated by commas. A comma in brackets, as in atan2(y, x), is part of its cell
 
 
 # The label of a row with a colon or bracket after it: "1: l1, 0", "Row 1: l1, 0", "a: l1, l2".
@@ -716,7 +717,7 @@ def _csv_parse(source: SourceText) -> Grid:
 CSV: Final = GridFormat(_csv_matches, _csv_parse)
 
 
-# Read data frames as pandas, R, Julia and MATLAB print them.
+# --- Read data frames as pandas, R, Julia and MATLAB print them
 
 
 # The first line: "# A tibble: 3 × 4", "3×4 DataFrame", "3×4 table", "ans = 3×4", "shape: (3, 4)".
@@ -814,7 +815,7 @@ def _with_whole_label(row: list[SourceText]) -> list[SourceText]:
     return [joined([word, number.cut(0, 0).spelled(" "), number], word.at), *cells]
 
 
-# Columns separated by blanks; all lines have equally many values.
+# --- Columns separated by blanks; all lines have equally many values
 
 
 _GAP: Final = regex(r"[^\S\r\n]{2,}")

@@ -1,4 +1,7 @@
-"""`dh-grader serve`: start the service with its settings, in one process or several."""
+"""`dh-grader serve`: the application of an installation, in one process or several.
+
+The other files bound connections, share turns, and watch. Routes are in ``api`` and ``web``.
+"""
 
 import gc
 import logging
@@ -32,6 +35,10 @@ from dh_grader.web import Tutoring, web_routes
 
 if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
+
+
+# --- `dh-grader serve`: start the service with its settings, in one process or several
+
 
 _start_log = logging.getLogger("uvicorn.error")
 
@@ -114,7 +121,7 @@ def _work(settings: Settings, drafts: Path, port: SharedPort) -> None:
     _server(settings, app, port).run()
 
 
-# Build the application of an installation from its settings.
+# --- Build the application of an installation from its settings
 
 
 _installed_log = logging.getLogger(__name__)
@@ -189,7 +196,7 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
     ring = None
     if store is not None:
         # Imported only here, because it imports the database drivers.
-        from dh_grader.access import KeyRing
+        from dh_grader.access.keys import KeyRing
 
         try:
             ring = KeyRing(store.engine, secret)
@@ -219,7 +226,7 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
 
 def _delete_old(store: "AttemptStore", months: int) -> None:
     from dh_grader.store.database import in_transaction
-    from dh_grader.store.learner_data import delete_older, months_before
+    from dh_grader.store.results import delete_older, months_before
 
     before = months_before(datetime.now(UTC), months)
     count = in_transaction(store.engine, lambda connection: delete_older(connection, before))
@@ -236,7 +243,7 @@ def _rates(settings: Settings) -> RequestRates | None:
     if not any(each is not None for each in given):
         return None
     # Imported only here: few installations limit the rate of requests.
-    from dh_grader.access import Rates, UnusableRatesError, rates_in
+    from dh_grader.access.keys import Rates, UnusableRatesError, rates_in
 
     for name in ("key_rate", "address_rate"):
         try:

@@ -1,4 +1,7 @@
-"""The state that all connections of a server share."""
+"""uvicorn's protocol with limits: open connections, flow, framing, and early refusals.
+
+Nothing here knows routes; a request is passed on only when it is complete.
+"""
 
 import asyncio
 import re
@@ -29,6 +32,8 @@ from dh_grader.regex import regex
 from dh_grader.submissions.bodies import MAX_BODY_SIZE
 from dh_grader.translations import say
 
+# --- The state that all connections of a server share
+
 
 class GuardedState(ServerState):
     """The state that all connections of a server share.
@@ -57,7 +62,7 @@ class GuardedState(ServerState):
         return answer
 
 
-# Flow control: when a connection reads, and how it closes.
+# --- Flow control: when a connection reads, and how it closes
 
 
 class LingeringTransport:
@@ -94,7 +99,7 @@ class Valve(FlowControl):
         self.resume_reading()
 
 
-# CORS headers for requests that are refused before they reach the application.
+# --- CORS headers for requests that are refused before they reach the application
 
 
 _ORIGIN: Final = regex(rb"\r\nOrigin:[ \t]*([^\r\n]*?)[ \t]*\r\n", re.IGNORECASE)
@@ -125,7 +130,7 @@ def cors_headers(origins: Sequence[str], origin: str) -> Mapping[str, str]:
     }
 
 
-# The errors for requests that are refused before they reach a route.
+# --- The errors for requests that are refused before they reach a route
 
 
 _CLOSE: Final = {"Connection": "close"}
@@ -194,7 +199,7 @@ def too_busy(seconds: int) -> ProblemError:
     )
 
 
-# The limits that one process sets for its clients.
+# --- The limits that one process sets for its clients
 
 
 # Bytes of a request other than its content: the head, the sizes of chunks, the trailers. Browsers
@@ -238,7 +243,7 @@ FORCED_EXIT: Final = 1.3
 HEALTH: Final = frozenset({"/healthz", "/readyz"})
 
 
-# The open connections of one process, with limits for their number and their bytes.
+# --- The open connections of one process, with limits for their number and their bytes
 #
 # Beyond a limit, the process closes connections that have no complete request.
 
@@ -386,12 +391,11 @@ def allowed_here() -> ConnectionLimits:
     return ConnectionLimits()
 
 
-# Cut the bytes of a connection into pieces that each belong to one request.
+# --- Cut the bytes of a connection into pieces that each belong to one request
 #
 # The parser gets one piece at a time. This module only finds where the pieces end (RFC 9112); the
 # parser decides whether they are valid.
-
-
+#
 # The parser reads all bytes that it gets, stores a head of any size, and begins the next request of
 # a pipeline before the previous one is answered. So it gets only what it should read now.
 
@@ -564,9 +568,8 @@ class Framing:
         self._overhead += size
 
 
-# uvicorn's HTTP/1.1 protocol with limits, which gets one request at a time.
-
-
+# --- uvicorn's HTTP/1.1 protocol with limits, which gets one request at a time
+#
 # uvicorn's own protocol reads a head of any size, waits for the end of the head without a time
 # limit, and continues to read while a pipeline of requests is being answered.
 

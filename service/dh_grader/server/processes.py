@@ -1,7 +1,4 @@
-"""Balance the connections of a shared port between worker processes.
-
-A worker that has more connections than another pauses for a moment, so that the other accepts some.
-"""
+"""One server process or several that share a port, their balance, and their shutdown."""
 
 import asyncio
 import contextlib
@@ -25,6 +22,11 @@ import uvicorn
 from dh_grader.api.http import Monitor
 from dh_grader.server.connections import FORCED_EXIT, GRACE, GuardedProtocol, GuardedState
 
+# --- Balance the connections of a shared port between worker processes
+#
+# A worker that has more connections than another pauses for a moment, so that the other accepts
+# some.
+#
 # The system wakes all workers, and the first one awake would accept all waiting connections.
 
 
@@ -155,7 +157,7 @@ class Acceptor:
             self._listen()
 
 
-# Several worker processes that serve one port, and their supervisor.
+# --- Several worker processes that serve one port, and their supervisor
 
 
 # Seconds after the grace period until a worker is killed.
@@ -280,7 +282,7 @@ def _drain(awake: socket.socket) -> None:
         return
 
 
-# One server process: uvicorn with limits for connections, and an orderly shutdown.
+# --- One server process: uvicorn with limits for connections, and an orderly shutdown
 
 
 _process_log = logging.getLogger("uvicorn.error")

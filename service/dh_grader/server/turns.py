@@ -1,7 +1,4 @@
-"""Measure how long an ordinary request takes on this machine.
-
-The measure is the time of a fixed computation, because costly requests must not change it.
-"""
+"""Fair turns between the requests of clients, in slices of a few milliseconds."""
 
 import asyncio
 import math
@@ -25,6 +22,11 @@ from dh_grader.kinematics import Convention, pose
 from dh_grader.server.connections import HEALTH, too_busy, too_many
 from dh_grader.slices import SLICE
 from dh_grader.submissions.bodies import MAX_BODY_SIZE
+
+# --- Measure how long an ordinary request takes on this machine
+#
+# The measure is the time of a fixed computation, because costly requests must not change it.
+
 
 # The mean of wrong tables, in multiples of the computation.
 ORDINARY: Final = 190
@@ -56,12 +58,11 @@ def _measured() -> float:
     return thread_time() - began
 
 
-# The queue of waiting requests, in which connections share the processor equally.
+# --- The queue of waiting requests, in which connections share the processor equally
 #
 # The next request belongs to the connection that has used the least processor time. The method is
 # start-time fair queueing (Goyal, Vin and Cheng, 1996).
-
-
+#
 # A whole class may share one address, so each connection of an address has a share of its own; but
 # the shares of one address are limited. If all requests took turns after each slice, a request ten
 # times as long as the mean would wait for all the others ten times. So each connection has an
@@ -233,11 +234,10 @@ class FairQueue:
         self.size += sign * ticket.size
 
 
-# Schedule the requests of clients fairly, in time slices of a few milliseconds.
+# --- Schedule the requests of clients fairly, in time slices of a few milliseconds
 #
 # After each slice, the connection that has used the least processor time may continue.
-
-
+#
 # Small requests share a slice, because reading the sockets costs as much as answering one of them.
 
 

@@ -1,7 +1,4 @@
-"""Metrics for Prometheus.
-
-A label has few values, and never contains text from a client.
-"""
+"""What an operator sees: metrics for Prometheus, and the log without private data."""
 
 import json
 import logging
@@ -37,6 +34,10 @@ from dh_grader.server.turns import FairAdmission
 from dh_grader.settings import Settings, SettingsError
 from dh_grader.translations import say
 
+# --- Metrics for Prometheus
+#
+# A label has few values, and never contains text from a client.
+#
 # This module is imported only if metrics are switched on.
 
 
@@ -249,9 +250,8 @@ def _not_shown() -> ProblemError:
     )
 
 
-# The folder in which processes share their metrics.
-
-
+# --- The folder in which processes share their metrics
+#
 # This module does not import the metrics.
 
 
@@ -294,7 +294,7 @@ def _forget(process: int) -> None:
     mark_process_dead(process)  # type: ignore[no-untyped-call]
 
 
-# The format of the log: text, or one JSON object for each line.
+# --- The format of the log: text, or one JSON object for each line
 
 
 _STREAMS: Final = {"default": "ext://sys.stderr", "access": "ext://sys.stdout"}
@@ -373,7 +373,7 @@ class JsonLines(logging.Formatter):
         return json.dumps(line)
 
 
-# Remove query strings, and optionally client addresses, from the access log.
+# --- Remove query strings, and optionally client addresses, from the access log
 
 
 class _AccessLogFilter(logging.Filter):

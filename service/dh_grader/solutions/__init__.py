@@ -39,7 +39,7 @@ from dh_grader.catalogue.kinds import (
 from dh_grader.catalogue.robot import EXACT, ROW_QUANTITIES, TRIALS, FormulaRow, trial_values
 from dh_grader.expressions import Expression, Kind, read
 from dh_grader.expressions.printing import to_latex, to_text
-from dh_grader.expressions.tree import Node
+from dh_grader.expressions.vocabulary import Node
 from dh_grader.grading.kinds.tables import slip_of
 from dh_grader.kinematics import COLUMNS, Convention, dh1_residual, dh2_residual
 from dh_grader.learning import as_rows
@@ -61,9 +61,8 @@ from dh_grader.solutions.algebra import (
 )
 from dh_grader.translations import Sentence, say
 
-# Answers that need no knowledge; their points show whether the marking is fair.
-
-
+# --- Answers that need no knowledge; their points show whether the marking is fair
+#
 # In these answers, every joint turns about the z axis or slides along it by its variable; all other
 # entries are 0.
 
@@ -92,7 +91,7 @@ def poses(exercise: Exercise, size: int) -> list[_Rows]:
     return [[row[:size] for row in rows[:size]] for rows in (IDENTITY, *of_joints)]
 
 
-# The data of a model solution, as it is sent and printed.
+# --- The data of a model solution, as it is sent and printed
 
 
 @dataclass(frozen=True, slots=True)
@@ -156,7 +155,7 @@ class ModelSolution:
         return {part.part: part.answer for part in self.parts}
 
 
-# The state while one exercise is solved, and the steps that several answer kinds share.
+# --- The state while one exercise is solved, and the steps that several answer kinds share
 
 
 @dataclass(frozen=True, slots=True)
@@ -207,7 +206,7 @@ class Work:
         }
 
 
-# The model solution of an exercise.
+# --- The model solution of an exercise
 
 
 def solved(exercise: Exercise) -> ModelSolution:
@@ -248,7 +247,7 @@ def _pose(work: Work, labels: Sequence[str]) -> Shown:
     return Shown(shown.text, shown.latex)
 
 
-# The model answer of kind ``vector``: the list in the exercise file.
+# --- The model answer of kind ``vector``: the list in the exercise file
 
 
 def answer_vector(part: VectorSpec, work: Work) -> PrintedAnswer:
@@ -263,7 +262,7 @@ def lazy_vector(part: VectorSpec, _exercise: Exercise) -> list[object]:
     return [["0"] * len(part.components)]
 
 
-# The model answer of kind ``transform``.
+# --- The model answer of kind ``transform``
 
 
 def answer_transform(part: TransformSpec, work: Work) -> PrintedAnswer:
@@ -277,7 +276,7 @@ def lazy_transform(_part: TransformSpec, exercise: Exercise) -> list[object]:
     return [*poses(exercise, 4)]
 
 
-# The model answer of kind ``screw_axes``.
+# --- The model answer of kind ``screw_axes``
 
 
 def answer_screw_axes(part: ScrewAxesSpec, work: Work) -> PrintedAnswer:
@@ -315,7 +314,7 @@ def lazy_screw_axes(part: ScrewAxesSpec, exercise: Exercise) -> list[object]:
     return [axes, [["0"] * 6] * len(axes)]
 
 
-# The model answer of kind ``rotation``.
+# --- The model answer of kind ``rotation``
 
 
 _AXES = {"x": X, "y": Y, "z": Z}
@@ -343,7 +342,7 @@ def lazy_rotation(_part: RotationSpec, exercise: Exercise) -> list[object]:
     return [*poses(exercise, 3)]
 
 
-# The model answer of kind ``position``.
+# --- The model answer of kind ``position``
 
 
 def answer_position(part: PositionSpec, work: Work) -> PrintedAnswer:
@@ -362,7 +361,7 @@ def lazy_position(part: PositionSpec, _exercise: Exercise) -> list[object]:
     return [["0"] * len(part.coordinates)]
 
 
-# The model answer of kind ``matrix``: the matrix in the exercise file.
+# --- The model answer of kind ``matrix``: the matrix in the exercise file
 
 
 def answer_matrix(part: MatrixSpec, work: Work) -> PrintedAnswer:
@@ -380,7 +379,7 @@ def lazy_matrix(part: MatrixSpec, _exercise: Exercise) -> list[object]:
     return [zeros, ones]
 
 
-# The model answer of kind ``link_transforms``: the transforms of the reference table's rows.
+# --- The model answer of kind ``link_transforms``: the transforms of the reference table's rows
 
 
 def answer_link_transforms(part: LinkTransformsSpec, work: Work) -> PrintedAnswer:
@@ -402,7 +401,7 @@ def lazy_link_transforms(part: LinkTransformsSpec, exercise: Exercise) -> list[o
     return [[*(motion([joint]) for joint in table.joints), *[IDENTITY] * fixed]]
 
 
-# The model answer of kind ``frames``.
+# --- The model answer of kind ``frames``
 
 
 _BASE = "xyz"
@@ -447,7 +446,7 @@ def lazy_frames(part: FramesSpec, exercise: Exercise) -> list[object]:
     return [rows]
 
 
-# The model answer of kind ``find_slip``: the wrong cells, and the table without the slip.
+# --- The model answer of kind ``find_slip``: the wrong cells, and the table without the slip
 
 
 def answer_find_slip(part: FindSlipSpec, work: Work) -> PrintedAnswer:
@@ -466,7 +465,7 @@ def lazy_find_slip(part: FindSlipSpec, exercise: Exercise) -> list[object]:
     return [{"table": {"rows": as_rows(slip_of(part, exercise).texts)}}]
 
 
-# The model answer of kind ``euler_angles``.
+# --- The model answer of kind ``euler_angles``
 
 
 def answer_euler_angles(part: EulerAnglesSpec, work: Work) -> PrintedAnswer:
@@ -483,7 +482,7 @@ def lazy_euler_angles(_part: EulerAnglesSpec, _exercise: Exercise) -> list[objec
     return [["0"] * 3]
 
 
-# The model answer of kind ``dh_table``: the reference table in the requested convention.
+# --- The model answer of kind ``dh_table``: the reference table in the requested convention
 
 
 def answer_dh_table(part: DhTableSpec, work: Work) -> PrintedAnswer:
@@ -504,7 +503,7 @@ def lazy_dh_table(part: DhTableSpec, exercise: Exercise) -> list[object]:
     return [{"rows": robot.tables[convention].lazy_rows, **named}]
 
 
-# The model answer of kind ``dh_row``: the DH row of a transform, or "no row".
+# --- The model answer of kind ``dh_row``: the DH row of a transform, or "no row"
 
 
 _MOST_STEPS = 60
@@ -543,7 +542,7 @@ def lazy_dh_row(_part: DhRowSpec, _exercise: Exercise) -> list[object]:
     return [dict.fromkeys(COLUMNS, "0")]
 
 
-# The right answer to a part, and the answers that need no knowledge, by the kind of the part.
+# --- The right answer to a part, and the answers that need no knowledge, by the kind of the part
 
 
 # The functions that return the right answer.
@@ -578,7 +577,7 @@ LAZY: Final[Mapping[str, Callable[[Any, Exercise], list[object]]]] = {
 }
 
 
-# Lay out an answer as JSON, as text to paste, and as LaTeX.
+# --- Lay out an answer as JSON, as text to paste, and as LaTeX
 
 
 # The column headers. In a modified table, a and α have the index i−1.

@@ -1,4 +1,7 @@
-"""Convert an exercise's formulas from syntax trees to SymPy."""
+"""Formulas of a robot with SymPy, in the form that textbooks print.
+
+SymPy never parses a text; nothing that grades imports this file.
+"""
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +18,7 @@ from dh_grader.catalogue.robot import FormulaRow
 from dh_grader.catalogue.schema_fields import FrameName
 from dh_grader.expressions import Expression, ExpressionError, Symbol, Vocabulary, read
 from dh_grader.expressions.printing import to_text
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,
@@ -28,11 +31,10 @@ from dh_grader.expressions.tree import (
 )
 from dh_grader.kinematics import Convention
 
-# Multiply rigid motions (turns and shifts) in the form that textbooks print.
+# --- Multiply rigid motions (turns and shifts) in the form that textbooks print
 #
 # Vectors are 3×1, rotations 3×3 matrices of SymPy; angles are in radians.
-
-
+#
 # A general simplifier takes seconds for six joints, and its result does not look like a textbook's.
 # Here the form results from the order of the steps:
 # - Quarter turns about a coordinate axis are constant, and C Rot(u, φ) = Rot(C u, φ) C for a
@@ -184,12 +186,11 @@ def rotation_about(axis: sympy.Matrix, angle: sympy.Expr) -> sympy.Matrix:
     return cos * (sympy.eye(3) - along) + sin * skew + along
 
 
-# Euler angles as formulas.
+# --- Euler angles as formulas
 #
 # If the turns already have the requested sequence, their own angles are returned. Otherwise the
 # angles are atan2 of matrix entries.
-
-
+#
 # The ZYZ angles of a spherical wrist are its joint angles.
 
 
@@ -265,11 +266,10 @@ def as_angle(sine: sympy.Expr, cosine: sympy.Expr) -> sympy.Expr:
     return sympy.atan2(sine, cosine)
 
 
-# Evaluate constants without a closed form, such as cos 0.3, to one number.
+# --- Evaluate constants without a closed form, such as cos 0.3, to one number
 #
 # The numbers have more digits than are printed, so that terms cancel to exactly 0.
-
-
+#
 # A robot given in numbers has such a constant in each twist. Products of six of them would fill a
 # page.
 
@@ -391,11 +391,10 @@ class Algebra:
                 return _OPERATORS[operator](self._node(left), self._node(right))
 
 
-# Convert SymPy expressions to syntax trees, in a textbook's order and shorthand.
+# --- Convert SymPy expressions to syntax trees, in a textbook's order and shorthand
 #
 # A shorthand such as c12 is used only if a reader gives it the same meaning.
-
-
+#
 # ``dh_grader.expressions`` prints these trees. A shorthand is a symbol in the tree; it is used only
 # if the reader of entries would read c12 with the same meaning.
 
@@ -592,7 +591,7 @@ def _reads_as(text: str, tree: Node, vocabulary: Vocabulary) -> bool:
         return False
 
 
-# The reference robot as a product of motions.
+# --- The reference robot as a product of motions
 
 
 def link(row: FormulaRow, convention: Convention, algebra: Algebra) -> list[Motion]:

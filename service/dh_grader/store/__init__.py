@@ -1,4 +1,7 @@
-"""The store of attempts that the HTTP routes use."""
+"""The store of attempts that the HTTP routes use: recorded, listed, regraded, forgotten.
+
+Grading works without it. The rules are in ``attempts.py``, the tables in ``tables.py``.
+"""
 
 import asyncio
 import tempfile
@@ -36,13 +39,16 @@ from dh_grader.store.database import (
     reason,
     safe_url,
 )
-from dh_grader.store.learner_data import LearnerData, data_of, forget, override
 from dh_grader.store.results import (
     AttemptHistory,
     Counting,
+    LearnerData,
+    data_of,
     exercise_statistics,
+    forget,
     graded_attempts,
     history,
+    override,
     page,
     written,
 )

@@ -1,4 +1,4 @@
-"""The rules for attempts: dates, the limit, and deductions for lateness and for hints."""
+"""Recorded attempts: rules of dates, limits and deductions, reports, hints, exactly once."""
 
 import hashlib
 import json
@@ -41,6 +41,8 @@ from dh_grader.store.database import Priority, queue_score
 from dh_grader.store.tables import assignments, attempts, hints, line_items, outcomes
 from dh_grader.submissions.bodies import GradeRequest
 from dh_grader.translations import Language, Sentence, say, say_count, told
+
+# --- The rules for attempts: dates, the limit, and deductions for lateness and for hints
 
 
 class AttemptRefusedError(Exception):
@@ -95,11 +97,10 @@ def _formatted(moment: datetime) -> str:
     return moment.strftime("%Y-%m-%d at %H:%M %Z").rstrip()
 
 
-# Database functions for the hints that learners take at recorded attempts.
+# --- Database functions for the hints that learners take at recorded attempts
 #
 # A hint explains a message of a report. Its price reduces the points of the learner's later
-# attempts
-# at the exercise.
+# attempts at the exercise.
 
 
 # What the learner's hints cost the next attempt, as a share of its points: a part of a statement
@@ -271,11 +272,10 @@ def _taken(row: Row[Any]) -> TakenHint:
     )
 
 
-# Recorded reports: JSON in English, with the sentences that can be translated.
+# --- Recorded reports: JSON in English, with the sentences that can be translated
 #
 # A recorded report begins with ``sentences``, a list of templates with their values. The rest is
-# the
-# report as it was sent.
+# the report as it was sent.
 
 
 _START: Final = '{"sentences":'
@@ -356,7 +356,7 @@ def _read(written: list[Any]) -> Sentence:
     return Sentence(template, read, *plural)
 
 
-# The outcome of a report: verdicts and message codes, without the answers.
+# --- The outcome of a report: verdicts and message codes, without the answers
 
 
 @dataclass(frozen=True)
@@ -394,7 +394,7 @@ def _part(part: PartReport) -> dict[str, object]:
     return {"verdict": str(part.verdict), "cells": cells, "codes": codes}
 
 
-# Grade an attempt: the report for the learner, and the outcome for statistics.
+# --- Grade an attempt: the report for the learner, and the outcome for statistics
 
 
 @dataclass(frozen=True, slots=True)
@@ -446,7 +446,7 @@ def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
     return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS
 
 
-# Data classes for new, recorded and listed attempts, and for filters of attempts.
+# --- Data classes for new, recorded and listed attempts, and for filters of attempts
 #
 # This module loads no database driver.
 
@@ -581,7 +581,7 @@ class ListedAttempt:
         return self.points if self.awarded is None else self.awarded
 
 
-# Record each attempt exactly once, and number the attempts of each learner.
+# --- Record each attempt exactly once, and number the attempts of each learner
 
 
 # Build the statements once: building one takes longer than running it.

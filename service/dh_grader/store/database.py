@@ -1,4 +1,7 @@
-"""Open the database of attempts by its URL, and migrate its tables."""
+"""The database: opened, migrated, copied, erased, and written to by one thread.
+
+It also has the queue of scores and the errors of the store.
+"""
 
 import asyncio
 import logging
@@ -45,7 +48,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, SQLAlchemyError
 from dh_grader.store.tables import UtcTime, attempts, contexts, learners, line_items, scores
 from dh_grader.translations import Sentence, joined, say
 
-# The queue of scores to be sent to learning platforms.
+# --- The queue of scores to be sent to learning platforms
 #
 # A row belongs to a learner and a line item (a column of the platform's gradebook). Points are read
 # when they are sent, so the last change counts.
@@ -179,7 +182,7 @@ def _queue(connection: Connection, statement: Any, priority: Priority, **more: o
         connection.info[QUEUED] = True
 
 
-# Erase deleted rows from SQLite's write-ahead log (the file ``-wal``).
+# --- Erase deleted rows from SQLite's write-ahead log (the file ``-wal``)
 #
 # Deleted rows stay in the log until it is truncated, which is possible only while nobody reads.
 
@@ -256,7 +259,7 @@ def _truncate(connection: Connection) -> bool:
     return not busy
 
 
-# The file of an SQLite database: open, copy and replace it while other programs may use it.
+# --- The file of an SQLite database: open, copy and replace it while other programs may use it
 
 
 # Only the owner may read and write the file: it contains answers of learners.
@@ -509,7 +512,7 @@ def _identity(path: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-# The errors that the store of attempts raises. This module loads no database driver.
+# --- The errors that the store of attempts raises. This module loads no database driver
 
 
 class StoreDownError(Exception):
@@ -533,6 +536,9 @@ class UnusablePointsError(ValueError):
 
 class BadCursorError(ValueError):
     """The text is not a valid cursor."""
+
+
+# --- Open the database of attempts by its URL, and migrate its tables
 
 
 R = TypeVar("R")
@@ -815,7 +821,7 @@ def reason(error: SQLAlchemyError) -> str:
     return " ".join(said.split())[:300]
 
 
-# The thread that writes to the database, and commits several waiting attempts at once.
+# --- The thread that writes to the database, and commits several waiting attempts at once
 
 
 _writer_log = logging.getLogger(__name__)

@@ -1,4 +1,4 @@
-"""A memory cache of reports with a limit in bytes; the least recently used ones are dropped."""
+"""Regrade outdated attempts, in steps or in several processes, and reports in memory."""
 
 import json
 import sys
@@ -53,6 +53,9 @@ from dh_grader.submissions.bodies import GradeRequest
 from dh_grader.translations import say
 from dh_grader.variants import NoVariantError, hidden_variant, pinned, values_of, variant_of
 
+# --- A memory cache of reports with a limit in bytes; the least recently used ones are dropped
+
+
 # A report on a table takes 6 kB with its answers; an attacker's may take a hundred times as much.
 # 64 MB hold 10,000 different tables and are half the memory of the program.
 MOST_BYTES: Final = 64 * 2**20
@@ -106,7 +109,7 @@ def _size(submission: str, report: WrittenReport) -> int:
     return sys.getsizeof(submission) + report.size
 
 
-# Regrade outdated attempts. Several processes may share the work through the database.
+# --- Regrade outdated attempts. Several processes may share the work through the database
 #
 # A worker locks the attempts that it takes until it commits. If the worker dies, the database
 # releases the locks, and another worker takes the attempts.
@@ -416,7 +419,7 @@ def _reasons(old: PartResults, new: PartResults) -> list[str]:
     return reasons
 
 
-# Regrading in steps, each short enough for one request.
+# --- Regrading in steps, each short enough for one request
 
 
 # A step ends after the batch with which it reaches this time or this number of attempts.

@@ -280,7 +280,7 @@ key_secrets = Table(
 )
 
 
-# The tables of LTI: platforms, launches, linked courses, assignments and learners, and scores.
+# --- The tables of LTI: platforms, launches, linked courses, assignments and learners, and scores
 
 
 # The longest texts that platforms choose. The standard allows 255 characters of ASCII.

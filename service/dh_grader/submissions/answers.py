@@ -19,30 +19,28 @@ from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.files import alternatives
 from dh_grader.grading.reading.entries import length_unit_of
 from dh_grader.regex import regex
-from dh_grader.submissions.assignment import AssignedExercise, Assignment
-from dh_grader.submissions.bodies import GradeRequest, nearest
-from dh_grader.submissions.documents import (
-    Excerpt,
-    UnusableFileError,
-    changing_remark,
-    decoded,
-    shortened,
+from dh_grader.submissions import (
+    RECEIPT,
+    AssignedExercise,
+    Assignment,
+    platform_name,
+    student_and_part,
+    without_copy_number,
 )
+from dh_grader.submissions.bodies import GradeRequest, nearest
+from dh_grader.submissions.documents import changing_remark, shortened
 from dh_grader.submissions.files import (
     BY_HAND_ENDINGS,
     DATA_ENDINGS,
     PASTED_ENDINGS,
-    RECEIPT,
     FileContent,
     HandedFile,
     HandedIn,
     ending,
-    platform_name,
     read_content,
-    student_and_part,
     typed_in_receipt,
-    without_copy_number,
 )
+from dh_grader.submissions.office_files import Excerpt, UnusableFileError, decoded
 from dh_grader.translations import Sentence, joined, say
 
 if TYPE_CHECKING:

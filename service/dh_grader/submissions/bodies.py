@@ -1,7 +1,7 @@
-"""Read untrusted JSON: limit its size, and report the place of an error.
+"""Untrusted JSON as a submission: limits, places of errors in words, nearest ids.
 
-A number that JSON or a float cannot represent (NaN, 1e999) becomes text, so that it does not make
-the other values unreadable.
+A number that JSON or a float cannot represent (NaN, 1e999) becomes text, so that it does not
+make the other values unreadable.
 """
 
 import difflib
@@ -21,6 +21,12 @@ from dh_grader.grading import Submission
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, paragraph, say, say_count, template
 from dh_grader.variants import NoVariantError, variant_of
+
+# --- Read untrusted JSON: limit its size, and report the place of an error
+#
+# A number that JSON or a float cannot represent (NaN, 1e999) becomes text, so that it does not make
+# the other values unreadable.
+
 
 MAX_BODY_SIZE: Final = 256 * 1024
 # The deepest answer, a list of matrices, needs five levels.
@@ -159,7 +165,7 @@ _DECODER: Final = json.JSONDecoder(
 )
 
 
-# Find an exercise by its id, or suggest the nearest id.
+# --- Find an exercise by its id, or suggest the nearest id
 
 
 _T = TypeVar("_T")
@@ -205,7 +211,7 @@ def nearest(name: str, known: Iterable[str]) -> str | None:
     return matches[0] if matches else None
 
 
-# Pydantic's errors in words: a sentence for each type of error.
+# --- Pydantic's errors in words: a sentence for each type of error
 
 
 # A longer pattern does not help a reader. It is the one of names, which are one visible line.
@@ -315,7 +321,7 @@ def _of_another_form(kind: str, context: Mapping[str, Any]) -> Sentence | None:
     return None
 
 
-# The pydantic models of a submission, as the body of a request or the content of a file.
+# --- The pydantic models of a submission, as the body of a request or the content of a file
 
 
 # With this number, the other limits of a body leave each submission 4 KiB and 78 lists and objects.

@@ -36,13 +36,12 @@ __all__ = [
 ]
 
 
-# Sentences for people: a template in English with named values.
+# --- Sentences for people: a template in English with named values
 #
 # A sentence is its English text, and keeps its template and values, so that it can be translated
 # later. A value is a name, a number, a formula or another sentence. Example: ``joint`` and ``name``
 # in ``say("Joint {joint} slides, and its variable is {name}.", joint=3, name="d3")``.
-
-
+#
 # The extraction finds the templates in the calls of ``say``, ``say_count`` and ``template``, so
 # each template must be one string constant there.
 
@@ -148,7 +147,7 @@ def told(text: str, translation: Translation | None) -> str:
     return found.format_map(values)
 
 
-# The languages of the service, and the choice of a language for a reader.
+# --- The languages of the service, and the choice of a language for a reader
 
 
 _FOLDER: Final = Path(__file__).parent

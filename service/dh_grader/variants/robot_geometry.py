@@ -1,4 +1,4 @@
-"""The four levels of generated robots: which joint axes they have, and how often."""
+"""The geometry of generated robots: levels, axes, lengths, paths, and reasons to refuse."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -12,6 +12,8 @@ from typing import Final, TypeVar
 import numpy as np
 
 from dh_grader.kinematics import ALPHA, THETA, A, Convention, D, Table, rank, space_jacobian
+
+# --- The four levels of generated robots: which joint axes they have, and how often
 
 
 class Relation(StrEnum):
@@ -113,9 +115,8 @@ LEVELS: Final[Mapping[int, Grammar]] = {
 }
 
 
-# The axis directions of simple robots, determined by the robot's number.
-
-
+# --- The axis directions of simple robots, determined by the robot's number
+#
 # There are few simple robots: of 500 random robots, 100 are like an earlier robot. So the number of
 # a simple robot determines its directions, and only the rest is random.
 
@@ -212,7 +213,7 @@ def turn(start: AxisDirection, end: AxisDirection, about: AxisDirection) -> int:
     return -90 if end == (-across[0], -across[1], -across[2]) else 180
 
 
-# Pseudo-random numbers that are the same on every computer: integers from SHA-256 of a text.
+# --- Pseudo-random numbers that are the same on every computer: integers from SHA-256 of a text
 
 
 T = TypeVar("T")
@@ -257,7 +258,7 @@ def _words(text: str) -> Iterator[int]:
             yield int.from_bytes(digest[i : i + _BITS // 8], "big")
 
 
-# Choose a random robot: its joints, the relations of their axes, and the lengths.
+# --- Choose a random robot: its joints, the relations of their axes, and the lengths
 
 
 # Centimetres. No two lengths of a robot are equal.
@@ -463,9 +464,8 @@ class _Lengths:
         return self._left.pop(self._draws.below(len(self._left)))
 
 
-# The path of a generated robot's links, as its figure draws them.
-
-
+# --- The path of a generated robot's links, as its figure draws them
+#
 # Sliding joints are extended. The module uses plain floats and a table of sines, so that every
 # machine refuses the same robots.
 
@@ -593,9 +593,8 @@ _VIEWS: Final = {
 VIEWS: Final = tuple(_VIEWS)
 
 
-# The reasons to refuse a random robot.
-
-
+# --- The reasons to refuse a random robot
+#
 # If a robot is refused, another random robot gets its number.
 
 

@@ -1,4 +1,4 @@
-"""The ids of generated robots: ``practice-2-modified~k3f9``."""
+"""Generated robots for practice: their ids, exercises and difficulty, and which is next."""
 
 import secrets
 from collections.abc import Iterator, Mapping
@@ -10,11 +10,16 @@ from typing import Final
 import numpy as np
 
 from dh_grader.catalogue import Exercise, ExerciseLevel
-from dh_grader.catalogue.compile import compile_exercise
+from dh_grader.catalogue.exercise import compile_exercise
 from dh_grader.catalogue.schema import ExerciseSpec
 from dh_grader.grading import FeedbackLevel, Submission, grade
-from dh_grader.importing.exercise_text import HomeRobot, home_statement, lettered, rows_in
-from dh_grader.importing.snapping import number_text
+from dh_grader.importing.exercise_text import (
+    HomeRobot,
+    home_statement,
+    lettered,
+    number_text,
+    rows_in,
+)
 from dh_grader.kinematics import A, Convention, D
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, say, template
@@ -36,6 +41,9 @@ from dh_grader.variants.robot_geometry import (
     skeleton,
     table_of,
 )
+
+# --- The ids of generated robots: ``practice-2-modified~k3f9``
+
 
 _DIGITS: Final = "0123456789abcdefghijklmnopqrstuvwxyz"
 _LONGEST: Final = 8
@@ -91,9 +99,8 @@ def practice_id(text: str) -> PracticeId | None:
     return PracticeId(int(found[1]), Convention(found[2]), int(found[3], len(_DIGITS)))
 
 
-# Generate a robot from a level and a number.
-
-
+# --- Generate a robot from a level and a number
+#
 # Random robots are drawn until one is acceptable.
 
 
@@ -132,7 +139,7 @@ def _simple(rules: Grammar, number: int, attempt: int, draws: Draws) -> Plan | N
     return None if shape is None else plan_along(shape, rules, draws)
 
 
-# Make an exercise about a generated robot, which asks for its DH table.
+# --- Make an exercise about a generated robot, which asks for its DH table
 
 
 _POINTS_OF_A_ROW: Final = 2
@@ -260,9 +267,8 @@ def _length(between: tuple[str, ...], description: str) -> dict[str, object]:
     return {"kind": "length", "unit": "m", "range": between, "description": description}
 
 
-# A catalogue in which generated robots can be found by their ids.
-
-
+# --- A catalogue in which generated robots can be found by their ids
+#
 # They are not listed.
 
 
@@ -294,7 +300,7 @@ class CatalogueWithPractice(Mapping[str, Exercise]):
         return len(self._catalogue)
 
 
-# The difficulty of a generated robot, and what a student can practise with it.
+# --- The difficulty of a generated robot, and what a student can practise with it
 
 
 class Situation(StrEnum):
@@ -362,7 +368,7 @@ def situations(plan: Plan) -> set[Situation]:
     return found
 
 
-# Choose the next robot for a student who practises.
+# --- Choose the next robot for a student who practises
 
 
 # The first robot of a student is one of these: their ids are short.

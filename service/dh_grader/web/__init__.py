@@ -18,15 +18,17 @@ from dh_grader.api.http import (
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import exercise_after
 from dh_grader.variants.robots import CatalogueWithPractice
-from dh_grader.web.assets import Asset, Assets, load_assets
 from dh_grader.web.courses import course_routes
 from dh_grader.web.lti_routes import lti_routes
 from dh_grader.web.pages import (
     REFERENCE_HEADERS,
+    Asset,
+    Assets,
     catalogue_page,
     exercise_page,
     help_routes,
     learner_page,
+    load_assets,
     page_answer,
     play_page,
     practice_page,
@@ -40,7 +42,7 @@ from dh_grader.web.tutor import Tutoring, attempt_routes, tutor_routes
 __all__ = ["Tutoring", "web_routes"]
 
 
-# The routes of the pages and of their static files.
+# --- The routes of the pages and of their static files
 
 
 # Any site may load the element; DH_GRADER_CORS_ORIGINS limits what it may request then.

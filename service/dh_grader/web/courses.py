@@ -1,4 +1,4 @@
-"""The route that reads a course's roster, the platform's list of its members (LTI)."""
+"""The pages on which tutors manage courses, and their routes; the roster of a platform."""
 
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
@@ -40,8 +40,7 @@ from dh_grader.courses import (
     with_own_dates,
 )
 from dh_grader.translations import Language, say, told
-from dh_grader.web.assets import Assets
-from dh_grader.web.pages import FORM_HEADERS, NO_STORE, form_fields, page, page_answer
+from dh_grader.web.pages import FORM_HEADERS, NO_STORE, Assets, form_fields, page, page_answer
 from dh_grader.web.tutor import Tutoring
 
 if TYPE_CHECKING:
@@ -49,6 +48,9 @@ if TYPE_CHECKING:
 
     from dh_grader.lti.handed_files import MissingReport
     from dh_grader.lti.roster import RosterChange
+
+
+# --- The route that reads a course's roster, the platform's list of its members (LTI)
 
 
 def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
@@ -91,9 +93,8 @@ def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
     return router
 
 
-# The pages of courses as HTML.
-
-
+# --- The pages of courses as HTML
+#
 # Scripts send their forms to the routes of the service.
 
 
@@ -304,7 +305,7 @@ def _page(
     )
 
 
-# The routes of the pages on which tutors manage their courses.
+# --- The routes of the pages on which tutors manage their courses
 
 
 def course_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
@@ -396,7 +397,7 @@ def _learner_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) ->
         """Return the page of a learner."""
         # The id is in the query, because it may have a slash.
         from dh_grader.courses.assignments import learner_variants
-        from dh_grader.courses.learner_view import own_view
+        from dh_grader.courses.gradebook import own_view
         from dh_grader.lti.handed_files import missing_reports
         from dh_grader.lti.outbox import scores_of
 

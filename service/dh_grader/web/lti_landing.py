@@ -9,6 +9,7 @@ from dh_grader.access import Caller, Keys, Scope, Secret
 from dh_grader.api.http import Catalogue
 from dh_grader.api.recording import write
 from dh_grader.catalogue import FeedbackLevel
+from dh_grader.lti import LtiRole
 from dh_grader.lti.deep_linking import begin_linking
 from dh_grader.lti.fetching import PlatformThreads
 from dh_grader.lti.grade_services import AccessTokens, available_key
@@ -27,10 +28,8 @@ from dh_grader.lti.launch import (
     use_login,
 )
 from dh_grader.lti.outbox import utc_now
-from dh_grader.lti.registrations import LtiRole
 from dh_grader.store import AttemptStore
 from dh_grader.translations import Language
-from dh_grader.web.assets import Assets
 from dh_grader.web.lti_pages import (
     Choice,
     Offer,
@@ -42,6 +41,7 @@ from dh_grader.web.lti_pages import (
     picker_page,
     tutor_page,
 )
+from dh_grader.web.pages import Assets
 
 # The lifetime of the token in a page. The page keeps it in memory; a reload needs a new launch.
 TOKEN_LIFETIME: Final = timedelta(hours=12)

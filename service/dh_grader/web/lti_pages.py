@@ -1,4 +1,4 @@
-"""The pages that learning platforms open here, and their HTTP headers."""
+"""The pages that learning platforms open here: reports on files, and the choice of links."""
 
 import asyncio
 from collections.abc import Iterable, Mapping, Sequence
@@ -19,6 +19,7 @@ from dh_grader.contract.courses import MOST_EXERCISES, CourseAssignment, NewAssi
 from dh_grader.courses import CourseError, moment, zone_named
 from dh_grader.courses.assignments import assignments_of
 from dh_grader.formats.documents import page_of
+from dh_grader.lti import LtiError, LtiRole, Registration
 from dh_grader.lti.deep_linking import NewLink
 from dh_grader.lti.fetching import PlatformThreads
 from dh_grader.lti.grade_services import ScoreError
@@ -39,17 +40,15 @@ from dh_grader.lti.launch import (
     pseudonym,
     use_login,
 )
-from dh_grader.lti.registrations import LtiError, LtiRole, Registration
 from dh_grader.store import AttemptStore
 from dh_grader.translations import Language, joined, say
-from dh_grader.web.assets import Assets
-from dh_grader.web.pages import FORM_HEADERS, kinds_of, page, policy, words_of
+from dh_grader.web.pages import FORM_HEADERS, Assets, kinds_of, page, policy, words_of
 
 if TYPE_CHECKING:
     from dh_grader.lti.launch import Landing, NewLogin
 
 
-# The page with the report on files that a student has handed in at the learning platform.
+# --- The page with the report on files that a student has handed in at the learning platform
 #
 # The files are not stored here. For each view, the service reads them from the platform and grades
 # them again.
@@ -134,7 +133,7 @@ def _id_in(claims: Mapping[str, Any], name: str) -> str:
     return found
 
 
-# Make links on the learning platform from what a tutor has chosen in a form (deep linking).
+# --- Make links on the learning platform from what a tutor has chosen in a form (deep linking)
 
 
 _LONGEST_LINE: Final = 200
@@ -275,7 +274,7 @@ def _date(written: datetime | None, zone: ZoneInfo) -> datetime | None:
         raise NotYetError(message_of(error)) from error
 
 
-# The page on which a tutor chooses exercises, and the form that sends links to the platform.
+# --- The page on which a tutor chooses exercises, and the form that sends links to the platform
 
 
 def picker_page(
@@ -310,7 +309,10 @@ def return_page(address: str, response: str, assets: Assets, language: Language)
     return lti_page("return.html", assets, ["send_form.js"], language=language, **values)
 
 
-_FOLDER = "web/lti/templates"
+# --- The pages that learning platforms open here, and their HTTP headers
+
+
+_FOLDER = "web/templates/lti"
 
 
 def frame_headers(

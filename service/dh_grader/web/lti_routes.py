@@ -1,7 +1,4 @@
-"""The routes of LTI, by which a learning platform opens the service for its users.
-
-The service has these routes only if it has a database and a secret.
-"""
+"""The routes of LTI: launches, joining, notices, forms of tutors, and the list of platforms."""
 
 import logging
 from collections.abc import Awaitable, Callable, Mapping, Sequence
@@ -31,6 +28,19 @@ from dh_grader.api.permissions import is_same_origin
 from dh_grader.api.recording import read, write
 from dh_grader.contract.courses import CourseName, NewAssignment
 from dh_grader.courses import CourseError
+from dh_grader.lti import (
+    LtiError,
+    LtiRole,
+    Registration,
+    RegistrationError,
+    all_registrations,
+    deployments_of,
+    find_registration,
+    note_refusal,
+    origin_of,
+    registration,
+    unusable,
+)
 from dh_grader.lti.deep_linking import NewLink, signed_response
 from dh_grader.lti.fetching import PlatformKeys, SigningKey, ensure_key, own_key_list, signing_key
 from dh_grader.lti.grade_services import ScoreError
@@ -55,23 +65,9 @@ from dh_grader.lti.launch import (
     pseudonym,
     ticket_in,
 )
-from dh_grader.lti.registrations import (
-    LtiError,
-    LtiRole,
-    Registration,
-    RegistrationError,
-    all_registrations,
-    deployments_of,
-    find_registration,
-    note_refusal,
-    origin_of,
-    registration,
-    unusable,
-)
 from dh_grader.store import AttemptStore
 from dh_grader.store.tables import contexts, resource_links
 from dh_grader.translations import ENGLISH, Language, say
-from dh_grader.web.assets import Assets
 from dh_grader.web.lti_landing import Landings
 from dh_grader.web.lti_pages import (
     Choice,
@@ -94,6 +90,7 @@ from dh_grader.web.pages import (
     FORM_HEADERS,
     NO_STORE,
     SESSION,
+    Assets,
     form_fields,
     page,
     page_answer,
@@ -106,9 +103,13 @@ if TYPE_CHECKING:
     from dh_grader.lti.launch import LaunchMessage, Login, NewLogin
 
 
-# The routes by which a learning platform registers itself here (dynamic registration).
+# --- The routes of LTI, by which a learning platform opens the service for its users
+#
+# The service has these routes only if it has a database and a secret.
 
 
+# --- The routes by which a learning platform registers itself here (dynamic registration)
+#
 # The platform opens the link that an admin has pasted.
 
 
@@ -199,9 +200,8 @@ async def _registered(
         raise
 
 
-# The route to which platforms send signed notices that a student has handed in a file.
-
-
+# --- The route to which platforms send signed notices that a student has handed in a file
+#
 # Without a login and without a browser.
 
 
@@ -270,11 +270,10 @@ def _note(connection: Connection, refusals: Mapping[str, str]) -> None:
         note_refusal(connection, registration_id, name, now)
 
 
-# The forms on a tutor's first page: choose the exercises of a link, and open the course.
+# --- The forms on a tutor's first page: choose the exercises of a link, and open the course
 #
 # A page in a frame has no cookie, so each form contains a signed ticket.
-
-
+#
 # The forms are accepted from our own pages only. The course opens in a window of its own, in which
 # our cookie is not a third-party cookie.
 
@@ -422,7 +421,7 @@ def _assigned(connection: Connection, link: int, new: NewAssignment, catalogue: 
         raise _NotYetError(message_of(error)) from error
 
 
-# The route of the form on which a tutor searches for exercises, and makes links to them.
+# --- The route of the form on which a tutor searches for exercises, and makes links to them
 
 
 _picker_forms_log = logging.getLogger(__name__)
@@ -510,9 +509,8 @@ def _offer(connection: Connection, ticket: LinkingTicket) -> Offer:
     return offer_of(connection, ticket, known)
 
 
-# The page of the registered learning platforms, with a self-test for each platform.
-
-
+# --- The page of the registered learning platforms, with a self-test for each platform
+#
 # It also shows their last launches and our keys.
 
 
@@ -708,8 +706,8 @@ class _Launching:
 
     async def begin(self, given: Mapping[str, str]) -> "NewLogin":
         """Store a new login and return it. Raises LtiError."""
+        from dh_grader.lti import find_registration
         from dh_grader.lti.launch import begin_login, login_fields
-        from dh_grader.lti.registrations import find_registration
 
         fields = login_fields(given)
         known = await read(
@@ -720,8 +718,8 @@ class _Launching:
 
     async def login_of(self, fields: Mapping[str, str]) -> "tuple[Registration, Login]":
         """Return the registration and the login that a message belongs to. Raises LtiError."""
+        from dh_grader.lti import LtiError, RegistrationError, registration
         from dh_grader.lti.launch import login_of
-        from dh_grader.lti.registrations import LtiError, RegistrationError, registration
 
         now = datetime.now(UTC)
         begun = await read(self._store, lambda it: login_of(it, fields.get("state", ""), now))
@@ -736,8 +734,8 @@ class _Launching:
     async def message(self, token: str, known: "Registration", begun: "Login") -> "LaunchMessage":
         """Return the message in a signed token. Raises LtiError if the token is refused."""
         # The reason is noted before.
+        from dh_grader.lti import LtiError, note_refusal
         from dh_grader.lti.launch import key_id_of, message_in
-        from dh_grader.lti.registrations import LtiError, note_refusal
 
         now = datetime.now(UTC)
         try:
@@ -756,7 +754,7 @@ class _Launching:
         Raises LtiError if no page can help.
         """
         # That is, if the page already has its own window and the platform offers no storage.
-        from dh_grader.lti.registrations import LtiError
+        from dh_grader.lti import LtiError
 
         is_window = request.headers.get("sec-fetch-dest") == "document"
         if is_window and begun.storage_target is None:
@@ -781,7 +779,7 @@ class _Launching:
         self, work: Callable[[], Awaitable[Response]], language: Language = ENGLISH
     ) -> Response:
         """Return the response of ``work``, or a page about an LtiError."""
-        from dh_grader.lti.registrations import LtiError
+        from dh_grader.lti import LtiError
 
         try:
             return await work()
@@ -790,7 +788,7 @@ class _Launching:
 
     async def _refused(self, error: "LtiError", language: Language) -> Response:
         """Return an error page for the student, with the reference number of the log line."""
-        from dh_grader.lti.registrations import all_registrations
+        from dh_grader.lti import all_registrations
 
         context = current_request()
         reference = "" if context is None else context.id
@@ -812,7 +810,7 @@ def is_bound(
     # The browser sends its secret in a cookie, or in a form with the value from the platform's
     # storage. The form is accepted only from our own page, because an attacker could begin a login
     # and let another browser post the form.
-    from dh_grader.lti.registrations import LtiError
+    from dh_grader.lti import LtiError
 
     cookie = request.cookies.get(cookie_name(known, fields["state"]))
     stored = fields.get("browser")

@@ -1,4 +1,4 @@
-"""The routes of the pages for tutors, and the routes that these pages call."""
+"""The pages for tutors (editor, class, attempts), and the routes that these pages call."""
 
 import re
 from collections.abc import Sequence
@@ -35,8 +35,15 @@ from dh_grader.regex import regex
 from dh_grader.solutions import solve
 from dh_grader.translations import Language, say, told
 from dh_grader.typeset import formula_html
-from dh_grader.web.assets import Assets
-from dh_grader.web.pages import FORM_HEADERS, NO_STORE, PRIVATE_HEADERS, page, page_answer, policy
+from dh_grader.web.pages import (
+    FORM_HEADERS,
+    NO_STORE,
+    PRIVATE_HEADERS,
+    Assets,
+    page,
+    page_answer,
+    policy,
+)
 from dh_grader.web.tutor_checks import (
     Checking,
     CheckRequest,
@@ -51,6 +58,9 @@ from dh_grader.web.tutor_checks import (
 
 if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
+
+
+# --- The routes of the pages for tutors, and the routes that these pages call
 
 
 @dataclass(frozen=True, slots=True)
@@ -164,7 +174,7 @@ def _frames(exercise: Exercise) -> bytes:
     return reference_figure(exercise).encode()
 
 
-# The pages for tutors as HTML.
+# --- The pages for tutors as HTML
 
 
 # The start of tables in LaTeX. Model solutions have cells between dollars, and a line for each row.
@@ -305,7 +315,7 @@ def _formula(latex: str) -> Markup:
     return own_html(formula_html(latex, display=latex.startswith(("\\begin", "A_"))))
 
 
-# The routes of the editor for exercise files.
+# --- The routes of the editor for exercise files
 
 
 _NEW: Final = "my-exercise"
@@ -413,7 +423,7 @@ def _put(drafts: Drafts, body: DraftRequest) -> str:
         ) from error
 
 
-# The routes of the page that grades the files of a class.
+# --- The routes of the page that grades the files of a class
 
 
 _HEADERS: Final = {**PRIVATE_HEADERS, "Content-Security-Policy": policy(frame_src="'self'")}
@@ -456,7 +466,7 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
     return router
 
 
-# The pages of recorded attempts as HTML, which scripts fill.
+# --- The pages of recorded attempts as HTML, which scripts fill
 
 
 class CoursePlace(NamedTuple):
@@ -539,9 +549,8 @@ def _attempt_pages_page(
     )
 
 
-# The routes of the pages of recorded attempts.
-
-
+# --- The routes of the pages of recorded attempts
+#
 # Scripts load the attempts themselves.
 
 

@@ -1,4 +1,4 @@
-"""Make the text of an exercise file from a URDF file or a pasted DH table, for the editor."""
+"""What the pages for tutors compute: imports, checks and previews of files, a class's report."""
 
 import hashlib
 import io
@@ -49,8 +49,8 @@ from dh_grader.importing import (
     imported_urdf,
 )
 from dh_grader.kinematics import Convention
+from dh_grader.submissions import PASS_MARK, Assignment, UnknownPartNameError, of_one
 from dh_grader.submissions.answers import of_file
-from dh_grader.submissions.assignment import PASS_MARK, Assignment, UnknownPartNameError, of_one
 from dh_grader.submissions.bodies import MAX_BODY_SIZE
 from dh_grader.submissions.files import (
     MAX_FILES,
@@ -63,6 +63,9 @@ from dh_grader.submissions.files import (
 )
 from dh_grader.translations import ENGLISH, Language, Translation, say, told
 from dh_grader.typeset import statement_html
+
+# --- Make the text of an exercise file from a URDF file or a pasted DH table, for the editor
+
 
 _Name = Annotated[str, Field(max_length=200)]
 _ROBOT: Final = TypeAdapter(ImportedRobot)
@@ -129,7 +132,7 @@ def _import_request_refused(detail: str) -> ProblemError:
     )
 
 
-# Grade the uploaded files of a class, and make the same reports as ``dh-grader grade``.
+# --- Grade the uploaded files of a class, and make the same reports as ``dh-grader grade``
 
 
 # Bytes after unpacking. A body has at most 256 KiB, but similar submissions compress well.
@@ -436,7 +439,7 @@ def _unusable(detail: str) -> ProblemError:
     )
 
 
-# Check the text of an exercise file in the editor, and preview the exercise.
+# --- Check the text of an exercise file in the editor, and preview the exercise
 
 
 # The largest exercise that comes with the program has 8 kB.
@@ -554,7 +557,7 @@ def _preview(exercise: Exercise, translation: Translation | None) -> ExercisePre
     )
 
 
-# The exercise files that the editor opens, and the folder in which it saves them.
+# --- The exercise files that the editor opens, and the folder in which it saves them
 
 
 # A character of the text has four bytes at most.
@@ -701,7 +704,7 @@ def _changed(exercise_id: str) -> ProblemError:
     )
 
 
-# Check exercise files for the editor, in a process that is killed if it takes too long.
+# --- Check exercise files for the editor, in a process that is killed if it takes too long
 
 
 # Ten times what `exercises check` takes for the largest exercise of the catalogue.

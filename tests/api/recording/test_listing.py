@@ -12,7 +12,7 @@ from dh_grader.grading import Report
 from dh_grader.store import AttemptStore
 from dh_grader.store import attempts as graded
 from dh_grader.store.attempts import recorded_report
-from dh_grader.store.learner_data import everything_of
+from dh_grader.store.results import everything_of
 from dh_grader.store.tables import attempts
 from jsonschema import Draft202012Validator
 from sqlalchemy import select, text

@@ -20,8 +20,8 @@ from dh_grader.store.database import (
     open_database,
     overwrite_deleted,
 )
-from dh_grader.store.learner_data import forget, override
 from dh_grader.store.regrades import Regrading
+from dh_grader.store.results import forget, override
 from sqlalchemy import Engine
 
 from tests.attempts.erasure import files_with, reader

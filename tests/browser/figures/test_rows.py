@@ -5,7 +5,7 @@ import re
 from collections.abc import Callable
 
 import pytest
-from dh_grader.web.assets import FOLDER
+from dh_grader.web.pages import FOLDER
 from playwright.sync_api import Page, expect
 
 from tests.browser.figures.pace import MOST_SCRIPT_MS, pace

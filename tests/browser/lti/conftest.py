@@ -8,7 +8,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
-from dh_grader.lti.registrations import NewRegistration, add_registration
+from dh_grader.lti import NewRegistration, add_registration
 from dh_grader.store.database import in_transaction, open_database
 from playwright.sync_api import BrowserContext, Page
 

@@ -16,7 +16,7 @@ from dh_grader.courses.assignments import add_assignment
 from dh_grader.server import installed_app
 from dh_grader.settings import SettingsError, load_settings
 from dh_grader.store.database import in_transaction, open_database
-from dh_grader.store.learner_data import months_before
+from dh_grader.store.results import months_before
 from dh_grader.store.tables import assignments, attempts, extensions, outcomes, overrides
 from sqlalchemy import insert, update
 from typer.testing import CliRunner, Result

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from dh_grader.expressions import Symbol, Vocabulary, joint_variable, read
 from dh_grader.expressions.evaluate import known_values, value_at
-from dh_grader.expressions.tree import Binary, Number
+from dh_grader.expressions.vocabulary import Binary, Number
 
 VOCABULARY = Vocabulary([joint_variable(1), joint_variable(2), Symbol("l1", "length")])
 AT = {"theta1": 0.7, "theta2": -1.9, "l1": 0.4}

@@ -9,7 +9,7 @@ from functools import cache
 import pytest
 from dh_grader.grading import misconception as engine
 from dh_grader.grading.diagnosis.lists import WrongPosition
-from dh_grader.grading.diagnosis.rows_and_columns import Slip
+from dh_grader.grading.diagnosis.slips_of_the_table import Slip
 from dh_grader.grading.misconception import Record, Written, all_records, records_of, register
 from dh_grader.kinematics import Numbers
 

@@ -5,9 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.grading.follow_through import can_carry, stands_still
-from dh_grader.grading.grading import Grading, StudentChain
+from dh_grader.grading.judging import Grading, StudentChain
 from dh_grader.grading.kinds.motions import nearest_triple
+from dh_grader.grading.marks import can_carry, stands_still
 from dh_grader.grading.misconception import multiples, number_formula
 from dh_grader.grading.numbers import HALF, SAMPLES, Samples, draw, joint_counts, moves_with
 from dh_grader.grading.reading.entries import Reader

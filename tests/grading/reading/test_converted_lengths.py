@@ -4,8 +4,8 @@ from collections.abc import Mapping
 
 import pytest
 from dh_grader.catalogue import Exercise
+from dh_grader.grading.reading import preview_entries
 from dh_grader.grading.reading.entries import converted
-from dh_grader.grading.reading.preview import preview_entries
 
 
 @pytest.mark.parametrize(

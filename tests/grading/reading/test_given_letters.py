@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.grading.reading.preview import PastedPreview, preview_pasted
+from dh_grader.grading.reading import PastedPreview, preview_pasted
 
 from tests.grading.support.exercise_texts import Make, all_codes, graded, one_part
 from tests.grading.support.submitting import full_marks

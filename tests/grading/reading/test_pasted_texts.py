@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 
 from tests.grading.reading.pasted_texts import languages, reading_of, texts
 

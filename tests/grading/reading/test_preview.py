@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.expressions import Kind
-from dh_grader.grading.reading.preview import preview_entries, preview_pasted
+from dh_grader.grading.reading import preview_entries, preview_pasted
 from dh_grader.translations import Sentence
 
 TABLE = "\n".join(

@@ -6,7 +6,7 @@ import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.expressions import AngleUnit
 from dh_grader.grading import PartReport, Severity, Verdict
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 
 from tests.grading.reading.robot_scripts import (
     by_column,

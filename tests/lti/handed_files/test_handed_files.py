@@ -10,14 +10,15 @@ from typing import Any
 import httpx
 import jwt
 import pytest
-from dh_grader.access import Scope, add_key, new_key_text
+from dh_grader.access import Scope, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.catalogue import Exercise
 from dh_grader.lti import handed_files as queue
+from dh_grader.lti import registration, remove_registration
 from dh_grader.lti.fetching import published_keys
 from dh_grader.lti.handed_files import FileReporting, missing_counts, missing_reports
 from dh_grader.lti.outbox import BackgroundSending
-from dh_grader.lti.registrations import registration, remove_registration
-from dh_grader.store.learner_data import forget
+from dh_grader.store.results import forget
 from dh_grader.store.tables import contexts, handed_files
 from dh_grader.translations import ENGLISH
 from sqlalchemy import select

@@ -23,7 +23,7 @@ from pathlib import Path
 from typing import Any, Final
 
 import httpx
-from dh_grader.lti.registrations import NewRegistration, add_registration
+from dh_grader.lti import NewRegistration, add_registration
 from dh_grader.store.database import in_transaction, open_database
 from rich.console import Console
 

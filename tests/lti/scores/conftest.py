@@ -11,7 +11,7 @@ from dh_grader.lti.fetching import published_keys
 from dh_grader.lti.launch import pseudonym
 from dh_grader.lti.outbox import ScoreSender
 from dh_grader.store import tables
-from dh_grader.store.learner_data import everything_of
+from dh_grader.store.results import everything_of
 from sqlalchemy import Row, select
 
 from tests.access.kept_services import SECRET
@@ -106,7 +106,8 @@ class Journey:
         return found
 
     def tutor(self) -> dict[str, str]:
-        from dh_grader.access import Scope, add_key, new_key_text
+        from dh_grader.access import Scope, new_key_text
+        from dh_grader.access.keys import add_key
 
         if "tutor" not in self.tokens:
             text, now = new_key_text(), datetime.now(UTC)

@@ -14,8 +14,7 @@ from dh_grader.catalogue import Exercise
 from dh_grader.expressions import ExpressionError, read
 from dh_grader.translations import ENGLISH, LANGUAGES, Language
 from dh_grader.web import web_routes
-from dh_grader.web.assets import load_assets
-from dh_grader.web.pages import TOPICS, help_page
+from dh_grader.web.pages import TOPICS, help_page, load_assets
 
 from tests.expressions.corpus_files import ROBOT
 from tests.grading.support.submitting import full_marks, handed_in, part

@@ -1,4 +1,4 @@
-"""A known name in the wrong letter case: cOs for cos."""
+"""Why a name cannot be read, and its repair: unknown, misspelled, indexed or of no joint."""
 
 import re
 from typing import Final
@@ -22,6 +22,8 @@ from dh_grader.expressions.words import OPERAND_ENDS, Piece, split
 from dh_grader.regex import regex
 from dh_grader.translations import listed, paragraph, say
 
+# --- A known name in the wrong letter case: cOs for cos
+
 
 @for_causes("name")
 def repair_wrong_case(failure: Failure) -> Repair:
@@ -37,7 +39,7 @@ def repair_wrong_case(failure: Failure) -> Repair:
     return error(failure, "wrong_case", message, failure.replaced(known))
 
 
-# A name that is not declared.
+# --- A name that is not declared
 
 
 _INDEXED = regex(r"([^0-9]+)[0-9]+")
@@ -143,7 +145,7 @@ def _joined(symbols: list[Symbol]) -> str:
     return ", ".join(names) + (", …" if len(symbols) > _LISTED else "")
 
 
-# A variable that no joint has: q7 with six joints, theta12, theta3 if joint 3 slides.
+# --- A variable that no joint has: q7 with six joints, theta12, theta3 if joint 3 slides
 
 
 _JOINT = regex(rf"(?P<stem>[A-Za-z{characters.CLASS}]+?)(?P<index>[0-9]+)(?P<rest>.*)")
@@ -219,7 +221,7 @@ def _reason(written: str, joint: int, vocabulary: Vocabulary) -> str:
     )
 
 
-# Functions that no answer needs (log, sinh, max), and other names of known functions (cosine).
+# --- Functions that no answer needs (log, sinh, max), and other names of known functions (cosine)
 
 
 _RENAMED = {
@@ -271,7 +273,7 @@ def repair_unknown_function(failure: Failure) -> Repair:
     return error(failure, "unknown_function", message, failure.replaced(renamed))
 
 
-# LaTeX commands that are unknown or lack their argument.
+# --- LaTeX commands that are unknown or lack their argument
 
 
 @for_causes("command", "argument")
@@ -295,7 +297,7 @@ def repair_unknown_command(failure: Failure) -> Repair:
     return error(failure, "unknown_command", message, suggestion)
 
 
-# A subscript that is a formula: c_{\theta_1+\theta_2}, c_{12-4}, θ₁₊₂.
+# --- A subscript that is a formula: c_{\theta_1+\theta_2}, c_{12-4}, θ₁₊₂
 
 
 _FUNCTIONS = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
@@ -337,7 +339,7 @@ def _sum_of_joints(inside: str, failure: Failure) -> str:
     return "".join(f"{sign or '+'}theta{joint}" for sign, joint in terms).removeprefix("+")
 
 
-# Shorthand that names one joint twice: c11.
+# --- Shorthand that names one joint twice: c11
 
 
 @for_causes("invalid_shorthand")
@@ -352,7 +354,7 @@ def repair_repeated_joint(failure: Failure) -> Repair:
     return error(failure, "repeated_joint", message)
 
 
-# A raised 0 or o as degree sign: 90⁰, 90^0, 90^o.
+# --- A raised 0 or o as degree sign: 90⁰, 90^0, 90^o
 
 
 _RAISED_ZERO_LETTER = "[oO]"
@@ -384,7 +386,7 @@ def _raised_letter(failure: Failure) -> Span | None:
     return next((place for place in matches if place[0] <= start and end <= place[1]), None)
 
 
-# Shorthand with a joint that has no angle: c3 if joint 3 slides, s7 if there is no joint 7.
+# --- Shorthand with a joint that has no angle: c3 if joint 3 slides, s7 if there is no joint 7
 
 
 @for_causes("invalid_shorthand")
@@ -409,7 +411,7 @@ def repair_not_revolute(failure: Failure) -> Repair:
     return error(failure, "not_revolute", message)
 
 
-# The letter x as product sign: 2 x q1.
+# --- The letter x as product sign: 2 x q1
 
 
 @for_causes("name")
@@ -423,7 +425,7 @@ def repair_letter_x(failure: Failure) -> Repair:
     return error(failure, "letter_x", message, failure.replaced("*", span), span)
 
 
-# Indices in brackets that name no symbol (q[6] with six joints) or have mixed styles.
+# --- Indices in brackets that name no symbol (q[6] with six joints) or have mixed styles
 
 
 # A whole number in brackets; then the name before it is unknown, not the index.
@@ -500,7 +502,7 @@ def _no_number(failure: Failure) -> Repair:
     return error(failure, "index", message, span=(start, end + 1))
 
 
-# q1(t): a joint variable as a function of time.
+# --- q1(t): a joint variable as a function of time
 
 
 _OF_TIME = regex(r"\s*(?:\\left)?\(\s*t\s*(?:\\right)?\)")
@@ -516,7 +518,7 @@ def repair_function_of_time(failure: Failure) -> Repair:
     return error(failure, "function_of_time", message, without_time)
 
 
-# The letters e, i and j, which are not constants in a formula.
+# --- The letters e, i and j, which are not constants in a formula
 
 
 _REASONS = {
@@ -542,7 +544,7 @@ def repair_euler_and_imaginary(failure: Failure) -> Repair:
     return error(failure, "unknown_symbol", message, suggestion)
 
 
-# A name and its index with a space between them: theta 1, c 12.
+# --- A name and its index with a space between them: theta 1, c 12
 
 
 _DETACHED = regex(rf"([A-Za-z{characters.CLASS}]+)[ _]+([0-9]+)(?![0-9.])")
@@ -563,7 +565,7 @@ def repair_detached_index(failure: Failure) -> Repair:
     return error(failure, "detached_index", message, suggestion, match.span())
 
 
-# A letter in braces, followed by its index: {\theta}_1, {c}_{12}.
+# --- A letter in braces, followed by its index: {\theta}_1, {c}_{12}
 
 
 _BRACED_STEM_LETTER = rf"\\?[A-Za-z]+|[{characters.CLASS}{''.join(characters.VARIANTS)}]"
@@ -602,7 +604,7 @@ def _is_taken(source: str, match: re.Match[str]) -> bool:
     return before is not None and before[1] not in _WITHOUT_ARGUMENT
 
 
-# The text sin45, which may be the sine of 45 or of the sum of the joint angles 4 and 5.
+# --- The text sin45, which may be the sine of 45 or of the sum of the joint angles 4 and 5
 
 
 _GOES_ON = regex(r"\.?\w+")

@@ -1,4 +1,4 @@
-"""A unit after a variable: (q1 + 90)deg. Only numbers have units."""
+"""Why a number, a unit or a power cannot be read, and its repair."""
 
 import re
 import unicodedata
@@ -16,6 +16,9 @@ from dh_grader.expressions.vocabulary import IN_DEGREES
 from dh_grader.expressions.words import OPERAND_ENDS
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- A unit after a variable: (q1 + 90)deg. Only numbers have units
+
 
 _UNITS = {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}
 _IN_DEGREES = {"°", "deg", "degree", "degrees"}
@@ -52,7 +55,7 @@ def _repaired(failure: Failure) -> str | None:
     return _TERM.sub(rf"\g<1>{unit}", before + after)
 
 
-# Two values instead of one: ``2 3``, ``q1, q2``, ``90° (π/2)``, or a second line.
+# --- Two values instead of one: ``2 3``, ``q1, q2``, ``90° (π/2)``, or a second line
 
 
 @for_causes("values", "grammar")
@@ -65,13 +68,13 @@ def repair_two_values(failure: Failure) -> Repair:
     return error(failure, "two_values", message, failure.details.get("instead"), (start, end))
 
 
-# A value with two units: 90 deg deg, deg(90°).
+# --- A value with two units: 90 deg deg, deg(90°)
 
 
 repair_two_units = refusal("two_units", "two_units", say("This has two units. Write one."))
 
 
-# tan2(y, x) instead of atan2(y, x).
+# --- tan2(y, x) instead of atan2(y, x)
 
 
 _TAN2 = regex(r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()")
@@ -91,7 +94,7 @@ def repair_tan_of_two(failure: Failure) -> Repair:
     return error(failure, "tan_of_two", message, failure.replaced("atan2", span), span)
 
 
-# ±, +/- and +-, which mean two values.
+# --- ±, +/- and +-, which mean two values
 
 
 _TYPED = regex(r"\+\s*/\s*-")
@@ -107,7 +110,7 @@ def repair_plus_minus(failure: Failure) -> Repair:
     return error(failure, "two_values", message, span=typed and typed.span())
 
 
-# NaN, infinity, or a number too large for a float.
+# --- NaN, infinity, or a number too large for a float
 
 
 repair_not_finite = refusal(
@@ -117,7 +120,7 @@ repair_not_finite = refusal(
 )
 
 
-# true or false instead of a number.
+# --- true or false instead of a number
 
 
 repair_not_a_number = refusal(
@@ -125,7 +128,7 @@ repair_not_a_number = refusal(
 )
 
 
-# A number before a fraction, which may be a sum or a product: 2½, 2\frac{1}{2}.
+# --- A number before a fraction, which may be a sum or a product: 2½, 2\frac{1}{2}
 
 
 _NUMBER = regex(r"([0-9.]+)\s*$")
@@ -151,7 +154,7 @@ def repair_mixed_number(failure: Failure) -> Repair:
     return error(failure, "two_values", message, suggestion)
 
 
-# A number with two points: 1.2.3.
+# --- A number with two points: 1.2.3
 
 
 @for_causes("values")
@@ -163,7 +166,7 @@ def repair_malformed_number(failure: Failure) -> Repair:
     return error(failure, "malformed_number", message)
 
 
-# Units after a length: 0.5 m, 30cm, \SI{0.5}{\metre}.
+# --- Units after a length: 0.5 m, 30cm, \SI{0.5}{\metre}
 
 
 _UNIT = regex(
@@ -219,7 +222,7 @@ def _quantity(failure: Failure) -> Repair:
     return error(failure, "length_unit", _WITHOUT_UNIT, failure.replaced(quantity[1]))
 
 
-# A range of values instead of one value: [0, pi], 0 < q1 < pi, -180..180.
+# --- A range of values instead of one value: [0, pi], 0 < q1 < pi, -180..180
 
 
 _BETWEEN = regex(
@@ -237,7 +240,7 @@ def repair_interval(failure: Failure) -> Repair:
     return error(failure, "interval", message, span=match.span())
 
 
-# Powers of functions: sin^-1(x), which may mean asin(x) or 1/sin(x), and sin^k(x).
+# --- Powers of functions: sin^-1(x), which may mean asin(x) or 1/sin(x), and sin^k(x)
 
 
 _INVERSE = regex(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
@@ -272,7 +275,7 @@ def repair_function_power(failure: Failure) -> Repair:
     return error(failure, "function_power", message, suggestion, whole)
 
 
-# Functions such as acosd and rad2deg, which return degrees, in a text with radians.
+# --- Functions such as acosd and rad2deg, which return degrees, in a text with radians
 
 
 _MODULE = regex(r"[A-Za-z]+\.$")
@@ -300,7 +303,7 @@ def repair_degrees_function(failure: Failure) -> Repair:
     return error(failure, "degrees_function", message, failure.replaced(plain, (start, end)))
 
 
-# A comma or an apostrophe as decimal point, or a thousands separator: 1,5; 1’5; 1.000,5.
+# --- A comma or an apostrophe as decimal point, or a thousands separator: 1,5; 1’5; 1.000,5
 
 
 _THOUSANDS = regex(r"(?<![0-9.,])[1-9][0-9]{0,2}(?:,000)+(?![0-9])")
@@ -370,7 +373,7 @@ def _apostrophe(failure: Failure) -> Repair:
     return error(failure, "decimal_comma", message, point)
 
 
-# Roots other than the square root: ∛x, \sqrt[3]{x}.
+# --- Roots other than the square root: ∛x, \sqrt[3]{x}
 
 
 repair_cube_root = refusal(
@@ -380,7 +383,7 @@ repair_cube_root = refusal(
 )
 
 
-# A power of a power, such as 2^3^2, which is ambiguous.
+# --- A power of a power, such as 2^3^2, which is ambiguous
 
 
 @for_causes("grammar")
@@ -392,7 +395,7 @@ def repair_chained_power(failure: Failure) -> Repair:
     return error(failure, "chained_power", message)
 
 
-# A unit of angles in brackets, as in headers: 90 [deg], 1.57 (rad).
+# --- A unit of angles in brackets, as in headers: 90 [deg], 1.57 (rad)
 
 
 _BRACKETED = regex(r"(?<=[\w.)}])\s{0,4}([(\[])\s{0,4}(°|deg|rad)\s{0,4}[)\]]")
@@ -411,7 +414,7 @@ def repair_bracketed_unit(failure: Failure) -> Repair:
     )
 
 
-# A unit that is ambiguous: 2deg(q1), degrees(90), π/2°, 180/2°.
+# --- A unit that is ambiguous: 2deg(q1), degrees(90), π/2°, 180/2°
 
 
 @for_causes("ambiguous_unit")
@@ -440,7 +443,7 @@ def _inside(failure: Failure) -> Repair:
     return error(failure, "ambiguous_unit", message, failure.replaced(f"({value}){unit}"))
 
 
-# A star after a joint variable that may mark the variable or be a product: k*q1*+s1.
+# --- A star after a joint variable that may mark the variable or be a product: k*q1*+s1
 
 
 @for_causes("ambiguous_star")
@@ -457,7 +460,7 @@ def repair_ambiguous_star(failure: Failure) -> Repair:
     return error(failure, "ambiguous_star", message, failure.replaced("", (start, end)))
 
 
-# The text 2e1 if e1 is a symbol: it may be a power of ten or a product.
+# --- The text 2e1 if e1 is a symbol: it may be a power of ten or a product
 
 
 @for_causes("ambiguous_number")

@@ -1,4 +1,4 @@
-"""A wrong number of arguments: atan2 of one value, atan(y, x), or cos(0,5) with a decimal comma."""
+"""Why a text as a whole cannot be read, and its repair: brackets, operators, prose, quotes."""
 
 import re
 import unicodedata
@@ -17,6 +17,10 @@ from dh_grader.expressions.repairs.failure import (
 from dh_grader.expressions.words import END, OPERAND_ENDS, PARTNERS, split
 from dh_grader.regex import regex
 from dh_grader.translations import paragraph, say
+
+# --- A wrong number of arguments: atan2 of one value, atan(y, x), or cos(0,5) with a decimal …
+#
+# A wrong number of arguments: atan2 of one value, atan(y, x), or cos(0,5) with a decimal comma.
 
 
 @for_causes("arguments")
@@ -68,7 +72,7 @@ def _with_points(failure: Failure) -> str | None:
     return None if failure.details["name"] == "atan" else source
 
 
-# A character that means nothing in a formula.
+# --- A character that means nothing in a formula
 
 
 def repair_unexpected_character(failure: Failure) -> Repair:
@@ -79,7 +83,7 @@ def repair_unexpected_character(failure: Failure) -> Repair:
     return error(failure, "unexpected_character", message)
 
 
-# A bracket without its partner.
+# --- A bracket without its partner
 
 
 _BEFORE_BRACKET = OPERAND_ENDS | {"LEFT"}
@@ -127,7 +131,7 @@ def _error(failure: Failure, span: Span, suggestion: str) -> Repair:
     return error(failure, "unbalanced_bracket", message, suggestion, span)
 
 
-# A prime or an apostrophe: a transpose in MATLAB, a derivative or another symbol on paper.
+# --- A prime or an apostrophe: a transpose in MATLAB, a derivative or another symbol on paper
 
 
 # A mark after a number may be its unit, such as minutes of an angle, so it must not be removed.
@@ -155,7 +159,7 @@ def repair_transpose(failure: Failure) -> Repair:
     return error(failure, "transpose", message, (before + after).strip() or None, span)
 
 
-# A full stop or a comma at the end, as after a formula in a sentence.
+# --- A full stop or a comma at the end, as after a formula in a sentence
 
 
 @for_causes("grammar", "character")
@@ -171,7 +175,7 @@ def repair_trailing_punctuation(failure: Failure) -> Repair:
     return error(failure, "trailing_punctuation", message, suggestion, span)
 
 
-# Names in quotation marks, or declared as in a program: 'q1', Symbol('q1').
+# --- Names in quotation marks, or declared as in a program: 'q1', Symbol('q1')
 
 
 _QUOTED = regex(
@@ -196,7 +200,7 @@ def _inside(found: re.Match[str]) -> str:
     return found[2] if called or found[3] is None else found[2] + found[3]
 
 
-# Words instead of a value: variable, depends on theta, n/a.
+# --- Words instead of a value: variable, depends on theta, n/a
 
 
 _PROSE_WORD = regex(r"[A-Za-zÀ-ÿ]+")
@@ -227,7 +231,7 @@ def _is_prose(failure: Failure) -> bool:
     return sum(split(word, failure.vocabulary) is None for word in words) > 1
 
 
-# A text that ends with an operator.
+# --- A text that ends with an operator
 
 
 OPERATORS = frozenset({"PLUS", "MINUS", "STAR", "SLASH", "POWER", "ROOT"})
@@ -246,7 +250,7 @@ def repair_trailing_operator(failure: Failure) -> Repair:
     return error(failure, "trailing_operator", message, before or None, span)
 
 
-# An operator, a unit or brackets without an operand.
+# --- An operator, a unit or brackets without an operand
 
 
 _BEFORE_VALUE = OPERATORS | {"LEFT", "OPEN", "COMMA", "TIGHT", "JOIN"}
@@ -270,7 +274,7 @@ def repair_missing_operand(failure: Failure) -> Repair:
     return error(failure, "missing_operand", message, suggestion, span)
 
 
-# A bracket that is closed by a bracket of another kind: (q1 + q2].
+# --- A bracket that is closed by a bracket of another kind: (q1 + q2]
 
 
 _COMMAND = regex(r"\\(?:[dtc]?frac|sqrt)\s{0,8}$")
@@ -305,7 +309,7 @@ def repair_mismatched_bracket(failure: Failure) -> Repair:
     return error(failure, "mismatched_bracket", message, failure.replaced(wanted))
 
 
-# Letters of another alphabet that look like Latin or Greek letters.
+# --- Letters of another alphabet that look like Latin or Greek letters
 
 
 @for_causes("look_alike")
@@ -322,7 +326,7 @@ def repair_look_alike_character(failure: Failure) -> Repair:
     return error(failure, "look_alike_character", message, repaired)
 
 
-# Invisible characters, which often come from pasting.
+# --- Invisible characters, which often come from pasting
 
 
 @for_causes("invisible")
@@ -344,7 +348,7 @@ def repair_invisible_character(failure: Failure) -> Repair:
     return error(failure, "invisible_character", message, "".join(kept))
 
 
-# A function without its argument: sin, sin(), sin * q1.
+# --- A function without its argument: sin, sin(), sin * q1
 
 
 @for_causes("grammar")
@@ -367,7 +371,7 @@ def repair_function_without_argument(failure: Failure) -> Repair:
     return error(failure, "function_without_argument", message, suggestion, span)
 
 
-# An equation in place of a value: sin(q1) = 0.5, a = b = c.
+# --- An equation in place of a value: sin(q1) = 0.5, a = b = c
 
 
 _EQUALS = regex(r":=|&?=+|≈|≡|≔|\\(?:approx|equiv|coloneqq)(?![A-Za-z])")
@@ -387,7 +391,7 @@ def repair_equation(failure: Failure) -> Repair:
     return error(failure, "equation", message, suggestion or None, signs[0].span())
 
 
-# An empty text.
+# --- An empty text
 
 
 repair_empty = refusal(
@@ -395,7 +399,7 @@ repair_empty = refusal(
 )
 
 
-# A dash alone, which tables print for an empty cell or for zero.
+# --- A dash alone, which tables print for an empty cell or for zero
 
 
 _DASH = regex(r"[-–—−‐‑‒―]+")
@@ -409,7 +413,7 @@ def repair_dash(failure: Failure) -> Repair:
     return error(failure, "dash", message, "0", (0, len(failure.source)))
 
 
-# A comment after the expression: % in MATLAB and LaTeX, # in Python, // and /* in C.
+# --- A comment after the expression: % in MATLAB and LaTeX, # in Python, // and /* in C
 
 
 _COMMENT = regex(r"(?<!\\)%|#|//|/\*|\(\*")
@@ -443,7 +447,7 @@ def repair_comment(failure: Failure) -> Repair:
     return error(failure, "comment", message, before or None, span)
 
 
-# A text that is too long, too large or nested too deep.
+# --- A text that is too long, too large or nested too deep
 
 
 @for_causes("beyond")

@@ -8,7 +8,6 @@ import dh_grader.grading.diagnosis.lists
 import dh_grader.grading.diagnosis.matrices
 import dh_grader.grading.diagnosis.motions
 import dh_grader.grading.diagnosis.products
-import dh_grader.grading.diagnosis.rows_and_columns
 import dh_grader.grading.diagnosis.screws_and_placements
 import dh_grader.grading.diagnosis.slips_of_the_table
 import dh_grader.grading.diagnosis.table_cells

@@ -1,4 +1,4 @@
-"""Find out if a formula is a length, an angle or a plain number."""
+"""Find a wrong formula's quantity, and a small change that makes it right."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ import numpy as np
 from dh_grader.expressions import Kind, Symbol
 from dh_grader.expressions.evaluate import Known, compile_tree, known_values, value_at
 from dh_grader.expressions.printing import to_text
-from dh_grader.expressions.tree import (
+from dh_grader.expressions.vocabulary import (
     Binary,
     Call,
     Negation,
@@ -27,6 +27,9 @@ from dh_grader.grading.misconception import AnyHypothesis, Repaired, WrongValue,
 from dh_grader.grading.numbers import EXACT_VALUE, ROUNDED_VALUE
 from dh_grader.kinematics import Numbers
 from dh_grader.translations import say
+
+# --- Find out if a formula is a length, an angle or a plain number
+
 
 # None if a formula has no single quantity, or an unknown one: l1 + theta1, l1*l2.
 Quantity: TypeAlias = Kind | None
@@ -74,7 +77,7 @@ def _combined(operator: str, left: Quantity, right: Quantity) -> Quantity:
     return "number" if operator == "/" and left == right else None
 
 
-# Search for the formula that the student intended with a wrong entry.
+# --- Search for the formula that the student intended with a wrong entry
 
 
 # A formula with more nodes is compared, but not rewritten.
@@ -180,11 +183,10 @@ class WrongEntry(WrongValue):
         return replace(rewritten, finding=replace(finding, hint=hint, correction=correction))
 
 
-# Functions that correct one possible mistake in a student's formula.
+# --- Functions that correct one possible mistake in a student's formula
 #
 # The functions return a new tree and never change the old one.
-
-
+#
 # The new tree shares all unchanged parts with the old one. If there is nothing to rewrite, the old
 # tree itself is returned.
 

@@ -1,4 +1,4 @@
-"""Slips in a list of values; each value is a length, an angle or a number."""
+"""Slips in a list of values: coordinates, sums of angles, single angles, Euler angles."""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ from itertools import chain, combinations, permutations, product
 import numpy as np
 
 from dh_grader.expressions.printing import PLAIN
-from dh_grader.expressions.tree import Call, Node
+from dh_grader.expressions.vocabulary import Call, Node
 from dh_grader.grading.diagnosis.formulas import WrongEntry, nodes
 from dh_grader.grading.diagnosis.matrices import ENTRY_WORK, diagnose
 from dh_grader.grading.diagnosis.motions import Chain, GivenMotion, named, other_poses
@@ -19,8 +19,7 @@ from dh_grader.grading.diagnosis.upstream import (
     SlippedAnswers,
     SlipSearch,
 )
-from dh_grader.grading.grading import Grading
-from dh_grader.grading.judging import ComparedValues
+from dh_grader.grading.judging import ComparedValues, Grading
 from dh_grader.grading.misconception import (
     UNEXPLAINED,
     UNIT_FACTORS,
@@ -51,6 +50,9 @@ from dh_grader.grading.numbers import (
 from dh_grader.grading.report import Finding
 from dh_grader.kinematics import SEQUENCES, Matrices, Numbers, from_angles
 from dh_grader.translations import Sentence, listed, say, say_count, template
+
+# --- Slips in a list of values; each value is a length, an angle or a number
+
 
 # The work of explaining a whole list of values, as the budget counts it.
 SEARCH_WORK = 15.0
@@ -112,7 +114,7 @@ def slips_of(
     return slips
 
 
-# Slips in the coordinates of a point.
+# --- Slips in the coordinates of a point
 
 
 @dataclass(frozen=True)
@@ -219,7 +221,7 @@ def displacement(case: WrongPosition) -> Explained | None:
     return None if case.motion is None else explanation(case, case.motion, Displacements)
 
 
-# Slips in an angle that is a sum of joint angles.
+# --- Slips in an angle that is a sum of joint angles
 
 
 # An angle of more addends is not taken apart: ten addends have a thousand subsets.
@@ -414,7 +416,7 @@ def of_another_joint(wrong: WrongSum) -> Hypotheses:
             yield Written(written, finding_on(wrong.case, hint))
 
 
-# Slips in a single angle.
+# --- Slips in a single angle
 
 
 WRONG_SIGN = say(
@@ -638,7 +640,7 @@ def diagnose_angle(case: WrongValue) -> Finding:
     return finding
 
 
-# Slips in the three Euler angles of a rotation.
+# --- Slips in the three Euler angles of a rotation
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Slips in a single matrix entry."""
+"""Slips in a matrix: one entry, a column or row, the whole, or a wrong inverse."""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ import numpy as np
 
 from dh_grader.expressions import Symbol
 from dh_grader.expressions.parser import in_degrees
-from dh_grader.expressions.tree import Node, Number, Unit, children
+from dh_grader.expressions.vocabulary import Node, Number, Unit, children
 from dh_grader.grading.diagnosis import formulas as rewriting
 from dh_grader.grading.diagnosis.formulas import Rewritten, WrongEntry
 from dh_grader.grading.diagnosis.motions import (
@@ -47,6 +47,9 @@ from dh_grader.grading.numbers import EXACT_VALUE, ROUNDED_VALUE
 from dh_grader.grading.report import Finding, Severity
 from dh_grader.kinematics import Numbers, inverse
 from dh_grader.translations import Sentence, listed, say, say_count, template
+
+# --- Slips in a single matrix entry
+
 
 # Three turning joints have three runs of joints whose angles add up: 12, 23, 123.
 MAX_RUNS = 3
@@ -337,7 +340,7 @@ def _unexplained(case: WrongEntry, required: Required | None) -> Finding:
     return finding
 
 
-# Columns and rows of a matrix whose signs are all wrong.
+# --- Columns and rows of a matrix whose signs are all wrong
 
 
 class Lines:
@@ -408,9 +411,8 @@ def _line_signs_parts(indices: list[int]) -> str:
     return listed([names[i] for i in indices])
 
 
-# Slips in a whole matrix, or in its whole rotation or position.
-
-
+# --- Slips in a whole matrix, or in its whole rotation or position
+#
 # If such a slip explains an entry, the entry gets no finding of its own.
 
 
@@ -749,11 +751,10 @@ def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -
     return diagnosed(case, WrongAxes(rotation, codes))
 
 
-# Slips in the inverse of a homogeneous transform.
+# --- Slips in the inverse of a homogeneous transform
 #
 # If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp.
-
-
+#
 # The same wrong numbers also occur in transforms that are not inverses. They then mean a vector in
 # the wrong frame or in the opposite direction.
 

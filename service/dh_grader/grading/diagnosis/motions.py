@@ -1,8 +1,4 @@
-"""Slips in a product of link transforms.
-
-Each misconception yields a wrong pose ``(SAMPLES, 4, 4)`` and a phrase for that pose, such as "the
-pose of frame {2}".
-"""
+"""Slips in a product of link transforms or in a given motion, and the case of a wrong matrix."""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -30,6 +26,11 @@ from dh_grader.grading.report import Finding
 from dh_grader.kinematics import Convention, Matrices, Numbers, Table, compound, links
 from dh_grader.translations import Sentence, say
 
+# --- Slips in a product of link transforms
+#
+# Each misconception yields a wrong pose ``(SAMPLES, 4, 4)`` and a phrase for that pose, such as
+# "the pose of frame {2}".
+#
 # The student may have submitted the pose, or only its rotation or its position. Therefore named()
 # puts the phrase into a sentence that fits the answer: "This matrix is …", or "The position comes
 # from …".
@@ -315,12 +316,11 @@ def named(pose: Explained, told: str, *others: Finding) -> Callable[[], tuple[Fi
     return lambda: tuple(findings())
 
 
-# Split a composite motion into turns and displacements.
+# --- Split a composite motion into turns and displacements
 #
 # A displacement is the sum of the terms of a position that are turned by the same angles. A turn is
 # the rotation that remains if all angles except one are 0.
-
-
+#
 # An exercise gives the motion in formulas. The turns before a displacement are those whose angles
 # change it.
 
@@ -469,7 +469,7 @@ def product(matrices: Sequence[Matrices]) -> Matrices:
     return np.asarray(reduce(np.matmul, matrices))
 
 
-# A wrong matrix with the data for its diagnosis.
+# --- A wrong matrix with the data for its diagnosis
 
 
 Block = tuple[slice, slice]

@@ -1,4 +1,4 @@
-"""Slips in a composite motion (turns and displacements) that an exercise gives in formulas."""
+"""Slips in composite motions, rotations, single links, home positions and exponentials."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -56,6 +56,9 @@ from dh_grader.kinematics import (
     row,
 )
 from dh_grader.translations import Sentence, listed, say, say_count
+
+# --- Slips in a composite motion (turns and displacements) that an exercise gives in formulas
+
 
 # If there are more ways to leave turns out, none is tried.
 MAX_WAYS = 64
@@ -306,7 +309,7 @@ def displacements_of_position(case: MatrixCase) -> Hypotheses:
     return _in_matrix(case, Displacements, POSITION_BLOCK)
 
 
-# Slips in a composite rotation, such as a wrong axis or a missing turn.
+# --- Slips in a composite rotation, such as a wrong axis or a missing turn
 
 
 # With more steps, only one of them is assumed to be wrong.
@@ -538,7 +541,7 @@ def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
     return as_explanations(case, explanation(case, subset, Step)) if steps else []
 
 
-# Slips in a single link transform.
+# --- Slips in a single link transform
 
 
 @dataclass(frozen=True)
@@ -696,7 +699,7 @@ def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:
     ]
 
 
-# Find joint variables in answers for the home position, where these variables are 0.
+# --- Find joint variables in answers for the home position, where these variables are 0
 
 
 NOT_AT_HOME = register(
@@ -736,7 +739,7 @@ def explain_moving(
     return [Explanation(NOT_AT_HOME, moving)] if moving.any() else []
 
 
-# Slips in a product of exponentials.
+# --- Slips in a product of exponentials
 
 
 @dataclass(frozen=True, slots=True)

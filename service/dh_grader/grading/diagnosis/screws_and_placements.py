@@ -1,4 +1,4 @@
-"""Slips in a screw axis (ω; v)."""
+"""Slips in screw axes, and the rule that a wrongly placed frame breaks."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -22,6 +22,8 @@ from dh_grader.grading.report import Finding
 from dh_grader.kinematics import Convention, Numbers
 from dh_grader.kinematics.placement import AxisPosition, RightPlace
 from dh_grader.translations import say
+
+# --- Slips in a screw axis (ω; v)
 
 
 @dataclass(frozen=True)
@@ -318,7 +320,7 @@ def explain_screw(case: WrongScrew) -> Finding | None:
     return diagnosed(case) if np.isfinite(case.actual).all() else None
 
 
-# Slips in the screw axes of all joints.
+# --- Slips in the screw axes of all joints
 
 
 @dataclass(frozen=True)
@@ -427,7 +429,7 @@ def explain_screws(case: WrongScrews) -> Finding | None:
     return diagnosed(case)
 
 
-# Find which rule for placing frames a wrong frame breaks.
+# --- Find which rule for placing frames a wrong frame breaks
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,8 @@
-"""Slips in the lengths of an answer, such as a wrong sign."""
+"""A slip: a mistake in the robot's table, joints or lengths, which leads to a wrong answer.
+
+Here are the kinds of slips, and those of lengths and joints; ``whole_tables.py`` has those of
+cells, rows and columns. ``upstream.py`` searches among them for the one that explains an answer.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
@@ -7,34 +11,317 @@ from itertools import combinations
 
 import numpy as np
 
-from dh_grader.catalogue import Exercise, Joint, ReferenceTable
-from dh_grader.grading.diagnosis.rows_and_columns import (
-    ANGLE_LEFT_OUT,
-    DISTANCE_LEFT_OUT,
-    HALF_TURN,
-    HOME_POSITION,
-    JOINT_VARIABLE_DOUBLED,
-    JOINT_VARIABLE_INDEX,
-    JOINT_VARIABLE_MISSING,
-    JOINT_VARIABLE_SIGN,
-    LENGTHS_EXCHANGED,
-    OTHER_LENGTH,
-    QUARTER_TURN,
-    SIGN,
-    CellChange,
-    Names,
-    Slip,
-    SlipWords,
-    SymbolChange,
-    TableRows,
-    exchanged_in_row,
-    slips_of_rows,
+from dh_grader.catalogue import Exercise, Joint
+from dh_grader.expressions.evaluate import SymbolValues
+from dh_grader.grading.misconception import (
+    Record,
+    register,
 )
-from dh_grader.grading.misconception import AXES, SYMBOLS, Record, axes_of_row
-from dh_grader.grading.numbers import CONSTANT, SAME_MOTION, Samples
-from dh_grader.grading.reading.table import IS_ANGLE
-from dh_grader.kinematics import ALPHA, THETA, A, Convention, D, Numbers, Table
+from dh_grader.grading.numbers import (
+    SAME_MOTION,
+    Samples,
+)
+from dh_grader.kinematics import Numbers, Table
 from dh_grader.translations import Sentence, paragraph, say
+
+# --- A slip, and the values that it changes
+#
+# Many slips are tried at once: a single computation takes the changed inputs of all slips.
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolChange:
+    """A changed symbol: its value becomes ``factor`` times the ``source``, plus ``offset``."""
+
+    symbol: str
+    source: str
+    factor: float = 1.0
+    offset: float = 0.0
+
+
+@dataclass(frozen=True, slots=True)
+class CellChange:
+    """A changed constant of a cell: ``factor`` times the ``source``, plus ``offset``."""
+
+    row: int
+    column: int
+    factor: float = 1.0
+    offset: float = 0.0
+    # The row and column of the cell whose constant is multiplied; None for the changed cell itself.
+    source: tuple[int, int] | None = None
+    # If True, the joint variables in the cells change along with the constants.
+    moving: bool = False
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Change:
+    """A change to the symbols or the table cells from which an answer is computed."""
+
+    symbols: tuple[SymbolChange, ...] = ()
+    cells: tuple[CellChange, ...] = ()
+    # If True, the links are computed with the formula of the other convention.
+    misread: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """The names of symbols in a message."""
+
+    # Returns the name that the student uses for a symbol.
+    name: Callable[[str], str]
+    # True for a symbol whose name would reveal the correct entry.
+    gives_away: Callable[[str], bool]
+
+    def shown(self, symbol: str) -> str | None:
+        """Return the name of a symbol, or None if the name would reveal the correct entry."""
+        return None if self.gives_away(symbol) else self.name(symbol)
+
+
+@dataclass(frozen=True, slots=True)
+class SlipWords:
+    """The sentences about a slip."""
+
+    # What is wrong, in a clause, so that several slips can be listed.
+    clause: Sentence
+    # What is wrong and what to check, for this slip alone.
+    hint: str
+    correction: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Slip(Change):
+    """A possible mistake of a student: its kind, and the change that it makes."""
+
+    kind: Record
+    # Returns the sentences about the slip, with the names that the student uses.
+    words: Callable[[Names], SlipWords]
+
+    @property
+    def code(self) -> str:
+        """The code of the kind of slip, or the name of a kind without a code."""
+        return self.kind.name
+
+
+def changed_values(changes: Sequence[Change], values: SymbolValues) -> dict[str, Numbers]:
+    """Return the values ``(K · samples,)`` of each symbol after each of K changes.
+
+    The values after one change are consecutive.
+    """
+    names = list(values)
+    if not names:
+        return {}
+    places = {name: i for i, name in enumerate(names)}
+    right = np.array([values[name] for name in names])
+    stacked = np.repeat(right[:, None], len(changes), axis=1)
+    changed = [(k, symbol) for k, change in enumerate(changes) for symbol in change.symbols]
+    if changed:
+        targets = [places[each.symbol] for _, each in changed]
+        sources = [places[each.source] for _, each in changed]
+        factors = np.array([[each.factor] for _, each in changed])
+        offsets = np.array([[each.offset] for _, each in changed])
+        stacked[targets, [k for k, _ in changed]] = factors * right[sources] + offsets
+    return dict(zip(names, stacked.reshape(len(names), -1), strict=True))
+
+
+def change_cells(
+    changes: Sequence[Change],
+    tables: Table,
+    right: Table,
+    constants: Table,
+    first_row: int = 0,
+) -> None:
+    """Apply each of K changes to its own table in ``tables``, in place.
+
+    ``tables`` is ``(rows, 4, K, count)`` for ``count`` samples.
+    """
+    # right (rows, 4, count) is the correct table, constants the same table with all joint variables
+    # 0. All three arrays begin with row first_row of the whole table.
+    cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]
+    if not cells:
+        return
+    written = np.stack([constants, right])
+    numbers = np.array(
+        [
+            (k, cell.moving, cell.row, cell.column, *(cell.source or (cell.row, cell.column)))
+            for k, cell in cells
+        ]
+    ).T
+    ways, moving, rows, columns, source_rows, source_columns = numbers
+    rows, source_rows = rows - first_row, source_rows - first_row
+    factors = np.array([[cell.factor] for _, cell in cells])
+    offsets = np.array([[cell.offset] for _, cell in cells])
+    sources = written[moving, source_rows, source_columns]
+    tables[rows, columns, ways] += factors * sources - written[moving, rows, columns] + offsets
+
+
+# --- The kinds of slips in the robot's table, joints or lengths, likeliest first
+
+
+JOINT_VARIABLE_SIGN = register(
+    of=Slip,
+    rank=10,
+    code="joint_variable_sign",
+    rule="product",
+    means="a joint moves in the wrong direction about or along its axis",
+    example=("planar-rr", "position", "[a1 c1 + a2 cos(q1 - q2), a1 s1 + a2 sin(q1 - q2)]"),
+    unlike="[a1 c1 - a2 c12, a1 s1 - a2 s12]",
+)
+HOME_POSITION = register(
+    of=Slip,
+    rank=20,
+    code="home_position",
+    rule="product",
+    means="the answer holds only for the home position",
+    example=("planar-rr", "position", "[a1 + a2, 0]"),
+    unlike={"2/1": "0"},
+)
+JOINT_VARIABLE_MISSING = register(
+    of=Slip,
+    rank=30,
+    code="joint_variable_missing",
+    rule="product",
+    means="the variable of a joint is left out, so the joint does not move",
+    example=("planar-rr", "position", "[(a1 + a2) c1, (a1 + a2) s1]"),
+    unlike="[a1 c1, a1 s1]",
+)
+SIGN = register(
+    of=Slip,
+    rank=40,
+    code="sign",
+    rule="product",
+    means="a length or an angle of the table has the wrong sign",
+    example=("planar-rr", "position", "[a1 c1 - a2 c12, a1 s1 - a2 s12]"),
+    unlike="[a1 c1, a1 s1]",
+)
+DISTANCE_LEFT_OUT = register(
+    of=Slip,
+    rank=50,
+    code="distance_left_out",
+    rule="product",
+    means="a length of the table is left out",
+    example=("planar-rr", "position", "[a1 c1, a1 s1]"),
+    unlike="[a1 c1 - a2 c12, a1 s1 - a2 s12]",
+)
+QUARTER_TURN = register(
+    of=Slip,
+    rank=60,
+    code="quarter_turn",
+    rule="product",
+    means="an angle of the table, or the zero position of a joint, is off by 90°",
+    example=("planar-rr", "position", "[a1 c1 - a2 s12, a1 s1 + a2 c12]"),
+    unlike={"1/1": "a1*c1 - a2*c12"},
+)
+COLUMNS_SWAPPED = register(
+    of=Slip,
+    rank=70,
+    code="columns_swapped",
+    rule="product",
+    means="a and d are exchanged, throughout or in one row",
+    example=(
+        "planar-rr",
+        "pose",
+        "[c12, -s12, 0, 0; s12, c12, 0, 0; 0, 0, 1, a1 + a2; 0, 0, 0, 1]",
+    ),
+    unlike={"3/4": "a1"},
+)
+PARAMETER_SIGN = register(
+    of=Slip,
+    rank=80,
+    code="parameter_sign",
+    rule="product",
+    means="one of a, α, d, θ has the wrong sign in every row",
+    example=("three-link-cartesian", "position", "[-d3, -d2, d1]"),
+    unlike="[d1, d2, d3]",
+)
+OTHER_CONVENTION = register(
+    of=Slip,
+    rank=90,
+    code="other_convention",
+    rule="convention",
+    means="the table is multiplied out with the link transform of the other convention",
+    example=(
+        "spatial-rrr",
+        "links",
+        (
+            "[c1, -s1, 0, R; 0, 0, -1, 0; s1, c1, 0, 0; 0, 0, 0, 1] ↵ [c2, -s2, 0, L1; s2, c2, 0, "
+            "0; 0, 0, 1, 0; 0, 0, 0, 1] ↵ [c3, -s3, 0, L2; s3, c3, 0, 0; 0, 0, 1, 0; 0, 0, 0, 1]"
+        ),
+    ),
+    unlike={"A1.2/4": "R*s2"},
+)
+LENGTHS_EXCHANGED = register(
+    of=Slip,
+    rank=100,
+    code="lengths_exchanged",
+    rule="product",
+    means="two lengths of the table are exchanged",
+    example=("planar-rr", "position", "[a2 c1 + a1 c12, a2 s1 + a1 s12]"),
+    unlike={"1/1": "a1*c1 - a2*c12"},
+)
+OTHER_LENGTH = register(
+    of=Slip,
+    rank=110,
+    code="other_length",
+    rule="product",
+    means="one length is used in place of another",
+    example=("planar-rr", "position", "[a1 c1 + a1 c12, a1 s1 + a1 s12]"),
+    unlike={"1/1": "a1*c1 - a2*c12"},
+)
+JOINT_VARIABLE_INDEX = register(
+    of=Slip,
+    rank=120,
+    code="joint_variable_index",
+    rule="product",
+    means="a joint moves by the variable of another joint",
+    example=("planar-rr", "position", "[a1 c1 + a2 cos(2 q1), a1 s1 + a2 sin(2 q1)]"),
+    unlike="[(a1 + a2) c1, (a1 + a2) s1]",
+)
+ANGLE_LEFT_OUT = register(
+    of=Slip,
+    rank=130,
+    code="angle_left_out",
+    rule="product",
+    means="an angle of the table that is no multiple of 90° is left out",
+    example=("arm", "position", "[a3 c1 c3 + b3 s1, a3 s1 c3 - b3 c1, a3 s3 + d2]"),
+    unlike="[a3 c1 c3, a3 s1 c3, a3 s3 + d2]",
+)
+HALF_TURN = register(
+    of=Slip,
+    rank=140,
+    code="half_turn",
+    rule="product",
+    means="an angle of the table, or the zero position of a joint, is off by 180°",
+    example=(
+        "planar-rr",
+        "pose",
+        "[-c12, s12, 0, a1*c1 - a2*c12; -s12, -c12, 0, a1*s1 - a2*s12; 0, 0, 1, 0; 0, 0, 0, 1]",
+    ),
+    unlike={"3/2": "1", "3/3": "0"},
+)
+JOINT_VARIABLE_DOUBLED = register(
+    of=Slip,
+    rank=150,
+    code="joint_variable_doubled",
+    rule="product",
+    means="a joint variable counts twice",
+    example=("planar-rr", "position", "[a1 c1 + a2 cos(q1 + 2 q2), a1 s1 + a2 sin(q1 + 2 q2)]"),
+    unlike="[a1 c1 + a2 cos(2 q1), a1 s1 + a2 sin(2 q1)]",
+)
+ROW_ORDER = register(
+    of=Slip,
+    rank=160,
+    code="row_order",
+    rule="product",
+    means="two rows, or their link transforms, are exchanged",
+    example=("turret", "position", "[a3 c1 c3, a3 s1 c3, a3 s3]"),
+    unlike="[a3 c1 c2, a3 s1 c2, a3 s2]",
+)
+# Listed only together with exchanged rows. Otherwise ``link_products`` names the missing link.
+MISSING_LINK = register(of=Slip, rank=170, name="missing_link")
+
+
+# --- Slips in the lengths of an answer, such as a wrong sign
+
 
 # Robots have a handful of lengths. With more, pairs are not tried.
 MAX_LENGTHS = 12
@@ -138,7 +425,7 @@ def _other_length(right: str, written: str) -> Slip:
     return Slip(OTHER_LENGTH, words, symbols=(SymbolChange(right, written),))
 
 
-# Slips in the joint variables of a robot that is given by a table or by screw axes.
+# --- Slips in the joint variables of a robot that is given by a table or by screw axes
 
 
 Axis = Callable[[Joint], Sentence]
@@ -307,249 +594,3 @@ def axis_direction(exercise: Exercise, samples: Samples) -> Axis:
         return say("Check which way its axis points.")
 
     return direction
-
-
-# Slips in the cells of the robot's table that lead to a wrong pose.
-
-
-# A slip has the same code here as in a submitted table (table_cell).
-
-
-QUARTER = np.pi / 2
-
-
-@dataclass(frozen=True, slots=True)
-class Cell:
-    """A cell of a table, and the words about it in messages."""
-
-    table: ReferenceTable
-    row: int
-    column: int
-    # True if the student chose other frames: the correct value of the cell may differ from table.
-    own_frames: bool
-
-    @property
-    def label(self) -> str:
-        """The label of the cell's row."""
-        return self.table.labels[self.row]
-
-    @property
-    def axes(self) -> str:
-        """The two axes between which the cell's angle is measured."""
-        axis = "z" if self.column == ALPHA else "x"
-        return axes_of_row(axis, self.label, self.table.joints[-1].index)
-
-    @property
-    def correction(self) -> str:
-        """A sentence with the correct formula, or "" if the formula is unknown."""
-        if self.own_frames:
-            return ""
-        return say(
-            "{symbol} in row {row} is {formula}.",
-            symbol=SYMBOLS[self.column],
-            row=self.label,
-            formula=self.table.rows[self.row][self.column].text(),
-        )
-
-    @property
-    def parameter(self) -> Sentence:
-        """The parameter in words, such as "the offset along the axis of joint 2"."""
-        return _parameter(self.table, self.row, self.column)
-
-    def name(self, names: Names) -> str:
-        """Return the student's name for the cell's only constant, or a, α, d or θ."""
-        letters = _letters(self.table, self.row, self.column)
-        if len(letters) == 1 and not self.own_frames:
-            return names.shown(min(letters)) or SYMBOLS[self.column]
-        return SYMBOLS[self.column]
-
-
-def table_slips(
-    table: ReferenceTable,
-    constants: Table,
-    axis: Axis,
-    *,
-    home: bool = False,
-    whole: bool = True,
-) -> Iterator[Slip]:
-    """Yield all slips in a table.
-
-    ``constants`` ``(rows, 4, samples)`` is the table with all joint variables 0.
-    """
-    # With home, the answer is for the home position, so that only constants can be wrong. With
-    # whole, slips of whole rows and columns are tried, too.
-    if not home:
-        yield from joint_slips(table.joints, table.joints, axis)
-        yield from home_slip(table.joints)
-    for i in range(len(table.rows)):
-        yield from row_slips(table, i, constants[i, :, 0].tolist(), axis, home=home)
-    yield from length_slips(*lengths_of(table))
-    if whole:
-        rows = TableRows(constants[..., 0], table.joints, table.labels, table.convention, home)
-        yield from slips_of_rows(rows)
-
-
-def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
-    """Return all lengths of the table, and the lengths that occur only once, alone in a cell."""
-    cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
-    names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
-    once = [name for name in names if sum(name in cell for cell in cells) == 1]
-    return names, [name for name in once if {name} in cells]
-
-
-def row_slips(
-    table: ReferenceTable,
-    row: int,
-    constants: Sequence[float],
-    axis: Axis,
-    *,
-    own_frames: bool = False,
-    home: bool = False,
-) -> Iterator[Slip]:
-    """Yield the slips in one row.
-
-    ``constants`` are the cells of the row at one sample, with all joint variables 0.
-    """
-    # With own_frames, the student chose other frames, so that constants differ from table. With
-    # home, the answer is for the home position, so that no joint moves.
-    joint = table.joints[row] if row < len(table.joints) and not home else None
-    for column in (A, ALPHA, D, THETA):
-        cell, constant = Cell(table, row, column, own_frames), constants[column]
-        moves = joint is not None and column == (D if joint.prismatic else THETA)
-        if IS_ANGLE[column]:
-            yield from _angle_slips(cell, constant, moves=moves)
-        elif abs(constant) > CONSTANT:
-            yield _sign(cell)
-            yield _left_out(cell, DISTANCE_LEFT_OUT)
-        if moves and joint is not None and abs(constant) > CONSTANT:
-            yield joint_variable_sign(joint, axis, CellChange(row, column, -1.0))
-            yield joint_variable_missing(joint, CellChange(row, column, 0.0))
-    slides = joint is not None and joint.prismatic
-    yield from exchanged_in_row(row, table.labels[row], constants, slides=slides)
-
-
-def _angle_slips(cell: Cell, constant: float, *, moves: bool) -> Iterator[Slip]:
-    quarters = constant / QUARTER
-    is_multiple = abs(quarters - round(quarters)) < CONSTANT
-    is_quarter = is_multiple and round(quarters) % 2 == 1
-    if is_quarter or not is_multiple:
-        yield _sign(cell)
-    if not is_multiple:
-        yield _left_out(cell, ANGLE_LEFT_OUT)
-    # For a joint's angle, ``joint_slips`` has these slips.
-    if not moves:
-        yield _turned(cell, QUARTER_TURN, QUARTER)
-        yield _turned(cell, QUARTER_TURN, -QUARTER)
-        if not is_quarter:
-            yield _turned(cell, HALF_TURN, np.pi)
-
-
-def _sign(cell: Cell) -> Slip:
-    def words(names: Names) -> SlipWords:
-        name, axis = cell.name(names), AXES[cell.column]
-        clause = say("{name}, {parameter}, has the wrong sign", name=name, parameter=cell.parameter)
-        hint = say(
-            "{name}, {parameter}, has the wrong sign: it is measured along {axis}, positive in the "
-            "direction of the axis.",
-            name=name,
-            parameter=cell.parameter,
-            axis=axis,
-        )
-        if IS_ANGLE[cell.column]:
-            hint = say(
-                "{name}, {parameter}, has the wrong sign: it is measured about {axis}, positive by "
-                "the right-hand rule.",
-                name=name,
-                parameter=cell.parameter,
-                axis=axis,
-            )
-        return SlipWords(clause, hint, cell.correction)
-
-    return Slip(SIGN, words, cells=(CellChange(cell.row, cell.column, -1.0),))
-
-
-def _left_out(cell: Cell, kind: Record) -> Slip:
-    def words(names: Names) -> SlipWords:
-        name = cell.name(names)
-        clause = say("{name}, {parameter}, is left out", name=name, parameter=cell.parameter)
-        hint = say(
-            "{name}, {parameter}, is left out: check {link}.",
-            name=name,
-            parameter=cell.parameter,
-            link=f"A{cell.label}",
-        )
-        return SlipWords(clause, hint, cell.correction)
-
-    return Slip(kind, words, cells=(CellChange(cell.row, cell.column, 0.0),))
-
-
-def _turned(cell: Cell, kind: Record, turn: float) -> Slip:
-    def words(names: Names) -> SlipWords:
-        name = cell.name(names)
-        clause = say("{name}, {parameter}, is not right", name=name, parameter=cell.parameter)
-        hint = say(
-            "{name}, {parameter}, is not right: compare {axes} in the home position.",
-            name=name,
-            parameter=cell.parameter,
-            axes=cell.axes,
-        )
-        error = say("It is off by a quarter turn (90°).")
-        if kind is HALF_TURN:
-            error = say("It is off by half a turn (180°).")
-        return SlipWords(clause, hint, paragraph(cell.correction, error))
-
-    return Slip(kind, words, cells=(CellChange(cell.row, cell.column, 1.0, turn),))
-
-
-def _letters(table: ReferenceTable, row: int, column: int) -> frozenset[str]:
-    variables = {joint.variable for joint in table.joints}
-    return table.rows[row][column].symbols - variables
-
-
-def _parameter(table: ReferenceTable, row: int, column: int) -> Sentence:
-    joints = [joint.index for joint in table.joints]
-    if row < len(joints) and column == D:
-        return say("the offset along the axis of joint {joint}", joint=joints[row])
-    if row < len(joints) and column == THETA:
-        return say("the angle about the axis of joint {joint}", joint=joints[row])
-    # The number of joints before the x axis along which a and α are measured.
-    before = row + (table.convention is Convention.STANDARD)
-    if column in (D, THETA) or before > len(joints):
-        return say("the parameter in row {row}", row=table.labels[row])
-    return _length(joints, before) if column == A else _twist(joints, before)
-
-
-def _length(joints: Sequence[int], before: int) -> Sentence:
-    if before == 0:
-        return say(
-            "the length between {axis} and the axis of joint {joint}",
-            axis=f"z{joints[0] - 1}",
-            joint=joints[0],
-        )
-    if before == len(joints):
-        return say(
-            "the length between the axis of joint {joint} and the last z axis", joint=joints[-1]
-        )
-    return say(
-        "the length between the axes of joints {joint} and {next}",
-        joint=joints[before - 1],
-        next=joints[before],
-    )
-
-
-def _twist(joints: Sequence[int], before: int) -> Sentence:
-    if before == 0:
-        return say(
-            "the twist between {axis} and the axis of joint {joint}",
-            axis=f"z{joints[0] - 1}",
-            joint=joints[0],
-        )
-    if before == len(joints):
-        return say(
-            "the twist between the axis of joint {joint} and the last z axis", joint=joints[-1]
-        )
-    return say(
-        "the twist between the axes of joints {joint} and {next}",
-        joint=joints[before - 1],
-        next=joints[before],
-    )

@@ -1,4 +1,4 @@
-"""Slips in a single table cell."""
+"""Slips in single cells of a table: the constant, the joint variable, or a whole DH row."""
 
 import re
 from collections.abc import Callable, Mapping
@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from dh_grader.catalogue import Joint
 from dh_grader.expressions.printing import PLAIN, spelling_for
 from dh_grader.grading.diagnosis.formulas import quantity_of
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.judging_table import Judgement, column_scales
 from dh_grader.grading.misconception import (
     UNEXPLAINED,
@@ -48,6 +48,9 @@ from dh_grader.kinematics import (
     row,
 )
 from dh_grader.translations import Sentence, listed, paragraph, say, template
+
+# --- Slips in a single table cell
+
 
 SUM_COUNTS = say(
     "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
@@ -383,7 +386,7 @@ def _of_misplaced_variables(
     return told
 
 
-# Slips in the DH row of a transform, or in the answer that a transform has no DH row.
+# --- Slips in the DH row of a transform, or in the answer that a transform has no DH row
 
 
 @dataclass(frozen=True)
@@ -545,7 +548,7 @@ def has_a_row(convention: Convention) -> Finding:
     )
 
 
-# Slips in the joint variables or the quantity (length or angle) of a table cell.
+# --- Slips in the joint variables or the quantity (length or angle) of a table cell
 
 
 CONVERTED = say(

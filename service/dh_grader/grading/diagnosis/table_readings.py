@@ -1,6 +1,6 @@
-"""Interpret a wrong table in several ways, called readings, and take the best one.
+"""Read a wrong table in several ways (readings), and take the best one.
 
-For example, one reading assumes that the columns are in a different order.
+A reading corrects one mistake of the whole table: columns, units, numbers of joints.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -17,9 +17,7 @@ from dh_grader.expressions import Expression, Symbol, Vocabulary
 from dh_grader.expressions.printing import Spelling
 from dh_grader.grading.diagnosis.formulas import quantity_of
 from dh_grader.grading.diagnosis.whole_tables import exchanged_columns
-from dh_grader.grading.fair_points import FairPoints
-from dh_grader.grading.frames.roles import rows_of_mechanism, usual_rows
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.frames import (
     OWN_FRAME_CHOICE,
     FrameFreedom,
     Role,
@@ -27,9 +25,11 @@ from dh_grader.grading.frames.rows import (
     reference_values,
     written_table,
 )
-from dh_grader.grading.grading import Grading, Judged
+from dh_grader.grading.frames.roles import rows_of_mechanism, usual_rows
+from dh_grader.grading.judging import Grading, Judged
 from dh_grader.grading.judging_table import (
     EXTRA_ROW,
+    FairPoints,
     column_scales,
     extra_row,
     row_too_many,
@@ -75,9 +75,13 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import Sentence, listed, paragraph, say, template
 
-# Tables whose joints have fewer degrees of freedom than the robot.
+# --- Interpret a wrong table in several ways, called readings, and take the best one
+#
+# For example, one reading assumes that the columns are in a different order.
 
 
+# --- Tables whose joints have fewer degrees of freedom than the robot
+#
 # Two joints that turn about one line, or slide along one direction, move the arm like a single
 # joint. More generally, the arm loses a degree of freedom if joint screws are linearly dependent,
 # but independent in the reference.
@@ -264,7 +268,7 @@ def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
     return say("rows {rows}", rows=listed(labels))
 
 
-# A student's table with one systematic mistake corrected.
+# --- A student's table with one systematic mistake corrected
 
 
 _EXCHANGED = [D, 1, A, 3]
@@ -583,7 +587,7 @@ def _explained_without(
     )
 
 
-# Tables whose lengths are in a wrong unit, such as millimetres instead of metres.
+# --- Tables whose lengths are in a wrong unit, such as millimetres instead of metres
 
 
 # Between two units. The lengths of other frames differ, too, but not by so much.
@@ -646,7 +650,7 @@ def _times(largest: float, right: float) -> float | None:
     return None
 
 
-# Tables whose joint numbers are not the expected ones, but begin for example with 0.
+# --- Tables whose joint numbers are not the expected ones, but begin for example with 0
 
 
 # Maps the names under a numbering to the joint variables that they mean.
@@ -796,9 +800,8 @@ def _numbered_by_kind(joint: Joint, spelling: Spelling) -> Finding:
     )
 
 
-# Tables whose columns are not in the expected order, but for example θ, d, a, α.
-
-
+# --- Tables whose columns are not in the expected order, but for example θ, d, a, α
+#
 # The columns have no headers, or the cells were typed one by one under the headers a, α, d, θ.
 
 

@@ -1,4 +1,7 @@
-"""The wrong answers that mistakes in the table or in symbols lead to."""
+"""The wrong answers that a mistake in the table or in a symbol leads to, and their search.
+
+The mistakes themselves are in ``slips_of_the_table.py`` and ``whole_tables.py``.
+"""
 
 from collections.abc import Callable, Iterable, Sequence, Set
 from dataclasses import dataclass, replace
@@ -21,29 +24,28 @@ from dh_grader.catalogue.part import PosePartSpec
 from dh_grader.catalogue.robot import at_home
 from dh_grader.expressions.evaluate import SymbolValues
 from dh_grader.grading.diagnosis.formulas import WrongEntry
-from dh_grader.grading.diagnosis.rows_and_columns import (
+from dh_grader.grading.diagnosis.slips_of_the_table import (
     HOME_POSITION,
     Change,
     Names,
     Slip,
     SymbolChange,
-    TableRows,
+    axis_direction,
     change_cells,
     changed_values,
-    slips_of_rows,
-)
-from dh_grader.grading.diagnosis.slips_of_the_table import (
-    axis_direction,
     home_slip,
     joint_slips,
     length_slips,
+)
+from dh_grader.grading.diagnosis.whole_tables import (
+    TableRows,
     lengths_of,
     row_slips,
+    slips_of_rows,
     table_slips,
 )
-from dh_grader.grading.frames.rows import reference_values, variable_column
-from dh_grader.grading.grading import Grading
-from dh_grader.grading.judging import as_entries
+from dh_grader.grading.frames import reference_values, variable_column
+from dh_grader.grading.judging import Grading, as_entries
 from dh_grader.grading.misconception import (
     UNEXPLAINED,
     Explained,
@@ -78,6 +80,9 @@ from dh_grader.kinematics import (
 )
 from dh_grader.kinematics import row as dh_row
 from dh_grader.translations import listed, say
+
+# --- The wrong answers that mistakes in the table or in symbols lead to
+
 
 AnswersAt = Callable[[Sequence[Change], Samples], Numbers]
 
@@ -200,7 +205,7 @@ def _general_slips(exercise: Exercise, samples: Samples) -> tuple[Slip, ...]:
     return (*joint_slips(joints, joints, axis), *home_slip(joints), *length_slips(lengths))
 
 
-# Symbols that an entry lacks or should not contain.
+# --- Symbols that an entry lacks or should not contain
 
 
 # A change that has an effect on every entry: not a whole turn, and not a multiple of a length.
@@ -475,7 +480,7 @@ def _same(case: WrongEntry, one: Numbers, other: Numbers) -> bool:
     return bool(nearly_equal(one, other, case.scale, case.angle))
 
 
-# Slips in the table that change all link transforms of an answer.
+# --- Slips in the table that change all link transforms of an answer
 
 
 # Samples of each half that are enough to tell whole answers apart.
@@ -585,7 +590,7 @@ def _slipped_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) 
     return SlippedAnswers(tuple(slips), at, by_symbols=False)
 
 
-# The wrong link transforms that mistakes in one row of the table lead to.
+# --- The wrong link transforms that mistakes in one row of the table lead to
 
 
 def slipped_link(
@@ -676,7 +681,7 @@ def _senses(cells: Numbers, joint: Joint | None, samples: Samples) -> Numbers:
     return senses
 
 
-# The search for slips that explain a wrong answer.
+# --- The search for slips that explain a wrong answer
 
 
 # These slips change several entries. If only one is wrong, its sign or a term is the cause.

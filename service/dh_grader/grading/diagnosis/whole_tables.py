@@ -1,6 +1,7 @@
-"""Slips in a whole table.
+"""Slips in a table: put into the robot's cells, rows and columns, or undone in an answer.
 
-A slip explains a wrong table if the table describes the robot once the slip is corrected.
+A slip explains a wrong table if the table describes the robot once the slip is corrected. What a
+slip is, and its kinds, is in ``slips_of_the_table.py``.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -11,10 +12,32 @@ from itertools import chain, combinations, islice
 import numpy as np
 from numpy.typing import NDArray
 
+from dh_grader.catalogue import Joint, ReferenceTable
 from dh_grader.catalogue.kinds import DhTableSpec
 from dh_grader.expressions import Symbol
-from dh_grader.grading.frames.nearest import frames_from_reference, in_convention
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.diagnosis.slips_of_the_table import (
+    ANGLE_LEFT_OUT,
+    COLUMNS_SWAPPED,
+    DISTANCE_LEFT_OUT,
+    HALF_TURN,
+    MISSING_LINK,
+    OTHER_CONVENTION,
+    PARAMETER_SIGN,
+    QUARTER_TURN,
+    ROW_ORDER,
+    SIGN,
+    Axis,
+    CellChange,
+    Names,
+    Slip,
+    SlipWords,
+    home_slip,
+    joint_slips,
+    joint_variable_missing,
+    joint_variable_sign,
+    length_slips,
+)
+from dh_grader.grading.frames import (
     RepairedTable,
     Rereadable,
     Role,
@@ -24,14 +47,17 @@ from dh_grader.grading.frames.rows import (
     valid_tables,
     written_table,
 )
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.frames.nearest import frames_from_reference, in_convention
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.judging_table import Judgement, departures_of, judged_by_intended
 from dh_grader.grading.misconception import (
+    AXES,
     SYMBOLS,
     AnyHypothesis,
     Explained,
     Record,
     Repaired,
+    axes_of_row,
     change_every_sign,
     each_hypothesis,
     misconception,
@@ -39,11 +65,529 @@ from dh_grader.grading.misconception import (
     says,
     wrong_throughout,
 )
-from dh_grader.grading.numbers import INTENDED_CELL, INTENDED_POSE, Match, difference
+from dh_grader.grading.numbers import (
+    CONSTANT,
+    INTENDED_CELL,
+    INTENDED_POSE,
+    Match,
+    difference,
+)
 from dh_grader.grading.reading.table import IS_ANGLE, table_values, values_of
 from dh_grader.grading.report import Finding
 from dh_grader.kinematics import ALPHA, COLUMNS, THETA, A, Convention, D, Numbers, Table
-from dh_grader.translations import listed, paragraph, say, template
+from dh_grader.translations import Sentence, listed, paragraph, say, template
+
+# --- Slips in whole rows or columns of the robot's table; they change numbers, but no symbols
+
+
+@dataclass(frozen=True, slots=True)
+class TableRows:
+    """The rows of a wrong DH table; each possible mistake is tried on them."""
+
+    # The cells (rows, 4) at one sample, with all joint variables 0.
+    constants: Numbers
+    # The joints of the first rows.
+    joints: Sequence[Joint]
+    # The labels of all rows.
+    labels: Sequence[str]
+    convention: Convention
+    # True if the answer is for the home position, so that no joint moves.
+    home: bool = False
+    # True if the answer is the product of the links, False if it is the links themselves.
+    multiplied: bool = True
+
+    def moves(self, row: int, column: int) -> bool:
+        """True if a cell contains a joint variable."""
+        if self.home or row >= len(self.joints):
+            return False
+        return column == (D if self.joints[row].prismatic else THETA)
+
+
+def slips_of_rows(rows: TableRows) -> Iterator[Slip]:
+    """Yield the slips in whole rows and columns."""
+    yield from exchanged_throughout(rows)
+    yield from negated_columns(rows)
+    yield from other_table(rows)
+    yield from exchanged_rows(rows)
+    yield from missing_links(rows) if rows.multiplied else other_formula(rows)
+
+
+def exchanged_in_row(
+    row: int, label: str, constants: Sequence[float], *, slides: bool
+) -> Iterator[Slip]:
+    """Yield the slips in which a and d are exchanged in one row."""
+
+    # If the joint slides, the last slip also moves the joint variable from d to a.
+    def words(_: Names) -> SlipWords:
+        return SlipWords(
+            say("the length a and the offset d are exchanged in row {row}", row=label),
+            say(
+                "The length a and the offset d are exchanged in row {row}: a is measured along x, "
+                "d along z.",
+                row=label,
+            ),
+            say("Exchange a and d in row {row}.", row=label),
+        )
+
+    ways = [False] if abs(constants[A] - constants[D]) > CONSTANT else []
+    for moving in [*ways, True] if slides else ways:
+        yield Slip(COLUMNS_SWAPPED, words, cells=_exchanged_cells(row, moving=moving))
+
+
+def exchanged_throughout(rows: TableRows) -> Iterator[Slip]:
+    """Yield the slip in which a and d are exchanged in all rows."""
+
+    def words(_: Names) -> SlipWords:
+        return SlipWords(
+            say("the lengths a and the offsets d are exchanged throughout"),
+            say(
+                "The lengths a and the offsets d are exchanged throughout: a is measured along x, "
+                "d along z."
+            ),
+            say("Exchange a and d in every row."),
+        )
+
+    cells = tuple(cell for i in range(len(rows.constants)) for cell in _exchanged_cells(i))
+    yield Slip(COLUMNS_SWAPPED, words, cells=cells)
+
+
+def _exchanged_cells(row: int, *, moving: bool = False) -> tuple[CellChange, ...]:
+    return (
+        CellChange(row, A, source=(row, D), moving=moving),
+        CellChange(row, D, source=(row, A), moving=moving),
+    )
+
+
+def negated_columns(rows: TableRows) -> Iterator[Slip]:
+    """Yield the slips in which all signs of one column are wrong."""
+    # The joint variables in the column have the wrong sign, too, or keep their signs.
+    for column in range(len(COLUMNS)):
+        cells = rows.constants[:, column]
+        sizes = np.sin(cells) if IS_ANGLE[column] else cells
+        wrong = {i for i, size in enumerate(sizes.tolist()) if abs(size) > CONSTANT}
+        moved = {i for i in range(len(cells)) if rows.moves(i, column)}
+        # In one row alone it is a slip of the cell.
+        if len(wrong) > 1:
+            yield _negated(column, wrong, moving=False)
+        if moved and len(wrong | moved) > 1:
+            yield _negated(column, wrong | moved, moving=True)
+
+
+def _negated(column: int, rows: Iterable[int], *, moving: bool) -> Slip:
+    def words(_: Names) -> SlipWords:
+        clause = say("{symbol} has the wrong sign throughout", symbol=SYMBOLS[column])
+        return SlipWords(clause, wrong_throughout(column), change_every_sign(column))
+
+    cells = tuple(CellChange(i, column, -1.0, moving=moving) for i in rows)
+    return Slip(PARAMETER_SIGN, words, cells=cells)
+
+
+def other_table(rows: TableRows) -> Iterator[Slip]:
+    """Yield the slips in which the table was written in the other DH convention."""
+    # Then a and α are in a neighbouring row.
+    last = len(rows.constants) - 1
+    cells: list[CellChange] = []
+    if rows.convention is Convention.STANDARD:
+        moved = [(i + 1, i) for i in range(last)]
+        cells = [cell for i, source in moved for cell in _of_link(i, source)]
+        cells += [CellChange(0, column, 0.0) for column in (A, ALPHA)]
+        if rows.multiplied and np.abs(rows.constants[last, : ALPHA + 1]).max() > CONSTANT:
+            yield _other_table(rows.convention, (*cells, *_of_link(last + 1, last)))
+    elif np.abs(rows.constants[0, : ALPHA + 1]).max() < CONSTANT:
+        cells = [cell for i in range(last) for cell in _of_link(i, i + 1)]
+        cells += [CellChange(last, column, 0.0) for column in (A, ALPHA)]
+    if cells:
+        yield _other_table(rows.convention, tuple(cells))
+
+
+def _of_link(row: int, source: int) -> tuple[CellChange, ...]:
+    return tuple(CellChange(row, column, source=(source, column)) for column in (A, ALPHA))
+
+
+def _other_table(convention: Convention, cells: tuple[CellChange, ...]) -> Slip:
+    is_standard = convention is Convention.STANDARD
+    words = _modified_table_multiplied if is_standard else _standard_table_multiplied
+    return Slip(OTHER_CONVENTION, words, cells=cells)
+
+
+def _modified_table_multiplied(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "a table of the modified convention is multiplied with the link transform of the "
+            "standard one"
+        ),
+        say(
+            "A table of the modified convention is multiplied with the link transform of the "
+            "standard one: use the same convention for both."
+        ),
+        say("In the other convention a and α stand one row higher or lower."),
+    )
+
+
+def _standard_table_multiplied(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "a table of the standard convention is multiplied with the link transform of the "
+            "modified one"
+        ),
+        say(
+            "A table of the standard convention is multiplied with the link transform of the "
+            "modified one: use the same convention for both."
+        ),
+        say("In the other convention a and α stand one row higher or lower."),
+    )
+
+
+def other_formula(rows: TableRows) -> Iterator[Slip]:
+    """Yield the slip in which the links are computed with the formula of the other convention."""
+    has_twists = (np.cos(rows.constants[:, ALPHA]) < 1 - CONSTANT).any()
+    if rows.convention is Convention.STANDARD and not has_twists:
+        return
+    is_standard = rows.convention is Convention.STANDARD
+    words = _modified_formula if is_standard else _standard_formula
+    yield Slip(OTHER_CONVENTION, words, misread=True)
+
+
+def _modified_formula(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "the link transform of the modified convention is used with a table of the standard one"
+        ),
+        say(
+            "The link transform of the modified convention is used with a table of the standard "
+            "one: use the same convention for both."
+        ),
+        say("Use the link transform of the standard convention."),
+    )
+
+
+def _standard_formula(_: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "the link transform of the standard convention is used with a table of the modified one"
+        ),
+        say(
+            "The link transform of the standard convention is used with a table of the modified "
+            "one: use the same convention for both."
+        ),
+        say("Use the link transform of the modified convention."),
+    )
+
+
+def exchanged_rows(rows: TableRows) -> Iterator[Slip]:
+    """Yield the slips in which two rows are exchanged."""
+    # With or without their joint variables.
+    count = len(rows.constants)
+    kinds = [joint.prismatic for joint in rows.joints]
+    for i, j in combinations(range(count), 2):
+        labels = rows.labels[i], rows.labels[j]
+        # The reverse order of all links is a slip of the product.
+        if not (rows.multiplied and i == 0 and j == count - 1 <= 2):
+            words = partial(_rows_or_links, *labels)
+            yield Slip(ROW_ORDER, words, cells=_rows_exchanged(i, j, moving=True))
+        if j < len(kinds) and kinds[i] == kinds[j] and not rows.home:
+            words = partial(_rows_but_variables, *labels)
+            yield Slip(ROW_ORDER, words, cells=_rows_exchanged(i, j, moving=False))
+
+
+def _rows_or_links(one: str, other: str, _: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "rows {one} and {other}, or their link transforms, are exchanged", one=one, other=other
+        ),
+        say(
+            "Rows {one} and {other}, or their link transforms, are exchanged: check which joint "
+            "each row of the table belongs to.",
+            one=one,
+            other=other,
+        ),
+    )
+
+
+def _rows_but_variables(one: str, other: str, _: Names) -> SlipWords:
+    return SlipWords(
+        say(
+            "rows {one} and {other} are exchanged, but for their joint variables",
+            one=one,
+            other=other,
+        ),
+        say(
+            "Rows {one} and {other} are exchanged, but for their joint variables: check which "
+            "joint each row of the table belongs to.",
+            one=one,
+            other=other,
+        ),
+    )
+
+
+def _rows_exchanged(one: int, other: int, *, moving: bool) -> tuple[CellChange, ...]:
+    return tuple(
+        CellChange(row, column, source=(source, column), moving=moving)
+        for row, source in ((one, other), (other, one))
+        for column in range(len(COLUMNS))
+    )
+
+
+def missing_links(rows: TableRows) -> Iterator[Slip]:
+    """Yield the slips in which a row is missing in the product."""
+    # It is not the first or last row.
+    for row in range(1, len(rows.constants) - 1):
+        cells = tuple(CellChange(row, column, 0.0, moving=True) for column in range(len(COLUMNS)))
+        yield Slip(MISSING_LINK, partial(_missing_link, f"A{rows.labels[row]}"), cells=cells)
+
+
+def _missing_link(link: str, _: Names) -> SlipWords:
+    clause = say("{link} is missing in the product", link=link)
+    return SlipWords(clause, clause)
+
+
+# --- Slips in the cells of the robot's table that lead to a wrong pose
+#
+# A slip has the same code here as in a submitted table (table_cell).
+
+
+QUARTER = np.pi / 2
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A cell of a table, and the words about it in messages."""
+
+    table: ReferenceTable
+    row: int
+    column: int
+    # True if the student chose other frames: the correct value of the cell may differ from table.
+    own_frames: bool
+
+    @property
+    def label(self) -> str:
+        """The label of the cell's row."""
+        return self.table.labels[self.row]
+
+    @property
+    def axes(self) -> str:
+        """The two axes between which the cell's angle is measured."""
+        axis = "z" if self.column == ALPHA else "x"
+        return axes_of_row(axis, self.label, self.table.joints[-1].index)
+
+    @property
+    def correction(self) -> str:
+        """A sentence with the correct formula, or "" if the formula is unknown."""
+        if self.own_frames:
+            return ""
+        return say(
+            "{symbol} in row {row} is {formula}.",
+            symbol=SYMBOLS[self.column],
+            row=self.label,
+            formula=self.table.rows[self.row][self.column].text(),
+        )
+
+    @property
+    def parameter(self) -> Sentence:
+        """The parameter in words, such as "the offset along the axis of joint 2"."""
+        return _parameter(self.table, self.row, self.column)
+
+    def name(self, names: Names) -> str:
+        """Return the student's name for the cell's only constant, or a, α, d or θ."""
+        letters = _letters(self.table, self.row, self.column)
+        if len(letters) == 1 and not self.own_frames:
+            return names.shown(min(letters)) or SYMBOLS[self.column]
+        return SYMBOLS[self.column]
+
+
+def table_slips(
+    table: ReferenceTable,
+    constants: Table,
+    axis: Axis,
+    *,
+    home: bool = False,
+    whole: bool = True,
+) -> Iterator[Slip]:
+    """Yield all slips in a table.
+
+    ``constants`` ``(rows, 4, samples)`` is the table with all joint variables 0.
+    """
+    # With home, the answer is for the home position, so that only constants can be wrong. With
+    # whole, slips of whole rows and columns are tried, too.
+    if not home:
+        yield from joint_slips(table.joints, table.joints, axis)
+        yield from home_slip(table.joints)
+    for i in range(len(table.rows)):
+        yield from row_slips(table, i, constants[i, :, 0].tolist(), axis, home=home)
+    yield from length_slips(*lengths_of(table))
+    if whole:
+        rows = TableRows(constants[..., 0], table.joints, table.labels, table.convention, home)
+        yield from slips_of_rows(rows)
+
+
+def lengths_of(table: ReferenceTable) -> tuple[list[str], list[str]]:
+    """Return all lengths of the table, and the lengths that occur only once, alone in a cell."""
+    cells = [_letters(table, i, column) for i in range(len(table.rows)) for column in (A, D)]
+    names = list(dict.fromkeys(name for cell in cells for name in sorted(cell)))
+    once = [name for name in names if sum(name in cell for cell in cells) == 1]
+    return names, [name for name in once if {name} in cells]
+
+
+def row_slips(
+    table: ReferenceTable,
+    row: int,
+    constants: Sequence[float],
+    axis: Axis,
+    *,
+    own_frames: bool = False,
+    home: bool = False,
+) -> Iterator[Slip]:
+    """Yield the slips in one row.
+
+    ``constants`` are the cells of the row at one sample, with all joint variables 0.
+    """
+    # With own_frames, the student chose other frames, so that constants differ from table. With
+    # home, the answer is for the home position, so that no joint moves.
+    joint = table.joints[row] if row < len(table.joints) and not home else None
+    for column in (A, ALPHA, D, THETA):
+        cell, constant = Cell(table, row, column, own_frames), constants[column]
+        moves = joint is not None and column == (D if joint.prismatic else THETA)
+        if IS_ANGLE[column]:
+            yield from _angle_slips(cell, constant, moves=moves)
+        elif abs(constant) > CONSTANT:
+            yield _sign(cell)
+            yield _left_out(cell, DISTANCE_LEFT_OUT)
+        if moves and joint is not None and abs(constant) > CONSTANT:
+            yield joint_variable_sign(joint, axis, CellChange(row, column, -1.0))
+            yield joint_variable_missing(joint, CellChange(row, column, 0.0))
+    slides = joint is not None and joint.prismatic
+    yield from exchanged_in_row(row, table.labels[row], constants, slides=slides)
+
+
+def _angle_slips(cell: Cell, constant: float, *, moves: bool) -> Iterator[Slip]:
+    quarters = constant / QUARTER
+    is_multiple = abs(quarters - round(quarters)) < CONSTANT
+    is_quarter = is_multiple and round(quarters) % 2 == 1
+    if is_quarter or not is_multiple:
+        yield _sign(cell)
+    if not is_multiple:
+        yield _left_out(cell, ANGLE_LEFT_OUT)
+    # For a joint's angle, ``joint_slips`` has these slips.
+    if not moves:
+        yield _turned(cell, QUARTER_TURN, QUARTER)
+        yield _turned(cell, QUARTER_TURN, -QUARTER)
+        if not is_quarter:
+            yield _turned(cell, HALF_TURN, np.pi)
+
+
+def _sign(cell: Cell) -> Slip:
+    def words(names: Names) -> SlipWords:
+        name, axis = cell.name(names), AXES[cell.column]
+        clause = say("{name}, {parameter}, has the wrong sign", name=name, parameter=cell.parameter)
+        hint = say(
+            "{name}, {parameter}, has the wrong sign: it is measured along {axis}, positive in the "
+            "direction of the axis.",
+            name=name,
+            parameter=cell.parameter,
+            axis=axis,
+        )
+        if IS_ANGLE[cell.column]:
+            hint = say(
+                "{name}, {parameter}, has the wrong sign: it is measured about {axis}, positive by "
+                "the right-hand rule.",
+                name=name,
+                parameter=cell.parameter,
+                axis=axis,
+            )
+        return SlipWords(clause, hint, cell.correction)
+
+    return Slip(SIGN, words, cells=(CellChange(cell.row, cell.column, -1.0),))
+
+
+def _left_out(cell: Cell, kind: Record) -> Slip:
+    def words(names: Names) -> SlipWords:
+        name = cell.name(names)
+        clause = say("{name}, {parameter}, is left out", name=name, parameter=cell.parameter)
+        hint = say(
+            "{name}, {parameter}, is left out: check {link}.",
+            name=name,
+            parameter=cell.parameter,
+            link=f"A{cell.label}",
+        )
+        return SlipWords(clause, hint, cell.correction)
+
+    return Slip(kind, words, cells=(CellChange(cell.row, cell.column, 0.0),))
+
+
+def _turned(cell: Cell, kind: Record, turn: float) -> Slip:
+    def words(names: Names) -> SlipWords:
+        name = cell.name(names)
+        clause = say("{name}, {parameter}, is not right", name=name, parameter=cell.parameter)
+        hint = say(
+            "{name}, {parameter}, is not right: compare {axes} in the home position.",
+            name=name,
+            parameter=cell.parameter,
+            axes=cell.axes,
+        )
+        error = say("It is off by a quarter turn (90°).")
+        if kind is HALF_TURN:
+            error = say("It is off by half a turn (180°).")
+        return SlipWords(clause, hint, paragraph(cell.correction, error))
+
+    return Slip(kind, words, cells=(CellChange(cell.row, cell.column, 1.0, turn),))
+
+
+def _letters(table: ReferenceTable, row: int, column: int) -> frozenset[str]:
+    variables = {joint.variable for joint in table.joints}
+    return table.rows[row][column].symbols - variables
+
+
+def _parameter(table: ReferenceTable, row: int, column: int) -> Sentence:
+    joints = [joint.index for joint in table.joints]
+    if row < len(joints) and column == D:
+        return say("the offset along the axis of joint {joint}", joint=joints[row])
+    if row < len(joints) and column == THETA:
+        return say("the angle about the axis of joint {joint}", joint=joints[row])
+    # The number of joints before the x axis along which a and α are measured.
+    before = row + (table.convention is Convention.STANDARD)
+    if column in (D, THETA) or before > len(joints):
+        return say("the parameter in row {row}", row=table.labels[row])
+    return _length(joints, before) if column == A else _twist(joints, before)
+
+
+def _length(joints: Sequence[int], before: int) -> Sentence:
+    if before == 0:
+        return say(
+            "the length between {axis} and the axis of joint {joint}",
+            axis=f"z{joints[0] - 1}",
+            joint=joints[0],
+        )
+    if before == len(joints):
+        return say(
+            "the length between the axis of joint {joint} and the last z axis", joint=joints[-1]
+        )
+    return say(
+        "the length between the axes of joints {joint} and {next}",
+        joint=joints[before - 1],
+        next=joints[before],
+    )
+
+
+def _twist(joints: Sequence[int], before: int) -> Sentence:
+    if before == 0:
+        return say(
+            "the twist between {axis} and the axis of joint {joint}",
+            axis=f"z{joints[0] - 1}",
+            joint=joints[0],
+        )
+    if before == len(joints):
+        return say(
+            "the twist between the axis of joint {joint} and the last z axis", joint=joints[-1]
+        )
+    return say(
+        "the twist between the axes of joints {joint} and {next}",
+        joint=joints[before - 1],
+        next=joints[before],
+    )
+
+
+# --- Slips that explain a wrong table: it describes the robot once they are corrected
+
 
 _OF_LINK = slice(A, ALPHA + 1)
 
@@ -306,7 +850,7 @@ def _explaining(
                     yield complete
 
 
-# The findings on a wrong table as a whole.
+# --- The findings on a wrong table as a whole
 
 
 _OF_UNIT = frozenset({"degrees_as_radians", "radians_as_degrees"})

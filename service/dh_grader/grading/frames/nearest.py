@@ -1,6 +1,6 @@
-"""Replace the only wrong row of a table by numbers that are wrong in every cell.
+"""The valid table nearest to a submitted one: one wrong cell, few cells, or one row.
 
-A wrong row can mislead the search for the student's frames, so that correct rows look wrong.
+Of several mistakes that explain a wrong table, the likeliest is taken.
 """
 
 from collections.abc import Container, Iterable, Iterator, Sequence, Set
@@ -12,7 +12,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.frames import (
     FrameFreedom,
     Mechanism,
     Rereadable,
@@ -33,7 +33,7 @@ from dh_grader.grading.frames.rows import (
     variables_of,
     written_table,
 )
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.marks import BESIDES
 from dh_grader.grading.misconception import hypotheses_of, multiples
 from dh_grader.grading.numbers import (
@@ -95,6 +95,11 @@ from dh_grader.kinematics.frame_choice_repairs import (
     two_factor_repairs,
 )
 
+# --- Replace the only wrong row of a table by numbers that are wrong in every cell
+#
+# A wrong row can mislead the search for the student's frames, so that correct rows look wrong.
+
+
 # The fractional parts of its multiples are not angles or lengths of any robot.
 OUT_OF_PLACE: Final = 0.3819660112501051
 
@@ -126,12 +131,11 @@ def with_spoiled_row(
     return (*roles[:i], spoiled, *roles[i + 1 :])
 
 
-# Find the valid table that differs from a submitted one in one cell, if frames may be chosen.
+# --- Find the valid table that differs from a submitted one in one cell, if frames may be chosen
 #
 # A table is valid if it describes the robot. The joint axes of a valid table, with all joints at 0,
 # must lie on those of the reference table.
-
-
+#
 # ``few_cells`` compares poses at all joint values, which is impossible if the student chooses base,
 # tool or directions. The axes give the value that each cell would need if no other cell were wrong
 # (``kinematics.axis_repairs``). All repaired tables are then tested at once.
@@ -381,12 +385,11 @@ def _ends_by_axes(body: _Body) -> Iterator[Matrices]:
         yield aligned[np.maximum(before, 1) - 1, i * samples : (i + 1) * samples]
 
 
-# Find the valid table that differs from a submitted one in at most two cells or one row.
+# --- Find the valid table that differs from a submitted one in at most two cells or one row
 #
 # A table is valid if it describes the robot. Base, tool and directions are given here, so the right
 # value of a cell follows from all other cells.
-
-
+#
 # A table is valid if its tool pose equals that of the reference at all joint values, and every cell
 # changes only as its own joint variable does.
 
@@ -650,7 +653,7 @@ def _in_unit(pose: Matrices, unit: float) -> Matrices:
     return measured
 
 
-# Find the valid table (one that describes the robot) nearest to a submitted table.
+# --- Find the valid table (one that describes the robot) nearest to a submitted table
 
 
 def nearest_for_roles(
@@ -798,7 +801,7 @@ def parallel_neighbours(
     return np.array([role.joint is not None and next(of_joints) for role in roles])
 
 
-# Estimate the loss of points for wrong cells.
+# --- Estimate the loss of points for wrong cells
 
 
 def units_lost(
@@ -815,11 +818,10 @@ def units_lost(
     return float(np.where(count > 1, np.minimum(worth, count), count).sum())
 
 
-# Find the likeliest of several mistakes that each explain a wrong table.
+# --- Find the likeliest of several mistakes that each explain a wrong table
 #
 # A mistake is likely if the correct value is simple, or if students often make it.
-
-
+#
 # On parallel axes, and around prismatic joints, a mistake can often be repaired in several cells.
 # Students often make a wrong sign, a forgotten value, a quarter turn, an extra term, a missing or
 # misplaced joint variable.

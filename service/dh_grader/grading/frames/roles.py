@@ -1,8 +1,4 @@
-"""Search for values of a table's unreadable cells with which the table describes the robot.
-
-If such values exist, no other cell is wrong. The method is Newton's with damping (Levenberg and
-Marquardt), from many starts.
-"""
+"""Which joint each row belongs to, what unread cells may be, and what rounding has lost."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -13,8 +9,7 @@ from numpy.typing import NDArray
 
 from dh_grader.catalogue import Joint
 from dh_grader.catalogue.kinds import DhTableSpec
-from dh_grader.grading.frames.nearest import NearestTable, frames_from_reference, nearest_for_roles
-from dh_grader.grading.frames.rows import (
+from dh_grader.grading.frames import (
     FrameFreedom,
     Role,
     freedom_of,
@@ -30,7 +25,8 @@ from dh_grader.grading.frames.rows import (
     tool_pose,
     with_exact_angles,
 )
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.frames.nearest import NearestTable, frames_from_reference, nearest_for_roles
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.numbers import (
     EXACT_VALUE,
     HALF,
@@ -63,6 +59,11 @@ from dh_grader.kinematics import (
 )
 from dh_grader.kinematics.frame_choice import WRONG_CELL, Target, match_tables, misfits
 
+# --- Search for values of a table's unreadable cells with which the table describes the robot
+#
+# If such values exist, no other cell is wrong. The method is Newton's with damping (Levenberg and
+# Marquardt), from many starts.
+#
 # The value of an unread cell is a constant, or a constant plus or minus the joint variable that
 # belongs in the cell. Shapes: S starts, L joint values, U unknowns (the unread cells, and the pose
 # of a base or tool that the student chose).
@@ -297,7 +298,7 @@ def _completion_moved(
     return base, tool
 
 
-# Choose which joint each submitted row belongs to.
+# --- Choose which joint each submitted row belongs to
 
 
 def best_roles(
@@ -398,7 +399,7 @@ def _pairing(roles: Sequence[Role]) -> list[tuple[Joint | None, bool]]:
     return [(role.joint, role.row is None) for role in roles]
 
 
-# Correct the rounding of all decimals of a table at once.
+# --- Correct the rounding of all decimals of a table at once
 #
 # After that, the table describes the robot. Each decimal is shifted by at most a unit of its last
 # place.

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import Final
 
-from dh_grader.grading.grading import AnswerKind
+from dh_grader.grading.judging import AnswerKind
 from dh_grader.grading.kinds.frames import judge_frames_answer, read_frames_answer
 from dh_grader.grading.kinds.matrices import (
     judge_matrix_answer,

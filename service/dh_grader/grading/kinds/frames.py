@@ -20,8 +20,7 @@ from dh_grader.grading.diagnosis.screws_and_placements import (
     WrongJointAxis,
     WrongPlacement,
 )
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
-from dh_grader.grading.judging import cell_report, of_rows
+from dh_grader.grading.judging import Content, Grading, Judged, StudentChain, cell_report, of_rows
 from dh_grader.grading.marks import steps_lost
 from dh_grader.grading.misconception import diagnosed, number_formula, sum_formula, value_formula
 from dh_grader.grading.numbers import (
@@ -74,7 +73,7 @@ from dh_grader.kinematics.placement import (
 )
 from dh_grader.translations import say
 
-# Judge the frames that a student places on the joint axes, with all joint variables 0.
+# --- Judge the frames that a student places on the joint axes, with all joint variables 0
 
 
 # The most sliding joints whose axes are tried both as moved and as drawn: 16 ways.

@@ -1,4 +1,4 @@
-"""Answer kind ``vector``: a list of lengths, angles and numbers."""
+"""Answer kinds ``vector``, ``transform``, ``rotation``, ``position`` and ``matrix``."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -44,11 +44,12 @@ from dh_grader.grading.diagnosis.upstream import (
     SlipSearch,
     slipped_answers,
 )
-from dh_grader.grading.follow_through import stands_still
-from dh_grader.grading.grading import Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
     ComparedValues,
     ExpectedMatrix,
+    Grading,
+    Judged,
+    StudentChain,
     as_entries,
     asked_pose,
     entry_rows,
@@ -63,6 +64,7 @@ from dh_grader.grading.judging import (
     value_places,
     value_rows,
 )
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import Mask, diagnosed, number_formula, spelled
 from dh_grader.grading.numbers import Match, Samples
 from dh_grader.grading.reading.lists import HOMOGENEOUS as LISTS_HOMOGENEOUS
@@ -77,6 +79,8 @@ from dh_grader.grading.reading.lists import (
 from dh_grader.grading.reading.matrices import StudentMatrix, read_matrix
 from dh_grader.grading.report import Correction, Feedback, Finding, Place, RowReport
 from dh_grader.kinematics import Matrices, Numbers, about, composed, products
+
+# --- Answer kind ``vector``: a list of lengths, angles and numbers
 
 
 def read_vector_answer(part: VectorSpec, answer: object, grading: Grading) -> StudentValues:
@@ -121,7 +125,7 @@ def _slip(
     return None if found is None else found.findings[0]
 
 
-# Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector.
+# --- Answer kind ``transform``: a homogeneous transform, such as the pose of the end effector
 
 
 def read_transform_answer(part: TransformSpec, answer: object, grading: Grading) -> StudentMatrix:
@@ -173,7 +177,7 @@ def _chain(answer: StudentMatrix) -> StudentChain | None:
     return StudentChain(products(np.moveaxis(answer.values, -1, 0)[None]), frames_at)
 
 
-# Answer kind ``rotation``: a rotation matrix, of a pose or of several turns about axes.
+# --- Answer kind ``rotation``: a rotation matrix, of a pose or of several turns about axes
 
 
 def read_rotation_answer(part: RotationSpec, answer: object, grading: Grading) -> StudentMatrix:
@@ -225,7 +229,7 @@ def _steps(part: RotationSpec, grading: Grading) -> list[Step]:
     ]
 
 
-# Answer kind ``position``: the coordinates of a point, such as the end effector's.
+# --- Answer kind ``position``: the coordinates of a point, such as the end effector's
 
 
 def read_position_answer(part: PositionSpec, answer: object, grading: Grading) -> StudentValues:
@@ -298,7 +302,7 @@ def _slipped(part: PositionSpec, grading: Grading) -> SlippedAnswers | None:
     return answers.of(lambda poses: poses[:, _axes(part), 3])
 
 
-# Answer kind ``matrix``: a matrix with any meaning, entry by entry.
+# --- Answer kind ``matrix``: a matrix with any meaning, entry by entry
 
 
 def read_matrix_answer(part: MatrixSpec, answer: object, grading: Grading) -> StudentMatrix:
@@ -314,7 +318,7 @@ def judge_matrix_answer(part: MatrixSpec, answer: StudentMatrix, grading: Gradin
     return Judged(judged.rows, content, judged.feedback)
 
 
-# The rows of a report on a matrix, for all kinds with matrices.
+# --- The rows of a report on a matrix, for all kinds with matrices
 
 
 # The number of samples of each half that distinguish whole matrices.

@@ -1,4 +1,4 @@
-"""Answer kind ``screw_axes``: the screw axis (ω; v) of each joint in the base or tool frame."""
+"""Answer kinds ``screw_axes``, ``link_transforms`` and ``euler_angles``."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -26,13 +26,15 @@ from dh_grader.grading.diagnosis.screws_and_placements import (
     explain_screws,
 )
 from dh_grader.grading.diagnosis.upstream import explain_links, slipped_link
-from dh_grader.grading.follow_through import stands_still
+from dh_grader.grading.frames import FrameFreedom, Role
 from dh_grader.grading.frames.roles import nearest_with_tool_row
-from dh_grader.grading.frames.rows import FrameFreedom, Role
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
     ComparedValues,
+    Content,
     ExpectedMatrix,
+    Grading,
+    Judged,
+    StudentChain,
     asked_pose,
     entry_rows,
     formula_values,
@@ -44,6 +46,7 @@ from dh_grader.grading.judging import (
     value_rows,
 )
 from dh_grader.grading.kinds.matrices import matrix_rows
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import Explained, value_formula
 from dh_grader.grading.numbers import (
     EXACT_VALUE,
@@ -102,6 +105,9 @@ from dh_grader.kinematics import (
 from dh_grader.kinematics import row as dh_row
 from dh_grader.pasting import GridError
 from dh_grader.translations import say
+
+# --- Answer kind ``screw_axes``: the screw axis (ω; v) of each joint in the base or tool frame
+
 
 # The share of the points that a slip in all axes costs, regardless of the number of axes.
 COST = 0.25
@@ -292,7 +298,7 @@ def _screw_axes_slips(
     return slips_of(compared, wrong, grading)
 
 
-# Answer kind ``link_transforms``: one matrix A_i for each row of a DH table.
+# --- Answer kind ``link_transforms``: one matrix A_i for each row of a DH table
 
 
 @dataclass(frozen=True, slots=True)
@@ -475,7 +481,7 @@ def _wrong_shape(labels: tuple[str, ...]) -> Finding:
     return reading_error("wrong_shape", message)
 
 
-# Answer kind ``euler_angles``: three angles that describe a rotation.
+# --- Answer kind ``euler_angles``: three angles that describe a rotation
 #
 # Every triple of angles that gives the rotation is correct. A wrong triple is compared with the
 # nearest correct triple.

@@ -1,4 +1,4 @@
-"""Answer kind ``dh_table``: a Denavit-Hartenberg table of the exercise's robot."""
+"""Answer kinds ``dh_table``, ``find_slip`` and ``dh_row``."""
 
 import re
 from collections.abc import Mapping
@@ -30,13 +30,15 @@ from dh_grader.grading.diagnosis.table_readings import (
     search_work,
 )
 from dh_grader.grading.diagnosis.whole_tables import explained
-from dh_grader.grading.follow_through import stands_still
+from dh_grader.grading.frames import Rereadable
 from dh_grader.grading.frames.nearest import single_repairs
 from dh_grader.grading.frames.roles import roles_in
-from dh_grader.grading.frames.rows import Rereadable
-from dh_grader.grading.grading import Content, Grading, Judged, StudentChain
 from dh_grader.grading.judging import (
+    Content,
+    Grading,
+    Judged,
     Slips,
+    StudentChain,
     cell_report,
     given_values,
     is_right_throughout,
@@ -55,6 +57,7 @@ from dh_grader.grading.judging_table import (
     table_content,
     with_zeros,
 )
+from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import (
     WrongCell,
     all_records,
@@ -108,6 +111,9 @@ from dh_grader.kinematics import (
 from dh_grader.learning import DrawnSlip, NoSlipError, TableBlame, TableTexts, as_rows, drawn_slip
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- Answer kind ``dh_table``: a Denavit-Hartenberg table of the exercise's robot
+
 
 # The share of the points that a slip costs if it is not that of every slip of a whole table.
 COSTS = {"other_convention": 0.5}
@@ -296,7 +302,7 @@ def _cell(
     return cell_report(judged.row.entries[column], label, match, slip, grading)
 
 
-# Put the rows that an exercise gives into a submitted table.
+# --- Put the rows that an exercise gives into a submitted table
 
 
 _CHANGED = register(
@@ -404,7 +410,7 @@ def _changed(label: str) -> Finding:
     )
 
 
-# Answer kind ``find_slip``: mark the mistake (slip) in a given table, and correct the table.
+# --- Answer kind ``find_slip``: mark the mistake (slip) in a given table, and correct the table
 
 
 MARKED: Final = "marked"
@@ -667,7 +673,7 @@ _FIND_SLIP_WRONG_SHAPE: Final = reading_error(
 )
 
 
-# Answer kind ``dh_row``: the DH row of a transform, or "none".
+# --- Answer kind ``dh_row``: the DH row of a transform, or "none"
 
 
 LABEL = "1"

@@ -1,4 +1,7 @@
-"""Convert a length with a unit to a number: 135 mm is 0.135 in metres."""
+"""One cell -> an entry with its values; names, units and comments of a pasted text.
+
+``table.py``, ``matrices.py`` and ``lists.py`` read what holds the cells.
+"""
 
 import re
 import unicodedata
@@ -6,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence, Set
 from dataclasses import dataclass, field, replace
 from decimal import Decimal
 from functools import lru_cache, reduce
-from itertools import chain, islice
+from itertools import chain, islice, pairwise
 from typing import Final, NamedTuple, Self, TypeAlias, TypeVar
 
 import numpy as np
@@ -34,6 +37,9 @@ from dh_grader.grading.reading.headers import ANGLE_UNITS, METRES, in_plain_word
 from dh_grader.grading.report import (
     MAX_PASTED,
     MAX_PASTED_SIGNS,
+    MAX_SYMBOLS,
+    PASTED_WORK,
+    SYMBOL_WORK,
     Finding,
     Verdict,
     WorkBudget,
@@ -48,16 +54,20 @@ from dh_grader.pasting import (
     GridError,
     NamedGrid,
     RobotTable,
+    SourceText,
     read_grid,
     read_grids,
     read_robot,
     without_tuples,
 )
-from dh_grader.pasting.around import is_correction
+from dh_grader.pasting.around import is_correction, is_sentence
 from dh_grader.pasting.source import joined, line_number, remembering
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
-from dh_grader.translations import say
+from dh_grader.translations import listed, say
+
+# --- Convert a length with a unit to a number: 135 mm is 0.135 in metres
+
 
 _LENGTH: Final = regex(
     r"(?P<sign>[-−–]?)\s{0,4}(?P<number>\d{1,12}(?:[.,]\d{1,12})?)\s{0,4}[(\[]?(?P<unit>[a-z]{1,12})"
@@ -82,11 +92,10 @@ def converted(text: str, unit: str) -> str | None:
     return f"{sign}{number:f}"
 
 
-# Names of joint variables that a robot does not have, such as theta0.
+# --- Names of joint variables that a robot does not have, such as theta0
 #
 # A cell with such a name is wrong, but not unreadable.
-
-
+#
 # Students write them if they count the joints from 0, or revolute and prismatic joints separately.
 # theta3 is absent if joint 3 slides.
 
@@ -123,7 +132,7 @@ def joint_counted(name: str) -> int:
     return int(name.lstrip(_LETTERS))
 
 
-# Read a submitted cell as an entry, and evaluate entries at the samples.
+# --- Read a submitted cell as an entry, and evaluate entries at the samples
 
 
 # Notes that a table does not show: textbooks mark every joint variable with a star, and six notes
@@ -329,9 +338,8 @@ def from_note(note: Note) -> Finding:
     return reading_note(note.code, note.message, note.span)
 
 
-# Sort values by their names: ``y = 2, x = 1`` is x, then y. Report wrong names.
-
-
+# --- Sort values by their names: ``y = 2, x = 1`` is x, then y. Report wrong names
+#
 # A name may belong to several places, because textbooks differ, or to no place. The values are
 # reordered only if each value that is not empty names exactly one place, and no two values name the
 # same place.
@@ -429,9 +437,8 @@ def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]
     )
 
 
-# Replace letters by the numbers that a script gives them, as in ``d1 = 0.1625``.
-
-
+# --- Replace letters by the numbers that a script gives them, as in ``d1 = 0.1625``
+#
 # The numbers count only if the exercise has no lengths as letters; otherwise letters are its
 # symbols.
 
@@ -491,7 +498,7 @@ def _cell(cell: GridCell, given: dict[str, str], used: dict[str, None]) -> GridC
     return joined([*pieces, cell.cut(start, len(cell.text))], cell.at)
 
 
-# Read the grids (tables and matrices) in pasted texts, and report errors in them.
+# --- Read the grids (tables and matrices) in pasted texts, and report errors in them
 
 
 R = TypeVar("R")
@@ -693,7 +700,7 @@ def side_by_side(names: Sequence[str]) -> str:
     return reduce(lambda first, second: say("{first}, {second}", first=first, second=second), names)
 
 
-# Find comments and captions in a pasted text, and the units that they name.
+# --- Find comments and captions in a pasted text, and the units that they name
 
 
 _COMMENT: Final = regex(r"(?:[%#]{1,3}|//|[(/]\*)[ \t]{0,40}((?:(?!\*[)/])[^\n%#]){2,80})")
@@ -763,3 +770,194 @@ def units_in(comment: str) -> tuple[set[AngleUnit], set[float]]:
     words = {*_WORD.findall(in_plain_words(comment))} - _NO_UNITS
     angles = {ANGLE_UNITS[word] for word in words if word in ANGLE_UNITS}
     return angles, {METRES[word] for word in words if word in METRES}
+
+
+# --- A text with several answers
+
+
+_MOST_ANSWERS: Final = 4
+_FEWEST_LINES: Final = 2
+_MOST_LINES: Final = 200
+# Programs print numbers with as few as five digits.
+_ROUNDED: Final = 1e-4
+# The beginning of an answer that has a name or a command: DH = [, T = Matrix(, \begin{tabular}.
+_BEGINS: Final = regex(
+    r"\s*[A-Za-z]\w{0,40}\s{0,4}:?=\s{0,4}(?:[\w.]{1,40}\(\s{0,4})?[\[{(]"
+    r"|.{0,80}\\begin\{(?:tabular[x*]?|longtable|array|tblr|NiceTabular|[pbBvV]?matrix)\}"
+)
+_ENDS: Final = regex(r".{0,200}\\end\{")
+# The first row of a table whose rows have numbers.
+_FIRST_ROW: Final = regex(r"[\s|│]*(?:[^\W\d_]{1,12}[ _.]?)?1(?![\w.(*/^+])")
+# A line that is no cell: a comment, a rule, a fence, or the title of another try.
+_NO_ROW: Final = regex(r"\s*(?:[%#`~].*|[-=_|:+*\s]*|[^\W\d_]{2,20}[\w ]{0,40}[.:]\s*)")
+
+
+@dataclass(frozen=True, slots=True)
+class FoundAnswer:
+    """One of several answers in a text: the texts of its cells, row by row, and their entries.
+
+    ``is_whole`` is true if no row is missing.
+    """
+
+    texts: tuple[str, ...]
+    entries: tuple[Entry, ...]
+    quantities: Sequence[Kind]
+    is_whole: bool
+    is_table: bool = False
+
+
+# A function that returns the answer in a piece of a text, or None. It may raise GridError.
+Find = Callable[[str, Reader], FoundAnswer | None]
+
+
+def read_once(
+    text: str, read: Callable[[str], R], is_one: Callable[[R], bool], find: Find, reader: Reader
+) -> tuple[R, tuple[Note, ...]]:
+    """Read a text, or only the first of its answers if all are equal; then there is a note.
+
+    Raises GridError if the text cannot be read, or if its answers differ.
+    """
+    # ``is_one`` is False if what was read may be several answers.
+    try:
+        found = read(text)
+    except GridError:
+        if first := _first_of_equals(text, find, reader):
+            return read(first[0]), (first[1],)
+        raise
+    if not is_one(found) and (first := _first_of_equals(text, find, reader)):
+        return read(first[0]), (first[1],)
+    return found, ()
+
+
+def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] | None:
+    # The text up to the end of its first answer, and a note, if equal answers follow; None if the
+    # text has only one answer. Raises GridError if the answers differ.
+    if len(text) > GRID_LIMITS.characters:
+        return None
+    if not _FEWEST_LINES <= len(text.splitlines()) <= _MOST_LINES:
+        return None
+    ways = list(_starts(lines := SourceText.of(text).lines()))
+    if not ways or not reader.budget.affords_search(PASTED_WORK * 2 * len(text)):
+        return None
+    own = replace(reader, budget=WorkBudget(MAX_SYMBOLS, repairs=0, pasted=4 * MAX_PASTED))
+    try:
+        for starts in ways:
+            pieces = [lines[a:b] for a, b in pairwise([*starts, len(lines)])]
+            found = [_found(piece, find, own) for piece in pieces]
+            answers = [each for each in found if each is not None]
+            if len(answers) == len(pieces) and _are_alternatives(answers, own):
+                return _first(pieces, answers, own)
+    finally:
+        reader.budget.charge_search(SYMBOL_WORK * (MAX_SYMBOLS - max(own.budget.symbols, 0)))
+    return None
+
+
+def _first(
+    pieces: Sequence[Sequence[SourceText]], answers: Sequence[FoundAnswer], reader: Reader
+) -> tuple[str, Note]:
+    content = [[line for line in piece if _is_row(line)] for piece in pieces]
+    spans = [(rows[0].whole[0], rows[-1].whole[1]) for rows in content]
+    places = [_lines(rows[0].line_number, rows[-1].line_number) for rows in content]
+    if not all(_are_equal(answers[0], other, reader) for other in answers[1:]):
+        message = say(
+            "This text has {number} answers that differ, in the lines {places}. Delete all but "
+            "the one that counts.",
+            number=len(answers),
+            places=listed(places),
+        )
+        raise GridError("several_answers", message, (spans[0][0], spans[-1][1]))
+    message = say(
+        "The same answer is in the lines {places}. It was read once.", places=listed(places)
+    )
+    end = pieces[0][-1].whole[1]
+    return content[0][0].typed[:end], Note("answer_repeated", message, spans[1])
+
+
+def _lines(first: int, last: int) -> str:
+    return str(first) if first == last else f"{first}-{last}"
+
+
+def _found(piece: Sequence[SourceText], find: Find, reader: Reader) -> FoundAnswer | None:
+    text = piece[0].typed[piece[0].whole[0] : piece[-1].whole[1]]
+    try:
+        return find(text, reader)
+    except GridError:
+        return None
+
+
+def _are_alternatives(answers: Sequence[FoundAnswer], reader: Reader) -> bool:
+    # A part of an answer is no alternative. The rows of one table do not repeat the variable of a
+    # joint; a matrix may have none.
+    if not any(answer.is_whole for answer in answers):
+        return False
+    joints = [_joints(answer, reader) for answer in answers]
+    if not any(joints):
+        return not any(answer.is_table for answer in answers)
+    return bool(set.intersection(*joints))
+
+
+def _joints(answer: FoundAnswer, reader: Reader) -> set[str]:
+    known = reader.vocabulary.by_name
+    expressions = [each.expression for each in answer.entries if each.expression]
+    names = set[str]().union(*(each.symbols for each in expressions))
+    return {name for name in names if name in known and known[name].joint is not None}
+
+
+def _are_equal(one: FoundAnswer, other: FoundAnswer, reader: Reader) -> bool:
+    if one.texts == other.texts:
+        return True
+    if len(one.entries) != len(other.entries):
+        return False
+    unread = [each for each in (*one.entries, *other.entries) if not each.readable]
+    return not unread and np.allclose(
+        _values(one, reader), _values(other, reader), rtol=_ROUNDED, atol=_ROUNDED, equal_nan=True
+    )
+
+
+def _values(answer: FoundAnswer, reader: Reader) -> Numbers:
+    samples = reader.samples
+    if absent := samples.absent_names(each.expression for each in answer.entries):
+        samples = samples.with_names(absent)
+    return entry_values(answer.entries, answer.quantities, samples)
+
+
+def _is_row(line: SourceText) -> bool:
+    return not _is_between(line.text)
+
+
+def _is_between(line: str) -> bool:
+    return _NO_ROW.fullmatch(line) is not None or is_sentence(line)
+
+
+def _starts(lines: Sequence[SourceText]) -> Iterator[list[int]]:
+    """Yield ways to divide the lines into pieces, as the first line of each piece."""
+    rows = [i for i, line in enumerate(lines) if _is_row(line)]
+    if len(rows) < _FEWEST_LINES:
+        return
+    texts = {i: " ".join(lines[i].text.split()) for i in rows}
+    named = [i for i in rows if _BEGINS.match(lines[i].text)]
+    after_end = [b for a, b in pairwise(rows) if _ENDS.match(lines[a].text)]
+    numbered = [i for i in rows if _FIRST_ROW.match(lines[i].text)]
+    first = rows[0]
+    ways = [
+        named,
+        after_end,
+        [b for a, b in pairwise(rows) if any(lines[i].text.strip() for i in range(a + 1, b))],
+        [i for i in rows if texts[i] == texts[first]],
+        [b for a, b in pairwise(rows) if b > a + 1],
+        numbered,
+        *(rows[:: len(rows) // n] for n in range(2, _MOST_ANSWERS + 1) if len(rows) % n == 0),
+    ]
+    tried = set()
+    for way in ways:
+        # What is before the first piece belongs to it, and so do titles above another piece.
+        inner = [_above(i, rows) for i in way if i > first]
+        starts = [0, *inner]
+        if 2 <= len(starts) <= _MOST_ANSWERS and (key := tuple(starts)) not in tried:
+            tried.add(key)
+            yield starts
+
+
+def _above(start: int, rows: Sequence[int]) -> int:
+    # The line after the last row above a line.
+    return max(i for i in rows if i < start) + 1

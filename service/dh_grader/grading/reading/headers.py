@@ -1,7 +1,4 @@
-"""Words in headers and row labels, in English, German, Spanish, French, Italian and Chinese.
-
-Words are in small letters without accents: "articulación" is "articulacion".
-"""
+"""Words in headers and labels of tables, in six languages: columns, units, order of rows."""
 
 import re
 import unicodedata
@@ -15,6 +12,10 @@ from dh_grader.pasting import GridCell, GridError
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
+# --- Words in headers and row labels, in English, German, Spanish, French, Italian and Chinese
+#
+# Words are in small letters without accents: "articulación" is "articulacion".
+#
 # "ß" is "ss". A word that means different parameters in different books, such as "Abstand", is a
 # filler: the letter next to it decides, and without a letter the header is unknown.
 
@@ -122,7 +123,7 @@ def _without_accent(letter: str) -> str:
     return "ss" if letter == "ß" else unicodedata.normalize("NFD", letter)[0]
 
 
-# Order the rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector.
+# --- Order the rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector
 
 
 LAST: Final = 10_000
@@ -202,7 +203,7 @@ def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]
     return order, (reading_note("rows_reordered", message, labels[moved].whole),)
 
 
-# Read the headers of a pasted DH table: the parameter in a column, and its unit.
+# --- Read the headers of a pasted DH table: the parameter in a column, and its unit
 
 
 LABEL: Final = "label"

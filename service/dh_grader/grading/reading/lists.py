@@ -1,7 +1,4 @@
-"""Read a list of frames on joint axes, from JSON or a pasted table.
-
-A frame is its joint axis, the direction of z, its origin, and the direction of x.
-"""
+"""Read lists: values with names, and frames on joint axes; JSON or pasted text."""
 
 import re
 import unicodedata
@@ -43,6 +40,10 @@ from dh_grader.pasting import FULL_WIDTH, GridCell, GridError
 from dh_grader.regex import regex
 from dh_grader.translations import paragraph, say
 
+# --- Read a list of frames on joint axes, from JSON or a pasted table
+#
+# A frame is its joint axis, the direction of z, its origin, and the direction of x.
+#
 # A direction is a name such as ``+x`` or ``-z0``, or a vector of any length.
 
 
@@ -319,9 +320,8 @@ _NO_DIRECTION: Final = _reading(
 )
 
 
-# Find the place in a list that a name such as x, p_y, φ or pitch means.
-
-
+# --- Find the place in a list that a name such as x, p_y, φ or pitch means
+#
 # A name may mean several places.
 
 
@@ -478,7 +478,7 @@ def _coordinate(words: Sequence[str]) -> str | None:
     return found[0] if len(found) == 1 else None
 
 
-# Read a list of values, from JSON or pasted text, as entries and their numbers.
+# --- Read a list of values, from JSON or pasted text, as entries and their numbers
 
 
 @dataclass(frozen=True, slots=True)

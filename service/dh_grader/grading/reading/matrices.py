@@ -1,4 +1,4 @@
-"""Find the place of a link transform by its name, such as A_2, T_{12}, {}^{1}T_2 or "Link 2"."""
+"""Read matrices: one, several by their names, or screw axes; JSON or pasted text."""
 
 import re
 import unicodedata
@@ -16,6 +16,7 @@ from dh_grader.grading.reading.entries import (
     MISSING,
     UNREADABLE,
     Entry,
+    FoundAnswer,
     Reader,
     entry_values,
     from_grid_error,
@@ -28,10 +29,10 @@ from dh_grader.grading.reading.entries import (
     place_of,
     placed,
     quoted,
+    read_once,
     refuse_other_lengths,
     unreadable,
 )
-from dh_grader.grading.reading.several_answers import FoundAnswer, read_once
 from dh_grader.grading.report import (
     Finding,
     UnreadableAnswerError,
@@ -44,6 +45,9 @@ from dh_grader.pasting import Grid, GridCell, GridError, NamedGrid, SourceText
 from dh_grader.pasting.matrices import ANY_SIZE
 from dh_grader.regex import regex
 from dh_grader.translations import listed, say, template
+
+# --- Find the place of a link transform by its name, such as A_2, T_{12}, {}^{1}T_2 or "Link 2"
+
 
 _COMMAND: Final = regex(r"\\[A-Za-z]{1,20}")
 # The arguments of A_2(q_2), in contrast to the indices of A(2) and A{2}.
@@ -157,9 +161,8 @@ _WAYS: Final[tuple[tuple[Callable[[Indices, int], int | None], str], ...]] = (
 )
 
 
-# Read submitted screw axes as a row of six numbers (ω; v) for each joint.
-
-
+# --- Read submitted screw axes as a row of six numbers (ω; v) for each joint
+#
 # Students write them as the rows or the columns of one matrix, as named vectors (``S1 = […]``), as
 # named halves (``w1 = […], v1 = […]``), or as a table with a column for ω and one for v.
 
@@ -382,7 +385,7 @@ def _half(name: str) -> int | None:
     return 1 if _VELOCITY.match(plain) else None
 
 
-# Read a submitted matrix, nested lists or pasted text, as entries and their values.
+# --- Read a submitted matrix, nested lists or pasted text, as entries and their values
 
 
 Quantities = Sequence[Sequence[Kind]]
@@ -582,7 +585,7 @@ def _pasted_row(
     ]
 
 
-# Read several matrices in one pasted text, and order them by the link numbers in their names.
+# --- Read several matrices in one pasted text, and order them by the link numbers in their names
 
 
 def read_matrices(
@@ -807,7 +810,7 @@ def _matrix_list_place(named: NamedGrid) -> tuple[int, int]:
     return named.grid.rows[0][0].whole[0], named.grid.rows[-1][-1].whole[1]
 
 
-# Find the matrix entry that a name means, as in T(1,4) = l1 c1 and r_12 = -s1.
+# --- Find the matrix entry that a name means, as in T(1,4) = l1 c1 and r_12 = -s1
 
 
 # Letters that name matrices; p_12 and l_12 are not matrix entries. If the index is in brackets, the

@@ -1,4 +1,4 @@
-"""Read a pasted DH table as rows of entries."""
+"""Read a pasted DH table as rows of entries: units in rows, comments and captions."""
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
@@ -11,13 +11,14 @@ import numpy as np
 
 from dh_grader.expressions import Expression
 from dh_grader.expressions.errors import Note, Span
-from dh_grader.expressions.tree import Binary, Node, Number
+from dh_grader.expressions.vocabulary import Binary, Node, Number
 from dh_grader.grading.numbers import EXACT_VALUE, SAME_FACTOR
 from dh_grader.grading.reading import headers as column_headers
 from dh_grader.grading.reading.entries import (
     CONVERTS_LENGTHS,
     Arrangement,
     Entry,
+    FoundAnswer,
     Reader,
     comments,
     comments_and_captions,
@@ -27,6 +28,7 @@ from dh_grader.grading.reading.entries import (
     place_of,
     placed,
     quoted,
+    read_once,
     refuse_corrections,
     side_by_side,
     units_in,
@@ -48,7 +50,6 @@ from dh_grader.grading.reading.headers import (
     label_place,
     read_header,
 )
-from dh_grader.grading.reading.several_answers import FoundAnswer, read_once
 from dh_grader.grading.reading.table_cells import arranged_row, first_number, row_entries
 from dh_grader.grading.report import Finding, Verdict, reading_error, reading_note
 from dh_grader.kinematics import COLUMNS, THETA, CellIndex, D
@@ -58,7 +59,7 @@ from dh_grader.pasting.source import joined, line_number
 from dh_grader.regex import regex
 from dh_grader.translations import listed, say, say_count
 
-# Move the units in the second row of a pasted table into its headers.
+# --- Move the units in the second row of a pasted table into its headers
 
 
 _KINDS: Final = {**QUANTITIES, LENGTH_OR_LABEL: "length", THETA_OFFSET: "angle"}
@@ -116,7 +117,7 @@ def _with_unit(header: GridCell, unit: GridCell) -> GridCell:
     return joined([header, nothing.spelled(" ["), bare, nothing.spelled("]")], header.at)
 
 
-# Read which cells of a table a student marks: ``2.alpha``, or row ``2``, or several.
+# --- Read which cells of a table a student marks: ``2.alpha``, or row ``2``, or several
 
 
 _NAMES: Final = {
@@ -206,7 +207,7 @@ _NOT_MARKS: Final = reading_error(
 )
 
 
-# Convert the lengths in a column from the header's unit to the exercise's unit.
+# --- Convert the lengths in a column from the header's unit to the exercise's unit
 
 
 def in_unit(entry: Entry, header: Header, reader: Reader) -> Entry:
@@ -283,11 +284,10 @@ def _checked_formula(entry: Entry, expression: Expression, header: Header, reade
     return unreadable(reading_error("header_unit", message))
 
 
-# Find the columns and units that comments and captions of a table name.
+# --- Find the columns and units that comments and captions of a table name
 #
 # The comment ``% theta [deg], d, a, alpha`` gives the columns of a table without headers.
-
-
+#
 # A unit without columns, such as ``% lengths in mm``, may apply to the table, so the text is
 # refused.
 

@@ -1,4 +1,4 @@
-"""Find the column and row that a cell's name means, as in theta_1 = q1."""
+"""Which column and row a cell's name means, and cells that are read one by one."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
@@ -34,6 +34,9 @@ from dh_grader.grading.report import MAX_SYMBOLS, Finding, WorkBudget
 from dh_grader.kinematics import COLUMNS
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- Find the column and row that a cell's name means, as in theta_1 = q1
+
 
 _LABELS: Final = tuple(SHOWN[column] for column in COLUMNS)
 # The parameters that the modified convention numbers one less than their row.
@@ -101,7 +104,7 @@ def _names_another_row(
     return misnamed_value(name, say("{parameter} (row {row})", parameter=SHOWN[column], row=number))
 
 
-# Find the cells of a DH table or of one row, as JSON or as text, and read them as entries.
+# --- Find the cells of a DH table or of one row, as JSON or as text, and read them as entries
 
 
 # Part 1: the JSON shapes of a table -> the one that the reader expects.

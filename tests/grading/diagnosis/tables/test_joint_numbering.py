@@ -7,7 +7,7 @@ from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.kinds import DhTableSpec
 from dh_grader.grading import PartReport, Verdict
 from dh_grader.grading.diagnosis.table_readings import by_other_numbering
-from dh_grader.grading.grading import Grading
+from dh_grader.grading.judging import Grading
 from dh_grader.grading.kinds.tables import read_dh_table_answer
 from dh_grader.grading.numbers import draw
 from dh_grader.grading.reading.entries import Reader

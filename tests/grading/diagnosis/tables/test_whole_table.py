@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import numpy as np
 from dh_grader.catalogue import Joint
+from dh_grader.grading import frames as written_table
 from dh_grader.grading.diagnosis import whole_tables as whole_table
 from dh_grader.grading.diagnosis.whole_tables import WrongTable, explaining
-from dh_grader.grading.frames import rows as written_table
-from dh_grader.grading.frames.rows import WrittenTable
+from dh_grader.grading.frames import WrittenTable
 from dh_grader.grading.misconception import hypotheses_of, records_of
 from dh_grader.grading.numbers import HALF, SAMPLES, Samples
 from dh_grader.kinematics import ALPHA, THETA, A, Convention, D, Table

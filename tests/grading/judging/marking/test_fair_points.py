@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.kinds import DhTableSpec
-from dh_grader.grading.fair_points import FairPoints
-from dh_grader.grading.grading import Content, Grading, Judged
+from dh_grader.grading.judging import Content, Grading, Judged
+from dh_grader.grading.judging_table import FairPoints
 from dh_grader.grading.marks import least_lost, steps_lost
 from dh_grader.grading.numbers import SAMPLES, draw
 from dh_grader.grading.reading.entries import Entry, Reader

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from dh_grader.catalogue import Exercise, PartSpec
 from dh_grader.grading import CellReport, Feedback, PartReport, RowReport, Severity, Verdict
-from dh_grader.grading.grading import Content, Judged
+from dh_grader.grading.judging import Content, Judged
 from dh_grader.grading.marks import has_earned, least_lost, part_report, steps_lost, unjudged_report
 from dh_grader.grading.report import combined, little_worth, lost_in_row, without_places
 

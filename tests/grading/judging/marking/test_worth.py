@@ -2,7 +2,7 @@
 
 import pytest
 from dh_grader.catalogue.schema_fields import Marking
-from dh_grader.grading.grading import Content
+from dh_grader.grading.judging import Content
 from dh_grader.grading.marks import CellWorth, apportioned, evenly, worth_of
 from hypothesis import given
 from hypothesis import strategies as st

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from dh_grader.grading.frames.rows import pair_in_order
+from dh_grader.grading.frames import pair_in_order
 
 PAIRS: dict[str, tuple[list[list[float]], list[tuple[int | None, int | None]]]] = {
     "all agree": ([[1, 0], [0, 1]], [(0, 0), (1, 1)]),

@@ -5,7 +5,7 @@ from collections.abc import Callable, Mapping
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.grading import PartReport, Verdict
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 
 from tests.grading.support.exercise_texts import all_codes
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, part

@@ -6,7 +6,7 @@ from typing import Any
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.grading import Verdict
-from dh_grader.grading.reading.preview import preview_pasted
+from dh_grader.grading.reading import preview_pasted
 
 from tests.grading.support.exercise_texts import all_codes
 from tests.grading.support.submitting import full_marks, handed_in, not_correct, part

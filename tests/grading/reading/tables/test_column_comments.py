@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.grading import Verdict
-from dh_grader.grading.reading.preview import PastedPreview, preview_pasted
+from dh_grader.grading.reading import PastedPreview, preview_pasted
 
 from tests.grading.support.submitting import handed_in, part
 
