@@ -64,7 +64,7 @@ ASSIGNMENT = 'title = "Arms"\nvariants = true\n[[exercises]]\npath = "arm.toml"\
 NEEDS = {
     "bundle gradescope --output x.zip": "name a file for their secret, --secret F",
     "bundle gradescope --output x.zip --secret hw.toml": "hw.toml: contains no secret",
-    "bundle gradescope --output x.zip --secret no/secret": "no/secret: cannot be written",
+    "bundle gradescope --output x.zip --secret no/secret": "no/secret cannot be written",
     "bundle ci --output x.zip": "a job does not know whose files it grades",
     "grade arm.json": "Each student has variants of their own in this assignment.",
     "grade arm.json --platform-data arm.json": "arm.json does not say whose submission it is",

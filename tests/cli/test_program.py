@@ -167,7 +167,7 @@ def test_a_full_disk_is_reported_in_one_line(arguments: tuple[str, ...]) -> None
             check=False,
         )
     assert done.stderr.decode().splitlines() == [
-        "The output: cannot be written: No space left on device"
+        "The output cannot be written: No space left on device"
     ]
     assert done.returncode == 2
 

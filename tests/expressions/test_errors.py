@@ -76,7 +76,7 @@ CASES = [
     ("sin2q1", "ambiguous_shorthand", (0, 4), "sin(2q1)"),
     ("cos12(q1)", "ambiguous_shorthand", (0, 5), None),
     ("2deg(q1)", "ambiguous_unit", (1, 4), None),
-    ("degrees(90)", "ambiguous_unit", (0, 7), None),
+    ("degrees(pi)", "ambiguous_unit", (0, 7), None),
     ("rad(90)", "ambiguous_unit", (0, 3), None),
     ("q1 + rad(-22.5)", "ambiguous_unit", (5, 8), None),
     ("(q1 + 90)deg", "unit_on_variable", (0, 12), None),

@@ -14,6 +14,7 @@ GERMAN = german({
     "No file": "Keine Datei",
     "%(files)s for %(exercise)s, version %(version)s, graded by DH Grader %(grader)s":
         "%(files)s zu %(exercise)s, Fassung %(version)s, bewertet von DH Grader %(grader)s",
+    "Not graded": "Nicht bewertet",
     "Not passed": "Nicht bestanden",
     "Nothing was handed in.": "Es wurde nichts abgegeben.",
     "Total for {exercise}: ": "Summe für {exercise}: ",
@@ -37,7 +38,7 @@ GERMAN = german({
     [
         ("text", ["Summe für planar-rrr: 0 / 16 Punkte, 0 %", "Nicht bestanden: zum Bestehen br"]),
         ("markdown", ["| Abgabe | Punkte | Ergebnis | bestanden |", ":** fehlt, 0 / 8 Punkte"]),
-        ("html", ['<html lang="de">', ">Nicht bestanden<", "<strong>0 / 16 Punkte</strong>",
+        ("html", ['<html lang="de">', ">Nicht bewertet<",
                   "</span>teils richtig</li>", "folder/anna.json zu planar-rrr, Fassung "]),
         ("gradescope", ["0 / 16 Punkte, 0 %."]),
         ("junit", ['message="fehlt, 0 / 8 Punkte"', ">0 / 8 Punkte\n"]),

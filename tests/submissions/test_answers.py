@@ -84,9 +84,12 @@ def test_parts_that_are_not_set_are_left_out(tmp_path: Path) -> None:
     [
         ({"x.csv": CSV}, "after it, as in STUDENT.table.csv or STUDENT.pose.csv, or name the part"),
         ({"x.csv": CSV, "y.csv": CSV}, "there are x.csv, y.csv; name it as planar-rrr/table.csv"),
-        ({"x.pdf": b"%PDF"}, "x.pdf can only be graded by hand: a program cannot read .pdf"),
-        ({"a.png": b"\x89PNG", "b.jpg": b"\xff"}, "by hand: a program cannot read a.png, b.jpg"),
-        ({"x.xyz": b"a"}, "x.xyz is a file of a kind that is not read (.xyz); known are .json"),
+        ({"x.pdf": b"%PDF"}, "x.pdf can only be graded by hand: this program cannot read .pdf"),
+        ({"a.png": b"\x89PNG", "b.jpg": b"\xff"}, "by hand: this program cannot read a.png, b.jpg"),
+        (
+            {"x.xyz": b"a"},
+            "x.xyz is a file of a kind that this program does not read (.xyz); known are .json",
+        ),
         ({"table.docx": b"PK\x03\x04\0"}, "table.docx is damaged, or not what its name says"),
         (
             {"table.csv": b"\x81\xfa"},

@@ -606,7 +606,7 @@ def backup_command(
         # Another backup was faster.
         give_up(_backup_is_there(file))
     except (OSError, sqlite3.Error) as error:
-        give_up(say("{file}: cannot be written: {reason}", file=str(file), reason=str(error)))
+        give_up(say("{file} cannot be written: {reason}", file=str(file), reason=str(error)))
     tell(
         say(
             "{file}: {size} bytes. Only you can read it. Keep it safe.",

@@ -632,7 +632,7 @@ def import_learners(
         data = sys.stdin.buffer.read() if str(file) == "-" else file.read_bytes()
         listed = read_class_list(decoded(data))
     except OSError as error:
-        give_up(say("{file}: cannot be read: {reason}", file=str(file), reason=str(error)))
+        give_up(say("{file} cannot be read: {reason}", file=str(file), reason=str(error)))
     except CourseError as error:
         give_up(joined(": ", [str(file), str(error.args[0])]))
     count = changed(lambda it: roll.add_learners(it, course, listed))

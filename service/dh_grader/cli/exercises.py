@@ -515,7 +515,7 @@ def deploy_command(
     if text is None:
         give_up(
             say(
-                "{file}: cannot be edited here; write deployed = {seeds} below [vary]",
+                "{file} cannot be edited here; write deployed = {seeds} below [vary]",
                 file=str(file),
                 seeds=str(seeds),
             )

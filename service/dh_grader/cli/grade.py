@@ -79,7 +79,7 @@ from dh_grader.submissions import (
 )
 from dh_grader.submissions.answers import of_file
 from dh_grader.submissions.files import HandedIn, UnusableClassError, all_handed_in
-from dh_grader.translations import Language, joined, say, say_count
+from dh_grader.translations import Language, Sentence, joined, say, say_count
 from dh_grader.variants import NoVariantError
 
 if TYPE_CHECKING:
@@ -98,7 +98,7 @@ def require_no_input(output: Path, read: Iterable[Path]) -> None:
         if path.is_file() and output.exists() and path.samefile(output):
             give_up(
                 say(
-                    "{file}: is read, and would be overwritten; name another --output",
+                    "{file} is read, and would be overwritten; name another --output",
                     file=str(output),
                 )
             )
@@ -120,7 +120,7 @@ def require_own(output: Path, folders: Iterable[Path], *, force: bool = False) -
     if _holds(folders, output):
         give_up(
             say(
-                "{file}: is among the submissions, and no earlier run has written it; name another "
+                "{file} is among the submissions, and no earlier run has written it; name another "
                 "--output",
                 file=str(output),
             )
@@ -128,7 +128,7 @@ def require_own(output: Path, folders: Iterable[Path], *, force: bool = False) -
     if not force:
         give_up(
             say(
-                "{file}: exists, and is no earlier report of this program; name another --output, "
+                "{file} exists, and is no earlier report of this program; name another --output, "
                 "or add --force to replace the file",
                 file=str(output),
             )
@@ -648,7 +648,7 @@ def grade_command(
             progress(0 if quiet else len(own)) as shown,
             _grading(grader, terms, own, jobs, output, settings) as all_graded,
         ):
-            run = _GradeRun(all_graded, shown, check, terms.language if sheet else None)
+            run = _GradeRun(all_graded, shown, check, terms.language, has_worksheet=bool(sheet))
             several = is_class or len(found) > 1
             if output and taken.folder and is_for_folder(output, several=several):
                 in_folder = replace(setting, folder=output)
@@ -788,12 +788,14 @@ class _Filling:
         if others:
             names = ", ".join(map(str, others))
             self._complain(
-                say("{files}: exists with other contents, and stays as it is", files=names)
+                say(
+                    "This file exists with other contents, and stays as it is: {files}", files=names
+                )
             )
         if others or not self.quiet:
             self._complain(
                 say(
-                    "{file}: is written. Grades filled in: {count}. Already the same: {same}. "
+                    "{file} is written. Grades filled in: {count}. Already the same: {same}. "
                     "Left for grading by hand: {left}.",
                     file=str(target),
                     count=filled.grades,
@@ -866,7 +868,7 @@ def _found(
             )
         )
     if not found:
-        give_up(say("{paths}: holds no submission", paths=", ".join(map(str, paths))))
+        give_up(say("{paths}: no submission was found", paths=", ".join(map(str, paths))))
     if sheet is not None:
         found = [
             replace(each, person=sheet.person(each.name, each.learner) or each.person)
@@ -924,30 +926,60 @@ class _GradeRun:
         submissions: Iterable[GradedSubmission],
         shown: Progress,
         check: Callable[[], None],
-        language: Language | None = None,
+        language: Language,
+        *,
+        has_worksheet: bool,
     ) -> None:
-        # With a language, the grades are kept for a worksheet.
+        # For a worksheet, the grades are kept.
         self._submissions = submissions
         self._shown = shown
         self._check = check
         self._language = language
+        self._has_worksheet = has_worksheet
         self.exit_code = 0
+        self._without_part = 0
         self.grades: list[Grade] = []
 
     def submissions(self) -> Iterator[GradedSubmission]:
         for submission in self._submissions:
             self._check()
-            for told in _complaints(submission):
-                self._shown.complain(told)
+            for told in _complaints(submission, self._language):
+                self._complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))
-            if self._language is not None:
+            if self._has_worksheet:
                 self.grades.append(grade_of(submission, comment(submission, self._language)))
             yield submission
             self._shown.advance()
+        if (more := self._without_part - _MOST_WITHOUT_PART) > 0:
+            self._shown.complain(spoken(_more_without_part(more), self._language))
+
+    def _complain(self, told: str) -> None:
+        # Without --part, all files of a class may have this problem.
+        self._without_part += "--part" in told
+        if "--part" not in told or self._without_part <= _MOST_WITHOUT_PART:
+            self._shown.complain(told)
 
 
-def _complaints(submission: GradedSubmission) -> list[str]:
-    told = ((file.file, spoken(file.problem)) for file in submission.files if file.problem)
+# The most files without a part that are named.
+_MOST_WITHOUT_PART: Final = 3
+
+
+def _more_without_part(count: int) -> Sentence:
+    return say_count(
+        "{count} other file has the same problem: name the part with --part.",
+        "{count} other files have the same problem: name the part with --part.",
+        count=count,
+    )
+
+
+def _complaints(submission: GradedSubmission, language: Language) -> list[str]:
+    reasons = ((file.file, file.by_hand) for file in submission.files if file.by_hand)
+    beside = (
+        (file.file, say("Graded, but without this file: {reason}", reason=each))
+        for file in submission.files
+        for each in file.beside
+    )
+    told = ((path, spoken(reason, language)) for path, reason in (*reasons, *beside))
     # A problem begins with the name of its file; that of a file in a folder gets its path.
     lines = (said if said.startswith(path) else f"{path}: {said}" for path, said in told)
     return [visible(line) for line in dict.fromkeys(lines)]

@@ -329,7 +329,7 @@ def _values_in(file: Path) -> dict[str, Any]:
     try:
         found = json.loads(file.read_text(encoding="utf-8"))
     except (OSError, ValueError) as error:
-        give_up(say("{file}: cannot be read: {reason}", file=str(file), reason=str(error)))
+        give_up(say("{file} cannot be read: {reason}", file=str(file), reason=str(error)))
     if not isinstance(found, dict):
         give_up(say("{file}: must be a JSON object.", file=str(file)))
     return found

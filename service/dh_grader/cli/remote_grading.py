@@ -84,7 +84,7 @@ class Journal:
                 self._is_writable = False
                 complain(
                     say(
-                        "{file}: cannot be written: {reason}. If this run is interrupted, the next "
+                        "{file} cannot be written: {reason}. If this run is interrupted, the next "
                         "one sends every submission again.",
                         file=str(self.path),
                         reason=str(error.strerror),

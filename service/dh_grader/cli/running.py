@@ -114,7 +114,7 @@ def merged(files: Sequence[Path]) -> Iterator[bytes]:
             if header.shard in shards:
                 raise UnusableShardsError(
                     say(
-                        "{path}: is shard {shard}, and so is {other}",
+                        "{path} is shard {shard}, and so is {other}",
                         path=str(path),
                         shard=header.shard,
                         other=str(shards[header.shard][1]),
@@ -130,7 +130,7 @@ def merged(files: Sequence[Path]) -> Iterator[bytes]:
         for _, path, file in in_order:
             if file.read(1):
                 raise UnusableShardsError(
-                    say("{path}: has more lines than its header says", path=str(path))
+                    say("{path} has more lines than its header says", path=str(path))
                 )
 
 
@@ -139,7 +139,7 @@ def _opened(path: Path) -> BinaryIO:
         return path.open("rb")
     except OSError as error:
         raise UnusableShardsError(
-            say("{path}: cannot be read: {reason}", path=str(path), reason=str(error.strerror))
+            say("{path} cannot be read: {reason}", path=str(path), reason=str(error.strerror))
         ) from error
 
 
@@ -149,7 +149,7 @@ def _header(line: bytes, path: Path) -> ShardHeader:
         shard_of(f"{header.shard}/{header.shards}")
     except (ValueError, TypeError, typer.BadParameter):
         raise UnusableShardsError(
-            say("{path}: is not a shard; dh-grader grade --shard writes shards", path=str(path))
+            say("{path} is not a shard; dh-grader grade --shard writes shards", path=str(path))
         ) from None
     return header
 
@@ -161,7 +161,7 @@ def _require_one_run(shards: dict[int, tuple[ShardHeader, Path, BinaryIO]]) -> N
         if same != (first.shards, first.submissions, first.exercises, first.run):
             raise UnusableShardsError(
                 say(
-                    "{path}: is from another run than {first_path}: the submissions, the "
+                    "{path} is from another run than {first_path}: the submissions, the "
                     "assignment or the count of shards differ",
                     path=str(path),
                     first_path=str(first_path),
@@ -180,7 +180,7 @@ def _whole_lines(file: BinaryIO, path: Path) -> Iterator[bytes]:
         line = file.readline()
         if not line.endswith(b"\n"):
             raise UnusableShardsError(
-                say("{path}: is incomplete; grade this shard again", path=str(path))
+                say("{path} is incomplete; grade this shard again", path=str(path))
             )
         yield line
 

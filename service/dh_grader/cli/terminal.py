@@ -110,12 +110,12 @@ def stdout() -> Console:
 
 def unwritable(file: Path | str, error: OSError) -> Sentence:
     """Return the message that a file cannot be written."""
-    return say("{file}: cannot be written: {reason}", file=str(file), reason=str(error.strerror))
+    return say("{file} cannot be written: {reason}", file=str(file), reason=str(error.strerror))
 
 
 def unreadable(file: Path | str, error: OSError) -> Sentence:
     """Return the message that a file cannot be read."""
-    return say("{file}: cannot be read: {reason}", file=str(file), reason=str(error.strerror))
+    return say("{file} cannot be read: {reason}", file=str(file), reason=str(error.strerror))
 
 
 def tell(message: str) -> None:

@@ -12,6 +12,7 @@ from typing import Final
 from dh_grader.expressions.characters import CLOSE, MARKER, OPEN
 from dh_grader.expressions.errors import Note, Span, UnreadableError
 from dh_grader.expressions.vocabulary import (
+    FUNCTIONS_OF_DEGREES,
     IN_DEGREES,
     MODULES,
     TRIGONOMETRIC,
@@ -34,6 +35,7 @@ from dh_grader.expressions.words import (
     OPERAND_ENDS,
     RUN,
     WRAPPING,
+    ZERO_IN_BRACKETS,
     Piece,
     Token,
     TokenWriter,
@@ -258,6 +260,9 @@ class WordLexer(TokenWriter):
         """Read the function ``radians`` or ``rad``, which takes degrees; return its end."""
         end = degrees_function_end(self.text, at)
         if end is None:
+            if self.text.startswith("degrees(", at):
+                # Python's ``degrees`` returns a number of degrees.
+                raise UnreadableError("degrees", self._span(at, at + 7), name="degrees")
             return at
         a, b = self._span(at, end)
         self._operand("FUNCTION", ("deg", None), a, b)
@@ -389,8 +394,19 @@ class WordLexer(TokenWriter):
             and not (unit == "rad" and is_more_than_a_turn(self.text, end))
         ):
             self._emit("FUNCTION", (unit, None), a, b)
+        elif self.last not in OPERAND_ENDS and opens and self._is_of_degrees(start, end):
+            self._emit("FUNCTION", ("deg", None), a, b)
         else:
             raise UnreadableError("ambiguous_unit", (a, b), opens=opens)
+
+    def _is_of_degrees(self, start: int, end: int) -> bool:
+        """True for ``radians(90)`` and ``degrees(90)``, which can only mean 90°.
+
+        Python's ``radians`` converts degrees, and nobody writes 90 radians.
+        """
+        of_zero = ZERO_IN_BRACKETS.match(self.text, end)
+        is_large = is_more_than_a_turn(self.text, end)
+        return self.text[start:end] in FUNCTIONS_OF_DEGREES and (is_large or of_zero is not None)
 
     def _unknown(self, run: str, start: int, end: int) -> UnreadableError:
         span = self._span(start, end)

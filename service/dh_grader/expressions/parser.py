@@ -553,6 +553,7 @@ class _Parser:
 
 _VALUES_IN_BRACKETS_MOST_PARTS: Final = 16
 _LARGEST_FACTOR: Final = 1.0
+_HALF_A_TURN: Final = 180.0
 
 
 def check_product(source: str, left: Node, right: Node) -> None:
@@ -562,7 +563,7 @@ def check_product(source: str, left: Node, right: Node) -> None:
         return
     in_brackets = source[right.start] in "([{" and source[right.end - 1] in ")]}"
     is_whole = in_brackets and not source[: left.start].strip() and not source[right.end :].strip()
-    if not (is_whole or kind is Unit or kind is Pi) or not _is_constant(right):
+    if not (in_brackets or kind is Unit or kind is Pi) or not _is_constant(right):
         return
     if _values_in_brackets_is_name(left):
         in_words = not source[right.start - 1].strip()
@@ -588,9 +589,7 @@ def _is_angle(name: Node) -> bool:
 
 
 def _is_zero(value: Node) -> bool:
-    return all(
-        type(part) is not Number or not part.value for part in _values_in_brackets_parts(value)
-    )
+    return all(type(part) is not Number or not part.value for part in _parts_of(value))
 
 
 def _is_decimal(value: Node) -> bool:
@@ -599,8 +598,9 @@ def _is_decimal(value: Node) -> bool:
 
 
 def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
-    of_left, of_right = _values_in_brackets_parts(left), _values_in_brackets_parts(right)
-    if 180.0 in {part.value for part in (*of_left, *of_right) if type(part) is Number}:
+    of_left, of_right = _parts_of(left), _parts_of(right)
+    # 180/π and π/180 convert a value from one unit to another.
+    if any(map(_divides_half_a_turn, (*of_left, *of_right))):
         return False
     units = [any(type(part) is Unit for part in parts) for parts in (of_left, of_right)]
     angles = [any(type(part) in {Unit, Pi} for part in parts) for parts in (of_left, of_right)]
@@ -609,6 +609,14 @@ def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
     number = left if angles[1] else right
     inside = number.operand if type(number) is Negation else number
     return is_whole and any(angles) and type(inside) is Number and _is_value(inside)
+
+
+def _divides_half_a_turn(node: Node) -> bool:
+    return (
+        type(node) is Binary
+        and node.operator == "/"
+        and any(type(part) is Number and part.value == _HALF_A_TURN for part in _parts_of(node))
+    )
 
 
 def _is_value(number: Number) -> bool:
@@ -621,13 +629,13 @@ def _text(source: str, node: Node) -> str:
 
 
 def _is_constant(node: Node) -> bool:
-    parts = _values_in_brackets_parts(node)
+    parts = _parts_of(node)
     return len(parts) <= _VALUES_IN_BRACKETS_MOST_PARTS and not any(
         type(part) is SymbolNode for part in parts
     )
 
 
-def _values_in_brackets_parts(node: Node) -> list[Node]:
+def _parts_of(node: Node) -> list[Node]:
     found = [node]
     for part in found:
         if len(found) > _VALUES_IN_BRACKETS_MOST_PARTS:

@@ -42,8 +42,10 @@ UNITS: Final[dict[str, Literal["deg", "rad"]]] = {
     "radians": "rad",
 }  # fmt: skip
 # For a human reader and in Python, ``degrees(x)`` and ``radians(x)`` have opposite meanings, so
-# only these two words may precede a bracket.
+# only these two words may precede a bracket with any value.
 UNIT_FUNCTIONS: Final = frozenset({"deg", "rad"})
+# These may precede a number that is too large for radians.
+FUNCTIONS_OF_DEGREES: Final = frozenset({"degrees", "radians"})
 
 PI: Final = ("pi", "π")
 PI_CAPITALS: Final = ("Pi", "PI")

@@ -129,6 +129,7 @@ MEMBER: Final = regex(r"(?:\.|::)(?=[^\W\d_])")
 _RADIANS: Final = regex(r"(?:radians|toRadians|rad)(?=\()")
 # More than a turn in radians, so probably degrees, which ``rad`` converts in SymPy.
 _MANY: Final = regex(r"\(\s*[-+]?\s*(?:[7-9]|\d\d+)(?:\.\d*)?\s*\)")
+ZERO_IN_BRACKETS: Final = regex(r"\(\s*[-+]?\s*0+(?:\.0*)?\s*\)")
 _SUBSCRIPT: Final = regex(rf"\[\s*([A-Za-z{characters.CLASS}]+)\s*,\s*([A-Za-z0-9]{{1,12}})\s*\]")
 # Mathematica and Maxima count from 1, and write an index in square brackets.
 _COUNTS_FROM_ONE: Final = regex(r"(?:Sin|Cos|Tan|Sqrt|ArcSin|ArcCos|ArcTan|Subscript)\s*\[|%pi")

@@ -10,6 +10,7 @@ import zipfile
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from itertools import chain, count, pairwise
 from pathlib import Path, PurePath, PurePosixPath
 from typing import Final
@@ -31,7 +32,7 @@ from dh_grader.regex import regex
 from dh_grader.statistics import ClassStatistics, CountedSlip, ScoreBin, Share, columns
 from dh_grader.submissions.files import MAX_START, ClassEntry
 from dh_grader.submissions.office_files import UNREADABLE_ARCHIVE
-from dh_grader.translations import Language, say, say_count
+from dh_grader.translations import Language, joined, say, say_count, told
 
 # --- Recognise what this program has written, and the worksheets of platforms, by their contents
 #
@@ -135,7 +136,6 @@ class SubmissionLine:
     score: float
     passed: bool
     is_graded: bool
-    is_gradable: bool
     problems: tuple[ByHand, ...]
 
 
@@ -172,7 +172,6 @@ class Overview:
                 score=submission.score,
                 passed=submission.passed,
                 is_graded=submission.is_complete,
-                is_gradable=submission.is_gradable,
                 problems=_problems(submission, self.folder),
             )
         )
@@ -200,19 +199,19 @@ class Overview:
 
     @property
     def ungraded(self) -> list[SubmissionLine]:
-        """Return the submissions with a problem, and those in which nothing was readable."""
-        return [line for line in self.lines if line.problems or not line.is_gradable]
+        """Return the submissions with a problem, and those that are left out of the scores."""
+        return [line for line in self.lines if line.problems or not line.is_graded]
 
 
 def _problems(submission: GradedSubmission, folder: Path | None) -> tuple[ByHand, ...]:
     has_several = len(submission.files) > 1
     found = (
         ByHand(
-            f"{file.exercise.title}: {file.problem}" if has_several else file.problem,
+            joined(": ", [file.exercise.title, reason] if has_several else [reason]),
             _path(file.file, folder),
         )
         for file in submission.files
-        if file.problem
+        for reason in filter(None, (file.by_hand, *file.beside))
     )
     return tuple(dict.fromkeys(found))
 
@@ -251,6 +250,7 @@ def index(overview: Overview, language: Language) -> Iterator[bytes]:
         bars_of=_bars_of,
         columns_of=columns,
         grouped="{:,}".format,
+        told=partial(told, translation=language.translation),
         place_of=_place_of,
         untold=_untold,
         wrong_cells=_wrong_cells,

@@ -29,7 +29,7 @@ from dh_grader.formats.texts import (
 from dh_grader.grading import PartReport, Report, RowReport, Severity
 from dh_grader.grading.report import messages_of
 from dh_grader.regex import regex
-from dh_grader.translations import Language, Translation, say, told
+from dh_grader.translations import Language, Translation, joined, say, told
 
 # --- GitHub's Markdown for the summary of a job or a comment on a pull request
 #
@@ -98,14 +98,16 @@ def entries(submissions: Iterable[GradedSubmission]) -> Iterator[bytes]:
 
 
 def _entry(submission: GradedSubmission, file: GradedFile) -> bytes:
-    head: dict[str, str | bool] = {
+    head: dict[str, str | bool | list[str]] = {
         "submission": _encodable(submission.name),
         "file": _encodable(file.file),
         "exercise": file.exercise.id,
         "passed": submission.passed,
     }
-    if file.problem:
-        head["error"] = _encodable(file.problem)
+    if file.by_hand:
+        head["error"] = _encodable(file.by_hand)
+    if file.beside:
+        head["unread"] = [_encodable(each) for each in file.beside]
     if file.report is None:
         return json.dumps(head).encode()
     return json.dumps(head).encode()[:-1] + b', "report": %b}' % rendered(file.report)
@@ -226,8 +228,12 @@ def _earned(result: PartResult, language: Language) -> str:
         return result.file.problem
     if result.is_unread:
         return told(say("could not be read"), language.translation)
-    return points(result.points, result.max_points)
+    shown = points(result.points, result.max_points)
+    # Beside the grade of a worksheet, which has the decimal sign of its language.
+    return shown.replace(".", ",") if language.code in _WITH_DECIMAL_COMMA else shown
 
+
+_WITH_DECIMAL_COMMA: Final = frozenset({"de", "es", "fr"})
 
 _GRADEBOOK_MARK: Final = regex(re.escape(",".join(texts.GRADEBOOK_HEAD)).encode() + b"\r?\n")
 
@@ -259,7 +265,7 @@ def _csv_cells(submission: GradedSubmission, setting: Setting) -> list[str | flo
         submission.max_points,
         _share(submission.score) if is_complete else None,
         "yes" if submission.passed else "no",
-        "; ".join(submission.problems),
+        told(joined("; ", submission.problems), setting.language.translation),
         " ".join(code for each in results if each.report for code in _codes(each.report)),
         *(None if each.is_unread else each.points for each in results),
     ]

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from datetime import datetime
 from enum import StrEnum
+from itertools import islice
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -17,12 +18,13 @@ from dh_grader.grading import (
     PartReport,
     Report,
     RowReport,
+    Severity,
     Verdict,
 )
-from dh_grader.grading.report import rounded_points
+from dh_grader.grading.report import messages_of, rounded_points, was_read, was_read_in_full
 from dh_grader.regex import regex
 from dh_grader.submissions import SetExercise
-from dh_grader.translations import ENGLISH, Language, told
+from dh_grader.translations import ENGLISH, Language, joined, paragraph, say, told
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -124,6 +126,30 @@ def is_mostly_unread(part: PartReport) -> bool:
     return part.verdict is Verdict.UNREADABLE or 0 < len(written) <= 2 * unread
 
 
+def _lacks_much(part: PartReport) -> bool:
+    # True if an entry is missing, or if the part earned no more than zeros in all cells may earn.
+    return not was_read_in_full(part) or part.points <= _MOST_OF_LAZY * part.max_points
+
+
+# An answer of nothing but zeros and joint variables earns at most this share (see marks.py).
+_MOST_OF_LAZY: Final = 0.25
+NOTHING_READ: Final = say("Nothing in this submission could be read.")
+NOTHING_ANSWERED: Final = say("Nothing is answered.")
+
+
+def _nothing_read(file: str, parts: Iterable[PartReport]) -> str:
+    if all(part.verdict is Verdict.MISSING for part in parts):
+        return say("{file} has no entries.", file=file)
+    nothing = say("Nothing in {file} could be read.", file=file)
+    errors = (
+        message.message
+        for part in parts
+        for message, _, _ in messages_of(part)
+        if message.severity is Severity.ERROR
+    )
+    return paragraph(nothing, *islice(errors, 1))
+
+
 @dataclass(frozen=True, slots=True)
 class GradedFile:
     """A file with its report, or with the problem that prevents a full report."""
@@ -137,6 +163,12 @@ class GradedFile:
     names: tuple[str, ...] = ()
     # A sentence about each file that was not read, by the student's own name of the file.
     unread: Mapping[str, str] = field(default_factory=dict)
+    # The parts that each file answers.
+    parts: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    # The names of the files that were read except for their pictures.
+    with_pictures: tuple[str, ...] = ()
+    # The report with its rows, if ``report`` has none because its level of feedback has none.
+    full_report: Report | None = None
 
     @property
     def weight(self) -> float:
@@ -149,15 +181,58 @@ class GradedFile:
         return self.report.points * self.weight if self.report else 0.0
 
     @property
+    def by_hand(self) -> str:
+        """Return the reason why a person must grade the file, or "" if its points count.
+
+        The points do not count if they may say too little: because a file, most of a part, or what
+        may hold the rest of an answer was not read.
+        """
+        report = self.full_report or self.report
+        if self.problem or report is None:
+            return self.problem
+        reports = {part.part: part for part in report.parts}
+        reasons: list[str] = []
+        for name, ids in self.parts.items():
+            parts = [reports[each] for each in ids if each in reports]
+            if parts and not any(map(was_read, parts)):
+                reasons.append(_nothing_read(name, parts))
+        pictures = [say("a picture in {file}", file=name) for name in self.with_pictures]
+        others = joined(", ", [*self.unread, *pictures])
+        if reasons and others:
+            reasons.append(say("This was not read, either: {files}.", files=others))
+        if reasons:
+            return paragraph(*reasons)
+        if self.names and not report.gradable:
+            return NOTHING_READ if is_answered(report) else NOTHING_ANSWERED
+        titles = {part.id: part.title for part in self.exercise.parts}
+        mostly = [titles[part.part] for part in report.parts if is_mostly_unread(part)]
+        if mostly:
+            return say(
+                "At least half of the entries could not be read: {parts}.", parts=", ".join(mostly)
+            )
+        if others and any(map(_lacks_much, report.parts)):
+            return say(
+                "The answer is not complete, and something that was not read may hold the rest: "
+                "{files}.",
+                files=others,
+            )
+        return ""
+
+    @property
     def is_unread(self) -> bool:
-        """True if so much in the file could not be read that its points say too little."""
-        parts = self.report.parts if self.report else ()
-        return bool(self.problem) or any(map(is_mostly_unread, parts))
+        """True if a person must grade the file."""
+        return bool(self.by_hand)
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """Return a sentence about each file beside the answer that was not read."""
+        return () if self.by_hand else tuple(self.unread.values())
 
     @property
     def has_unread_cells(self) -> bool:
         """True if any cell could not be read."""
-        parts = self.report.parts if self.report else ()
+        report = self.full_report or self.report
+        parts = report.parts if report else ()
         return any(
             cell.verdict is Verdict.UNREADABLE
             for part in parts
@@ -219,8 +294,13 @@ class GradedSubmission:
 
     @property
     def problems(self) -> tuple[str, ...]:
-        """Return the distinct problems of the files."""
-        return tuple(dict.fromkeys(file.problem for file in self.files if file.problem))
+        """Return the distinct reasons why a person must grade the submission."""
+        return tuple(dict.fromkeys(filter(None, (file.by_hand for file in self.files))))
+
+    @property
+    def beside(self) -> tuple[str, ...]:
+        """Return the distinct sentences about files beside the answers that were not read."""
+        return tuple(dict.fromkeys(each for file in self.files for each in file.beside))
 
     @property
     def passed(self) -> bool:

@@ -15,6 +15,7 @@ from dh_grader.formats.graded import (
     report_in,
 )
 from dh_grader.grading import FeedbackLevel, PartReport, Report, Submission, Verdict, grade
+from dh_grader.grading.report import was_read_in_full
 from dh_grader.submissions import AssignedExercise, Assignment, SetExercise
 from dh_grader.submissions.answers import ExerciseAnswers, answers_in, of_file
 from dh_grader.submissions.bodies import GradeRequest, nearest
@@ -165,7 +166,7 @@ def _readable_excerpt(
                     part=part,
                 )
             )
-        if graded and (whole is not None or _is_full(graded[0][0])):
+        if graded and (whole is not None or was_read_in_full(graded[0][0])):
             return graded[0][1]
         if graded:
             whole = graded[0]
@@ -175,13 +176,7 @@ def _readable_excerpt(
 def _is_better_piece(report: PartReport, text: str, whole: PartReport, whole_text: str) -> bool:
     # True if a piece of a text has nothing unreadable, and earns more than all of the text.
     is_piece = set(text.split()) <= set(whole_text.split())
-    return is_piece and _is_full(report) and report.points > whole.points
-
-
-def _is_full(report: PartReport) -> bool:
-    # True if each cell has an entry that could be read.
-    unread = (Verdict.UNREADABLE, Verdict.MISSING)
-    return not any(cell.verdict in unread for row in report.rows for cell in row.cells)
+    return is_piece and was_read_in_full(report) and report.points > whole.points
 
 
 def _part_report(
@@ -202,13 +197,26 @@ def _graded_file(
     report_on: ReportOn,
 ) -> GradedFile:
     report, problem = None, ""
+    full_report = None
     if answers.body is not None:
         report, problem = report_on(answers.body, assigned, terms)
+        if report and report.feedback is FeedbackLevel.SCORE:
+            # Only the rows show how much was read.
+            with_rows = replace(terms, feedback=FeedbackLevel.VERDICTS, for_students=False)
+            full_report, _ = report_on(answers.body, assigned, with_rows)
         if problem:
             problem = of_file(answers.names[0] if answers.names else assigned.exercise.id, problem)
     problems = joined("; ", list(filter(None, (answers.problem, problem))))
     translation = terms.language.translation
     unread = {name: told(each, translation) for name, each in answers.unread.items()}
     return GradedFile(
-        answers.file, shown, report, told(problems, translation), answers.names, unread
+        answers.file,
+        shown,
+        report,
+        told(problems, translation),
+        answers.names,
+        unread,
+        answers.parts,
+        answers.with_pictures,
+        full_report,
     )

@@ -6,6 +6,8 @@ from typing import Any, Final
 from xml.etree.ElementTree import Element, indent, tostring
 
 from dh_grader.formats.graded import (
+    NOTHING_ANSWERED,
+    NOTHING_READ,
     GradedSubmission,
     ReportFormat,
     Setting,
@@ -184,9 +186,7 @@ def _tasks(submission: GradedSubmission) -> Iterator[str]:
 def _unread(submission: GradedSubmission) -> str:
     if submission.is_gradable:
         return ""
-    if submission.is_answered:
-        return say("Nothing in this submission could be read.")
-    return say("Nothing is answered.")
+    return NOTHING_READ if submission.is_answered else NOTHING_ANSWERED
 
 
 def _gradescope_test(result: PartResult) -> dict[str, Any]:

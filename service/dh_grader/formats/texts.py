@@ -24,6 +24,7 @@ from dh_grader.grading.report import (
     YOURS,
     messages_of,
     rounded_points,
+    was_read,
 )
 from dh_grader.regex import regex
 from dh_grader.translations import (
@@ -561,7 +562,9 @@ class PartResult:
     @property
     def is_unread(self) -> bool:
         """True if so much of the part could not be read that its points say too little."""
-        return self.report is None or is_mostly_unread(self.report)
+        if self.report is None or is_mostly_unread(self.report):
+            return True
+        return self.file.is_unread and (not was_read(self.report) or not self.report.points)
 
     @property
     def verdict_name(self) -> str:

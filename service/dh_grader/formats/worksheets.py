@@ -20,7 +20,7 @@ from typing import Final
 from dh_grader.formats.graded import GradedSubmission
 from dh_grader.formats.texts import number, points, without_formulas
 from dh_grader.regex import regex
-from dh_grader.translations import Sentence, paragraph, say, say_count
+from dh_grader.translations import Sentence, joined, paragraph, say, say_count
 
 # Bytes.
 MAX_WORKSHEET: Final = 16 * 1024 * 1024
@@ -44,8 +44,6 @@ _FEWEST_COLUMNS: Final = 6
 _EXCUSED: Final = "EX"
 # The most characters of a username.
 _LONGEST_USER: Final = 255
-# The most students that one sentence names.
-_MOST_NAMES: Final = 40
 # If more submissions are in no row, one sentence is about all of them, and names a few.
 _FEW: Final = 3
 
@@ -63,7 +61,8 @@ class Filled:
     """A worksheet with grades, and what is left to do.
 
     ``grades`` is the number of rows into which a grade was written; ``same`` of those that already
-    had the grade of the submission; ``by_hand`` of those that a person must still grade.
+    had the grade of the submission; ``by_hand`` of the submissions that a person must still grade
+    or enter.
     ``problems`` are sentences for the tutor. ``kept`` is the number of grades that were in the
     worksheet and differ from the points of the submission.
     """
@@ -91,6 +90,10 @@ class Grade:
     comment: str
     # True if some entries could not be read.
     has_unread_cells: bool = False
+    # True if a file beside the answer was not read.
+    has_unread_files: bool = False
+    # Why a person must grade the submission.
+    reasons: tuple[str, ...] = ()
 
 
 def grade_of(submission: GradedSubmission, comment: str) -> Grade:
@@ -104,6 +107,8 @@ def grade_of(submission: GradedSubmission, comment: str) -> Grade:
         submission.max_points,
         comment,
         any(file.has_unread_cells for file in submission.files),
+        bool(submission.beside),
+        submission.problems,
     )
 
 
@@ -141,6 +146,7 @@ class _Rows:
     replaced: list[str] = field(default_factory=list)
     replaced_comments: list[str] = field(default_factory=list)
     partly_unread: list[Grade] = field(default_factory=list)
+    with_unread_files: list[Grade] = field(default_factory=list)
     kept: list[str] = field(default_factory=list)
     unread: list[Grade] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
@@ -177,7 +183,8 @@ class Worksheet:
 
         A grade or comment that is already in the worksheet stays, unless ``replaces`` is True.
         """
-        grade_of_row, absent, problems = self._matched(grades)
+        grade_of_row, absent, unclear = self._matched(grades)
+        problems = list(unclear)
         is_foreign = bool(absent) and not grade_of_row and not problems
         problems += _in_no_row(absent, is_foreign=is_foreign)
         rows = _Rows()
@@ -185,13 +192,15 @@ class Worksheet:
             self._fill(rows, self._layout.rows[i], grade, replaces=replaces)
         problems += [*rows.problems, *_kept(rows.kept), *_kept_comments(rows.comments)]
         problems += [*_replaced(rows.replaced), *_replaced_comments(rows.replaced_comments)]
-        problems += [*_partly_unread(rows.partly_unread), *_by_hand(rows.unread)]
+        problems += _partly_unread(rows.partly_unread)
+        problems += _with_unread_files(rows.with_unread_files)
+        problems += _by_hand(rows.unread)
         content = self._changed(rows.changes)
         return Filled(
             content,
             rows.filled,
             rows.same,
-            len(rows.unread),
+            len(rows.unread) + len(unclear) + len(absent),
             len(rows.kept),
             tuple(problems),
             is_foreign,
@@ -235,6 +244,8 @@ class Worksheet:
             return
         if grade.has_unread_cells:
             rows.partly_unread.append(grade)
+        if grade.has_unread_files:
+            rows.with_unread_files.append(grade)
         if is_same:
             rows.same += 1
         else:
@@ -621,7 +632,7 @@ def _kept(grades: Sequence[str]) -> list[Sentence]:
             "{count} rows of the worksheet already had other grades, which stay (grade in the "
             "worksheet / grade of the program): {grades}.",
             count=len(grades),
-            grades=_named(grades),
+            grades=", ".join(grades),
         )
     ]
 
@@ -639,7 +650,6 @@ def _kept_comments(count: int) -> list[Sentence]:
 
 
 def _replaced(grades: Sequence[str]) -> list[Sentence]:
-    # All are named: the old grades are nowhere else in the output.
     if not grades:
         return []
     return [
@@ -675,29 +685,39 @@ def _partly_unread(grades: Sequence[Grade]) -> list[Sentence]:
             "{count} submissions have entries that could not be read, and earned no points for "
             "them: {names}.",
             count=len(grades),
-            names=_named(list(map(_short, grades))),
+            names=", ".join(map(_short, grades)),
+        )
+    ]
+
+
+def _with_unread_files(grades: Sequence[Grade]) -> list[Sentence]:
+    if not grades:
+        return []
+    return [
+        say_count(
+            "{count} submission was graded, and also has a file that was not read, such as a "
+            "photo. Look at it: {names}.",
+            "{count} submissions were graded, and also have files that were not read, such as "
+            "photos. Look at them: {names}.",
+            count=len(grades),
+            names=", ".join(map(_short, grades)),
         )
     ]
 
 
 def _by_hand(grades: Sequence[Grade]) -> list[Sentence]:
-    # The report says what could not be read in each.
     if not grades:
         return []
     return [
         say_count(
             "{count} row of the worksheet stays as it was, because something in the submission "
-            "could not be read. Grade it by hand: {names}.",
+            "could not be read. Grade it by hand:",
             "{count} rows of the worksheet stay as they were, because something in the submissions "
-            "could not be read. Grade them by hand: {names}.",
+            "could not be read. Grade them by hand:",
             count=len(grades),
-            names=_named(list(map(_short, grades))),
-        )
+        ),
+        *(joined(": ", [_short(each), joined("; ", each.reasons)]) for each in grades),
     ]
-
-
-def _named(names: Sequence[str]) -> str:
-    return ", ".join(names[:_MOST_NAMES]) + (", …" if len(names) > _MOST_NAMES else "")
 
 
 def _short(grade: Grade) -> str:

@@ -31,6 +31,7 @@ from dh_grader.grading.report import (
     WorkBudget,
     parts_at_level,
     rounded_points,
+    was_read,
 )
 from dh_grader.translations import say
 
@@ -94,7 +95,7 @@ class GradedAnswers:
             version=self.exercise.version,
             grader=VERSION,
             feedback=level,
-            gradable=any(map(_was_read, self.parts)),
+            gradable=any(map(was_read, self.parts)),
             points=points,
             max_points=max_points,
             score=round(points / max_points, 6),
@@ -243,8 +244,3 @@ def _followed(
         if answers.get(part.id) is not None:
             return earlier[part.id]
     return None
-
-
-def _was_read(part: PartReport) -> bool:
-    unread = (Verdict.MISSING, Verdict.UNREADABLE)
-    return any(cell.verdict not in unread for row in part.rows for cell in row.cells)

@@ -567,6 +567,7 @@ def _fewest(task: _Task) -> int:
 
 
 _END_EFFECTOR: Final = template("row {row} with the end effector")
+_FIXED_FIRST: Final = template("row {row} with the fixed row {label} before the first joint")
 _FIXED_BEFORE: Final = template("row {row} with the fixed row {label} before the last joint")
 _FIXED_BEHIND: Final = template("row {row} with the fixed row {label} behind the last joint")
 _MATCHED = register(
@@ -635,9 +636,10 @@ def row_places(
         return ()
     # Compare entries: rows with rounded angles made exact are new objects with the same entries.
     places = {id(row.entries): i for i, row in enumerate(table.rows)}
+    first = next((i for i, each in enumerate(judgement.rows) if each.joint is not None), 0)
     moved = [
-        _compared(place + 1, judged)
-        for judged in judgement.rows
+        _compared(place + 1, judged, is_first=i < first)
+        for i, judged in enumerate(judgement.rows)
         if judged.row is not None
         for place in [places[id(judged.row.entries)]]
         if judged.label != (labels[place] if place < len(labels) else "e")
@@ -649,12 +651,14 @@ def row_places(
     return (_MATCHED.finding(message, severity=Severity.INFO),)
 
 
-def _compared(row: int, judged: JudgedRow) -> Sentence:
+def _compared(row: int, judged: JudgedRow, *, is_first: bool) -> Sentence:
     if judged.joint is not None:
         return say("row {row} with joint {joint}", row=row, joint=judged.joint.index)
     if judged.label == "e":
         return say(_END_EFFECTOR, row=row)
-    fixed = _FIXED_BEFORE if judged.label.startswith("0") else _FIXED_BEHIND
+    if not judged.label.startswith("0"):
+        return say(_FIXED_BEHIND, row=row, label=judged.label)
+    fixed = _FIXED_FIRST if is_first else _FIXED_BEFORE
     return say(fixed, row=row, label=judged.label)
 
 

@@ -372,6 +372,23 @@ class Report:
     parts: tuple[PartReport, ...]
 
 
+_UNREAD: Final = (Verdict.MISSING, Verdict.UNREADABLE)
+
+
+def was_read(part: PartReport) -> bool:
+    """True if any cell of a part could be read. A report without rows has a verdict only."""
+    if not part.rows:
+        return part.verdict not in _UNREAD
+    return any(cell.verdict not in _UNREAD for row in part.rows for cell in row.cells)
+
+
+def was_read_in_full(part: PartReport) -> bool:
+    """True if each cell of a part has an entry that could be read."""
+    if not part.rows:
+        return part.verdict not in _UNREAD
+    return not any(cell.verdict in _UNREAD for row in part.rows for cell in row.cells)
+
+
 def messages_of(part: PartReport) -> Iterator[tuple[Feedback, tuple[Place, ...], Verdict]]:
     """Yield the messages on a part, its rows and cells, with their places and verdicts."""
     verdicts: dict[tuple[str, str | None], Verdict] = {}

@@ -18,6 +18,7 @@ from pydantic import ValidationError
 from dh_grader.catalogue import Exercise
 from dh_grader.catalogue.files import alternatives
 from dh_grader.grading.reading.entries import comments, length_unit_of
+from dh_grader.regex import regex
 from dh_grader.submissions import (
     RECEIPT,
     AssignedExercise,
@@ -54,7 +55,9 @@ _MOST_TRIED: Final = 5
 _NOT_ANSWERS: Final = frozenset({"readme", "license", "licence", "changelog"})
 _PROGRAMS: Final = frozenset({".py", ".m", ".ipynb"})
 # Files that a repository does not hold for other reasons.
-_NO_TEXTS: Final = frozenset({".xlsx", ".xls", ".ods", ".docx", ".rtf", ".csv", ".tsv", ".zip"})
+_NO_TEXTS: Final = frozenset(
+    {".xlsx", ".xlsm", ".xls", ".ods", ".docx", ".docm", ".rtf", ".csv", ".tsv", ".zip"}
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,10 @@ class ExerciseAnswers:
     unread: Mapping[str, str] = field(default_factory=dict)
     # The paths of the files that were read as answers.
     read: frozenset[Path] = frozenset()
+    # The parts that each file answers.
+    parts: Mapping[str, frozenset[str]] = field(default_factory=dict)
+    # The names of the files that were read except for their pictures.
+    with_pictures: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +124,7 @@ def answers_in(
         for own, assigned in zip(claims, assignment.exercises, strict=True)
     ]
     unread = [file for file in left if _may_be_answer(file)]
-    # A photo beside all answers is no answer; where an answer is missing, it may be the answer.
+    # Where an answer is missing, a photo may be the answer; beside all answers, it is only named.
     return tuple(
         _with_notes(_with_unread(answers, unread, assigned), everything, assigned)
         for answers, assigned in zip(found, assignment.exercises, strict=True)
@@ -233,6 +240,9 @@ def _with_unread(
 ) -> ExerciseAnswers:
     answered = answers.body.answers if answers.body else {}
     known = {part.id.lower(): part.id for part in assigned.exercise.parts}
+    if all(part.id in answered for part in assigned.exercise.parts):
+        told = [file for file in unread if _is_beside(file, answers)]
+        return _with_unread_beside(answers, told, assigned)
     named = [student_and_part(file.name, known) for file in unread]
     # The name of a file may name a part that another file answers.
     unread = [
@@ -240,7 +250,7 @@ def _with_unread(
         for file, found in zip(unread, named, strict=True)
         if found is None or known[found[1]] not in answered
     ]
-    if not unread or all(part.id in answered for part in assigned.exercise.parts):
+    if not unread:
         return answers
     problems = dict(answers.unread)
     for file in unread:
@@ -252,6 +262,27 @@ def _with_unread(
         names=(*answers.names, *(file.own_name for file in unread)),
         unread=problems,
     )
+
+
+def _is_beside(file: HandedFile, answers: ExerciseAnswers) -> bool:
+    # A picture in another folder of a cloned repository belongs to its documentation.
+    kind = ending(file.name)
+    if kind not in BY_HAND_ENDINGS and kind not in _NO_TEXTS:
+        return False
+    above = str(file.path.parent)
+    return any(map(platform_name, file.path.parts)) or above in (
+        answers.file,
+        str(PurePosixPath(answers.file).parent),
+    )
+
+
+def _with_unread_beside(
+    answers: ExerciseAnswers, files: Sequence[HandedFile], assigned: AssignedExercise
+) -> ExerciseAnswers:
+    # The answers are graded; the files beside them are named.
+    told = {file.own_name: of_file(file.own_name, _why_unread(file, assigned)) for file in files}
+    names = tuple(name for name in told if name not in answers.names)
+    return replace(answers, names=(*answers.names, *names), unread={**told, **answers.unread})
 
 
 def _is_empty_receipt(file: HandedFile) -> bool:
@@ -402,7 +433,7 @@ def _candidates(files: Sequence[HandedFile], assignment: Assignment) -> Sequence
     if all(ending(file.name) in BY_HAND_ENDINGS for file in found):
         raise UnusableFileError(
             say(
-                "can only be graded by hand: a program cannot read {files}",
+                "can only be graded by hand: this program cannot read {files}",
                 files=_listed([file.own_name for file in found]),
             )
         )
@@ -446,16 +477,20 @@ def _combined(
     shown = paths[0] if len(paths) == 1 else _common_place(paths, submission)
     bodies: list[tuple[str, GradeRequest]] = []
     problems: dict[str, str] = {}
+    others: dict[str, str] = {}
     if all(claim.is_one_of for claim in claims):
         try:
-            claims = _readable_claim(claims, assigned, choose)
+            claims, others = _readable_claim(claims, assigned, choose)
         except _DifferentAnswersError as error:
             problem = _reason(error)
             return ExerciseAnswers(shown, None, problem, names, dict.fromkeys(names, problem))
+    with_pictures = []
     for claim in claims:
         name = claim.file.own_name
         try:
-            bodies.append((name, _body(claim, assigned, choose)))
+            content = read_content(claim.file.read(), claim.file.name)
+            bodies.append((name, _body(claim, content, assigned, choose)))
+            with_pictures += [name] if content.has_pictures else []
         except UnusableFileError as error:
             problems[name] = of_file(name, error.args[0])
     try:
@@ -466,7 +501,10 @@ def _combined(
         return ExerciseAnswers(shown, None, problem, names)
     told = joined("; ", list(problems.values()))
     read = frozenset(claim.file.path for claim in claims)
-    return ExerciseAnswers(shown, body, told, names, problems, read)
+    parts = {name: frozenset(own.answers) for name, own in bodies}
+    return ExerciseAnswers(
+        shown, body, told, names, others | problems, read, parts, tuple(with_pictures)
+    )
 
 
 def _common_place(paths: Sequence[str], submission: str) -> str:
@@ -510,18 +548,23 @@ def _merged(bodies: Sequence[tuple[str, GradeRequest]]) -> GradeRequest | None:
 
 def _readable_claim(
     claims: Sequence[_Claim], assigned: AssignedExercise, choose: Choose
-) -> Sequence[_Claim]:
-    # Of several files that may be the answer to one part, the one that can be graded.
+) -> tuple[Sequence[_Claim], dict[str, str]]:
+    # Of several files that may be the answer to one part, the one that can be graded; and a
+    # sentence about each file that cannot be read.
     pieces: list[tuple[_Claim, Excerpt]] = []
+    problems: dict[str, str] = {}
     for claim in claims:
-        with suppress(UnusableFileError):
+        try:
             content = read_content(claim.file.read(), claim.file.name)
-            if content.is_pasted:
-                own = content.excerpts or (Excerpt(str(content.value)),)
-                pieces += [(claim, excerpt) for excerpt in own]
+        except UnusableFileError as error:
+            problems[claim.file.own_name] = of_file(claim.file.own_name, _reason(error))
+            continue
+        if content.is_pasted:
+            own = content.excerpts or (Excerpt(str(content.value)),)
+            pieces += [(claim, excerpt) for excerpt in own]
     part = assigned.only_part
     if not pieces or part is None:
-        return claims[:1]
+        return claims[:1], {}
     try:
         chosen = choose(assigned, part, [excerpt for _, excerpt in pieces])
     except UnusableFileError as error:
@@ -535,22 +578,43 @@ def _readable_claim(
                 part=part,
             )
         ) from error
-    return [next(claim for claim, excerpt in pieces if excerpt.text == chosen)]
+    return [next(claim for claim, excerpt in pieces if excerpt.text == chosen)], problems
 
 
-def _body(claim: _Claim, assigned: AssignedExercise, choose: Choose) -> GradeRequest:
-    content = read_content(claim.file.read(), claim.file.name)
+def _body(
+    claim: _Claim, content: FileContent, assigned: AssignedExercise, choose: Choose
+) -> GradeRequest:
     part = claim.part or assigned.only_part
     if content.excerpts and part is not None:
         several = len(content.excerpts) > 1
         chosen = choose(assigned, part, content.excerpts) if several else str(content.value)
+        _refuse_failed_formulas(chosen)
         refuse_changing_remark(content.excerpts, chosen, assigned)
         content = FileContent(chosen, is_pasted=True)
     elif len(content.excerpts) > 1 and (named := _by_sheet(content.excerpts, assigned)):
         for text in named.values():
+            _refuse_failed_formulas(text)
             refuse_changing_remark(content.excerpts, text, assigned)
         content = FileContent({"answers": named})
     return read_body(content, assigned, part)
+
+
+def _refuse_failed_formulas(chosen: str) -> None:
+    # The formula of a spreadsheet may be right although its value could not be computed.
+    if found := _FAILED_FORMULA.search(chosen):
+        raise UnusableFileError(
+            say(
+                "has a formula that gave no value ({value}), so grade it by hand",
+                value=found[0],
+            )
+        )
+
+
+# #NAME?, #REF!, #DIV/0!, #N/A, also in other languages: #BEZUG!, #¿NOMBRE?, #NV; Err:508.
+_FAILED_FORMULA: Final = regex(
+    r"(?<![^\s,;|\"])(?:#(?:[¿¡]?[A-ZÀ-Ý]{2,10}(?:/0)?[!?]|N/A|NV)|(?:Err|Fehler):[0-9]{3})"
+    r"(?![^\s,;|\"])"
+)
 
 
 def refuse_changing_remark(

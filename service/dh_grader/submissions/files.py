@@ -34,11 +34,12 @@ from dh_grader.submissions.office_files import (
     UnusableFileError,
     decoded,
     excerpts,
+    has_pictures,
     open_archive,
     typed_text,
     unpacked,
 )
-from dh_grader.translations import say
+from dh_grader.translations import Sentence, say
 
 # --- Find the submissions in files, folders of a class, and folders of single students
 #
@@ -87,6 +88,12 @@ BY_HAND_ENDINGS: Final = frozenset(
         ".webloc",
         ".mp4",
         ".mov",
+        ".rar",
+        ".7z",
+        ".tar",
+        ".gz",
+        ".tgz",
+        ".xlsb",
     ]
 )
 # Bytes of a file of an office program, which may hold pictures besides the answer.
@@ -98,11 +105,13 @@ class FileContent:
     """The value of a JSON or TOML file, or the pasted text.
 
     If ``excerpts`` has several pieces, the answer may be any of them; ``value`` is the first.
+    ``has_pictures`` is true if the file has pictures or drawn boxes, which are not read.
     """
 
     value: object
     is_pasted: bool = False
     excerpts: tuple[Excerpt, ...] = ()
+    has_pictures: bool = False
 
 
 def ending(name: str) -> str:
@@ -149,13 +158,11 @@ def read_content(data: bytes, name: str) -> FileContent:
         raise UnusableFileError(_too_large(name))
     if kind in BY_HAND_ENDINGS:
         raise UnusableFileError(
-            say("can only be graded by hand: a program cannot read {ending}", ending=kind)
+            say("can only be graded by hand: this program cannot read {ending}", ending=kind)
         )
     if kind in OFFICE_ENDINGS:
         return _excerpted(data, kind)
-    text = decoded(data)
-    if not text.strip():
-        raise UnusableFileError(say("is empty"))
+    text = _text(data, kind)
     match kind:
         case ".toml":
             return FileContent(_toml(text))
@@ -173,12 +180,25 @@ def read_content(data: bytes, name: str) -> FileContent:
             return _notebook_or(_json_without_suffix(text, other), data)
 
 
+def _text(data: bytes, kind: str) -> str:
+    try:
+        text = decoded(data)
+    except UnusableFileError:
+        if kind in (*DATA_ENDINGS, *PASTED_ENDINGS, ""):
+            raise
+        raise UnusableFileError(_with_known_kinds(_kind(kind))) from None
+    if not text.strip():
+        raise UnusableFileError(say("is empty"))
+    return text
+
+
 def _excerpted(data: bytes, kind: str) -> FileContent:
     found = excerpts(data, kind)
     if (len(found) == 1 and found[0].text.startswith(("{", "["))) or '"answers"' in found[0].text:
         # JSON that was typed into the editor of a platform.
         return _recognised(found[0].text)
-    return FileContent(found[0].text, is_pasted=True, excerpts=found)
+    pictures = has_pictures(data, kind)
+    return FileContent(found[0].text, is_pasted=True, excerpts=found, has_pictures=pictures)
 
 
 def _notebook_or(value: object, data: bytes) -> FileContent:
@@ -203,18 +223,22 @@ def _json_without_suffix(text: str, found: str) -> object:
     try:
         return _json(text)
     except UnusableFileError as error:
-        known = " ".join((*DATA_ENDINGS, *PASTED_ENDINGS))
-        problem = (
-            say("is a file of a kind that is not read ({ending})", ending=found)
-            if found
-            else say("is a file without an ending")
-        )
+        problem = _kind(found)
         # Do not complain about JSON in a PDF or a photo.
         if text.lstrip().startswith("{"):
             problem = say("{first}, and {second}", first=problem, second=error.args[0])
-        raise UnusableFileError(
-            say("{problem}; known are {endings}", problem=problem, endings=known)
-        ) from error
+        raise UnusableFileError(_with_known_kinds(problem)) from error
+
+
+def _kind(found: str) -> Sentence:
+    if not found:
+        return say("is a file without an ending")
+    return say("is a file of a kind that this program does not read ({ending})", ending=found)
+
+
+def _with_known_kinds(problem: str) -> Sentence:
+    known = " ".join((*DATA_ENDINGS, *PASTED_ENDINGS))
+    return say("{problem}; known are {endings}", problem=problem, endings=known)
 
 
 def typed_in_receipt(text: str) -> str | None:

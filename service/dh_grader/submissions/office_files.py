@@ -15,13 +15,14 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta
+from functools import partial
 from html import unescape
 from itertools import groupby, islice
 from typing import Any, Final
 from xml.etree import ElementTree as ET
 
 from dh_grader.grading.reading.entries import comments
-from dh_grader.grading.reading.headers import read_header
+from dh_grader.grading.reading.headers import QUANTITIES, is_wordy, read_header
 from dh_grader.pasting.program import changing_statement
 from dh_grader.regex import regex
 from dh_grader.submissions.bodies import MalformedError, read_json
@@ -133,14 +134,16 @@ def _too_much() -> UnusableFileError:
 class _Package:
     """The XML parts of a file of an office program."""
 
-    def __init__(self, data: bytes) -> None:
+    def __init__(self, data: bytes, *, may_have_macros: bool = False) -> None:
+        # Macros are never read. A file whose name hides them is suspect.
         self._archive = open_archive(data)
         self._left = MAX_XML
         self._tags = MAX_TAGS
         self.names = tuple(self._archive.namelist())
         for name in self.names:
             lowered = name.lower()
-            if "vbaproject" in lowered or lowered.startswith(("basic/", "scripts/")):
+            is_macro = "vbaproject" in lowered and not may_have_macros
+            if is_macro or lowered.startswith(("basic/", "scripts/")):
                 raise UnusableFileError(say("has macros; save it without macros"))
             if "externallinks/" in lowered:
                 raise UnusableFileError(
@@ -194,8 +197,8 @@ def _attribute(element: ET.Element, name: str) -> str:
 # --- Spreadsheets
 
 
-def _xlsx(data: bytes) -> Iterator[Excerpt]:
-    package = _Package(data)
+def _xlsx(data: bytes, *, may_have_macros: bool = False) -> Iterator[Excerpt]:
+    package = _Package(data, may_have_macros=may_have_macros)
     kept = io.BytesIO()
     parts: dict[str, bytes] = {}
     # A copy of only the parts that are read, so that the library meets nothing else.
@@ -227,8 +230,10 @@ def _xlsx(data: bytes) -> Iterator[Excerpt]:
         if sheet.sheet_state == "visible":
             sheet.reset_dimensions()
             rows = sheet.iter_rows(max_row=MAX_ROWS, max_col=MAX_COLUMNS)
-            hidden = _Hidden.of_xlsx(parts.get(sheet._worksheet_path, b""))
-            sheets.append((sheet.title, hidden.without([list(map(_of_xlsx, row)) for row in rows])))
+            content = parts.get(sheet._worksheet_path, b"")
+            hidden = _Hidden.of_xlsx(content)
+            cells = [list(map(_of_xlsx, row)) for row in rows]
+            sheets.append((sheet.title, hidden.without(_filled(cells, _merged_in_xlsx(content)))))
     yield from _of_sheets(
         sheets,
         comments=[*_notes(package, _NOTES_OF_SHEETS)],
@@ -250,6 +255,64 @@ _STRUCK_IN_XLSX: Final = regex(
     rb"(?:\s{0,9}<[^/<>][^<>]{0,200}>){0,20}\s{0,9}</(?:\w{1,9}:)?rPr>"
     rb"\s{0,9}<(?:\w{1,9}:)?t(?:\s[^<>]{0,60})?>\s{0,20})([^<>~\s][^<>~]{0,399})(?=</)"
 )
+
+
+# The first row and column of merged cells, and the row and column after the last.
+_Area = tuple[int, int, int, int]
+
+
+def _merged_in_xlsx(content: bytes) -> Iterator[_Area]:
+    for found in _MERGED.finditer(content):
+        left, top, right, bottom = found.groups()
+        yield int(top) - 1, _column_number(left) - 1, int(bottom), _column_number(right)
+
+
+def _column_number(letters: bytes) -> int:
+    number = 0
+    for letter in letters:
+        number = 26 * number + letter - ord("A") + 1
+    return number
+
+
+_MERGED: Final = regex(
+    rb"<(?:\w{1,20}:)?mergeCell\s[^<>]{0,99}?ref=[\"']([A-Z]{1,3})(\d{1,7}):([A-Z]{1,3})(\d{1,7})[\"']"
+)
+
+
+def _filled(rows: Sequence[SheetRow], areas: Iterable[_Area]) -> list[SheetRow]:
+    """Return the rows with the value of merged cells in each row and column that they cover.
+
+    People read it so. In several columns, only a number or a formula does: words are a title.
+    Merged cells of the headers and above them keep their value in their first cell. Values that
+    merged cells cover are not read, because nobody sees them.
+    """
+    filled = [list(row) for row in rows]
+    headers = next((i for i, row in enumerate(rows) if _has_headers(row)), -1)
+    left = MAX_CELLS
+    for top, first, bottom, last in areas:
+        bottom, last = min(bottom, len(filled)), min(last, MAX_COLUMNS)
+        left -= max(bottom - top, 0) * max(last - first, 0)
+        if left < 0:
+            raise _too_much()
+        value = filled[top][first] if top < len(filled) and first < len(filled[top]) else ""
+        is_value = len(value.split()) == 1 and not is_wordy(value)
+        is_entry = top > headers and (last - first == 1 or is_value)
+        for i in range(top, bottom):
+            filled[i] += [""] * (last - len(filled[i]))
+            filled[i][first:last] = [value if is_entry else ""] * (last - first)
+        if top < bottom and first < last:
+            filled[top][first] = value
+    return list(filled)
+
+
+# The fewest headers that make a row the row of headers.
+_FEWEST_HEADERS: Final = 2
+
+
+def _has_headers(row: SheetRow) -> bool:
+    found = (read_header(cell) for cell in row if cell)
+    known = [header for header in found if header and header.column in QUANTITIES]
+    return len(known) >= _FEWEST_HEADERS
 
 
 _NOTES_OF_SHEETS: Final = regex(r"xl/(?:comments/?[^/]{0,20}|threadedComments/[^/]{1,60})\.xml")
@@ -365,7 +428,8 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
                 frozenset(i for i, info in sheet.rowinfo_map.items() if info.hidden),
                 frozenset(j for j, info in sheet.colinfo_map.items() if info.hidden),
             )
-            sheets.append((sheet.name, hidden.without(rows)))
+            areas = [(top, left, below, right) for top, below, left, right in sheet.merged_cells]
+            sheets.append((sheet.name, hidden.without(_filled(rows, areas))))
     yield from _of_sheets(sheets, comments=notes)
 
 
@@ -422,7 +486,7 @@ def _ods(data: bytes) -> Iterator[Excerpt]:
     root = _Package(data).parsed("content.xml")
     yield from _of_sheets(
         [
-            (_attribute(table, "name"), list(_rows_of_ods(table, _struck_styles(root))))
+            (_attribute(table, "name"), _sheet_of_ods(table, _struck_styles(root)))
             for table in _tables_of_ods(root)
         ],
         comments=_texts_in(root, "annotation"),
@@ -457,7 +521,15 @@ def _tables_of_ods(root: ET.Element) -> Iterator[ET.Element]:
             yield from _tables_of_ods(each)
 
 
-def _rows_of_ods(table: ET.Element, struck: frozenset[str]) -> Iterator[list[str]]:
+def _sheet_of_ods(table: ET.Element, struck: frozenset[str]) -> list[SheetRow]:
+    areas: list[_Area] = []
+    return _filled(list(_rows_of_ods(table, struck, areas)), areas)
+
+
+def _rows_of_ods(
+    table: ET.Element, struck: frozenset[str], areas: list[_Area]
+) -> Iterator[list[str]]:
+    # The merged cells are appended to ``areas``.
     waiting = 0
     found = 0
     for row in table.iter():
@@ -480,6 +552,10 @@ def _rows_of_ods(table: ET.Element, struck: frozenset[str]) -> Iterator[list[str
             else:
                 cells += [""] * blank + [text] * repeated
                 blank = 0
+                rows, columns = (_times(cell, f"number-{each}-spanned") for each in _SPANNED)
+                if rows > 1 or columns > 1:
+                    top, first = found + waiting, len(cells) - 1
+                    areas.append((top, first, top + rows, first + columns))
         if not cells:
             waiting += times
             continue
@@ -490,6 +566,9 @@ def _rows_of_ods(table: ET.Element, struck: frozenset[str]) -> Iterator[list[str
         yield from ([] for _ in range(waiting))
         yield from (cells for _ in range(times))
         waiting = 0
+
+
+_SPANNED: Final = ("rows", "columns")
 
 
 def _times(element: ET.Element, name: str) -> int:
@@ -620,8 +699,8 @@ def _blocks(rows: Sequence[SheetRow]) -> Iterator[list[SheetRow]]:
 # --- Documents
 
 
-def _docx(data: bytes) -> Iterator[Excerpt]:
-    package = _Package(data)
+def _docx(data: bytes, *, may_have_macros: bool = False) -> Iterator[Excerpt]:
+    package = _Package(data, may_have_macros=may_have_macros)
     root = package.parsed("word/document.xml")
     if "word/styles.xml" in package.names:
         _strike_by_style(root, package.parsed("word/styles.xml"))
@@ -711,11 +790,47 @@ def _read_blocks(parent: ET.Element, lines: list[str], tables: list[list[SheetRo
         if local_name(element) == "p":
             lines.extend(_text_of_word(element).split("\n"))
             continue
-        rows: list[SheetRow] = [
-            [_one_line(" ".join(_paragraphs(cell))) for cell in _children(row, "tc")]
-            for row in _children(element, "tr")
-        ]
-        tables.append(rows)
+        tables.append(_table_of_word(element))
+
+
+def _table_of_word(table: ET.Element) -> list[SheetRow]:
+    rows: list[list[str]] = []
+    areas: list[_Area] = []
+    # The first row, and the columns, of merged cells that a next row may continue.
+    begun: dict[int, tuple[int, int]] = {}
+    for i, row in enumerate(_children(table, "tr")):
+        cells: list[str] = []
+        above, begun = begun, {}
+        for cell in _children(row, "tc"):
+            first = len(cells)
+            span, merge = _merging_in_word(cell)
+            cells += [_one_line(" ".join(_paragraphs(cell))), *[""] * (span - 1)]
+            if len(cells) > MAX_COLUMNS:
+                raise _too_much()
+            if merge == "continue" and first in above:
+                begun[first] = above[first]
+            elif merge:
+                begun[first] = (i, span)
+            elif span > 1:
+                areas.append((i, first, i + 1, first + span))
+        rows.append(cells)
+        ended = [(first, each) for first, each in above.items() if begun.get(first) != each]
+        areas += [(top, first, i, first + span) for first, (top, span) in ended]
+    areas += [(top, first, len(rows), first + span) for first, (top, span) in begun.items()]
+    return _filled(rows, areas)
+
+
+def _merging_in_word(cell: ET.Element) -> tuple[int, str]:
+    """Return how many columns a cell covers, and "restart" or "continue" in merged rows."""
+    span, merge = 1, ""
+    for properties in cell:
+        if local_name(properties) == "tcPr":
+            for each in properties:
+                if local_name(each) == "gridSpan":
+                    span = max(1, _times(each, "val"))
+                elif local_name(each) == "vMerge":
+                    merge = _attribute(each, "val") or "continue"
+    return min(span, MAX_COLUMNS + 1), merge
 
 
 def _blocks_of(parent: ET.Element) -> Iterator[ET.Element]:
@@ -1030,9 +1145,11 @@ def _wide(data: bytes) -> str:
 
 _READERS: Final[Mapping[str, Callable[[bytes], Iterator[Excerpt]]]] = {
     ".xlsx": _xlsx,
+    ".xlsm": partial(_xlsx, may_have_macros=True),
     ".xls": _xls,
     ".ods": _ods,
     ".docx": _docx,
+    ".docm": partial(_docx, may_have_macros=True),
     ".rtf": _rtf,
     ".ipynb": _notebook,
     ".html": _web_page,
@@ -1058,6 +1175,26 @@ def excerpts(data: bytes, ending: str) -> tuple[Excerpt, ...]:
         replace(each, around=_not_struck(each.around), beside=_not_struck(each.beside))
         for each in found
     )
+
+
+def has_pictures(data: bytes, ending: str) -> bool:
+    """True if a file that ``excerpts`` has read holds pictures or drawn boxes."""
+    if data.startswith(b"PK"):
+        return any(map(_PICTURE_PART.match, open_archive(data).namelist()))
+    mark = _PICTURE_MARKS.get(ending)
+    return mark is not None and mark in data
+
+
+# In an archive: the drawings of a workbook (not those of its comments), and pictures.
+_PICTURE_PART: Final = regex(
+    r"xl/drawings/drawing|(?:xl|word)/(?:media|embeddings)/.|Pictures/.|media/."
+)
+_PICTURE_MARKS: Final = {
+    ".html": b"<img",
+    ".htm": b"<img",
+    ".rtf": b"\\pict",
+    ".ipynb": b"(attachment:",
+}
 
 
 def _not_struck(lines: Iterable[str]) -> tuple[str, ...]:

@@ -584,8 +584,10 @@ def test_grades_and_feedback_go_back_to_moodle(run: Run, tmp_path: Path) -> None
     )
     assert filled == ada
     assert (tmp_path / "Grades.csv").read_bytes() == WORKSHEET.encode()
-    [told] = [line for line in result.stderr.splitlines() if "worksheet" in line]
-    assert told.endswith("Grade it by hand: Ben Okri_1235.")
+    lines = result.stderr.splitlines()
+    [told] = [i for i, line in enumerate(lines) if "worksheet" in line]
+    assert lines[told].endswith("Grade it by hand:")
+    assert lines[told + 1].startswith("Ben Okri_1235: table.pdf can only be graded by hand")
     with zipfile.ZipFile(tmp_path / "feedback.zip") as archive:
         names = archive.namelist()
         assert b"table.pdf can only be graded by hand" in archive.read(names[1])
@@ -626,7 +628,7 @@ def not_read(tmp_path: Path) -> dict[str, tuple[Path, str]]:
     return {
         "Ada Byron_1": (
             folder / "Ada Byron_1_assignsubmission_file_",
-            "table.pdf can only be graded by hand: a program cannot read .pdf",
+            "table.pdf can only be graded by hand: this program cannot read .pdf",
         ),
         "Ben Okri_2": (
             folder / "Ben Okri_2_assignsubmission_file_",
@@ -704,7 +706,7 @@ def test_the_output_replaces_only_earlier_outputs(
     command = ("--format", name, "--output", target)
     refused = table_only(run, answer, *command)
     assert (refused.exit_code, target.read_bytes()) == (2, b"a;b\n1;2\n")
-    assert "mine.txt: exists, and is no earlier report" in refused.stderr
+    assert "mine.txt exists, and is no earlier report" in refused.stderr
     assert "--force" in refused.stderr
     assert table_only(run, answer, *command, "--force").exit_code == 0
     written = target.read_bytes()
@@ -790,7 +792,7 @@ def test_the_worksheet_says_what_was_written(run: Run, tmp_path: Path) -> None:
     command = ("grade", given, *IN_TABLE, "--worksheet", sheet)
     first = tmp_path / "Grades-graded.csv"
     said = (
-        f"{first}: is written. Grades filled in: 1. Already the same: 0. Left for grading by "
+        f"{first} is written. Grades filled in: 1. Already the same: 0. Left for grading by "
         "hand: 1."
     )
     assert run(*command).stderr.splitlines()[-1] == said
@@ -803,7 +805,7 @@ def test_the_worksheet_says_what_was_written(run: Run, tmp_path: Path) -> None:
     second = tmp_path / "Grades-graded-2.csv"
     assert first.read_bytes() == changed
     assert again[-2:] == [
-        f"{first}: exists with other contents, and stays as it is",
+        f"This file exists with other contents, and stays as it is: {first}",
         said.replace(str(first), str(second)),
     ]
     assert run(*command, "--force").exit_code == 2

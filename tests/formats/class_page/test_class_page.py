@@ -62,7 +62,7 @@ def test_the_index_links_to_a_page_for_each_submission() -> None:
 def test_the_index_shows_the_counts() -> None:
     words = told(folder(*class_of_seven())["index.html"])
     for sentence in (
-        "Submissions 7 1 not graded",
+        "Submissions 7 2 not graded",
         "5 of 6 answered, 1 all right.",
         "2 100 % 5/5 60 % 3/5",  # row 2 of the table: a, alpha
         "2 submissions α is not right: compare z1 and z2. quarter_turn in Denavit-Hartenberg",
@@ -70,6 +70,7 @@ def test_the_index_shows_the_counts() -> None:
         "1 submission Something is missing after the + at the end. trailing_operator",
         "2 submissions Denavit-Hartenberg table, 1 wrong cell row 2 alpha: pi/2 ben cleo",
         "This is no proof of copying",
+        "fritz Nothing is answered. is left out",
         "gina is empty is left out",
         "row 2 alpha pi/2 2",
     ):
@@ -80,7 +81,7 @@ def test_the_index_shows_the_counts() -> None:
 
 def test_unreadable_submissions_and_unusable_files_do_not_count() -> None:
     words = told(folder(cases()["unreadable"], cases()["unusable"])["index.html"])
-    assert "Nothing in it could be read. is left out" in words
+    assert "Nothing in this submission could be read. is left out" in words
     assert words.count("is left out") == 2
 
 

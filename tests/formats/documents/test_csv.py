@@ -26,7 +26,7 @@ def test_each_submission_is_a_line_and_each_part_a_column() -> None:
     assert wrong[6:] == [
         "table.quarter_turn table.joint_variable_index pose.sign", "4", "7",
     ]  # fmt: skip
-    assert empty[1:] == ["0", "16", "0", "no", "", "", "0", "0"]
+    assert empty[1:] == ["", "16", "", "no", "Nothing is answered.", "", "", ""]
 
 
 def test_a_file_that_cannot_be_used_has_no_points() -> None:

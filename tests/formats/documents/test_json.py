@@ -85,6 +85,7 @@ def test_the_list_has_an_entry_for_each_file() -> None:
     assert {tuple(sorted(entry)) for entry in entries} == {
         ("exercise", "file", "passed", "report", "submission"),
         ("error", "exercise", "file", "passed", "submission"),
+        ("error", "exercise", "file", "passed", "report", "submission"),
     }
     assert [entry["file"] for entry in entries[-2:]] == ["anna/one.json", ""]
 

@@ -10,7 +10,7 @@ from typing import Final, Literal
 import numpy as np
 
 from dh_grader.expressions import Expression
-from dh_grader.expressions.errors import Span
+from dh_grader.expressions.errors import Note, Span
 from dh_grader.expressions.vocabulary import Binary, Node, Number
 from dh_grader.grading.numbers import EXACT_VALUE, SAME_FACTOR
 from dh_grader.grading.reading import headers as column_headers
@@ -47,6 +47,7 @@ from dh_grader.grading.reading.headers import (
     in_plain_words,
     is_label,
     is_wordy,
+    label_place,
     read_header,
 )
 from dh_grader.grading.reading.table_cells import arranged_row, first_number, row_entries
@@ -458,6 +459,8 @@ def table_of(
         grid, findings = _turned(grid)
     grid = with_units_in_headers(_without_names_above(grid, reader))
     found = _found_headers(grid.rows[0], reader)
+    if found is not None:
+        grid = _without_repeated_headers(grid)
     headings = int(found is not None)
     fewest = headings + len(reader.vocabulary.joints)
     grid = _without_remarks_below(grid.without_half_row(fewest), fewest, reader)
@@ -469,6 +472,7 @@ def table_of(
         columns, labels, more = _columns_by_headers(grid.rows[0], found)
     if labels is None:
         grid = grid.with_empty_rows(fewest)
+    grid = _without_rows_of_no_joint(grid, headings, fewest, labels, reader)
     body = grid.rows[headings:]
     findings = (*findings, *more)
     if not body:
@@ -519,6 +523,66 @@ def _without_remarks_below(grid: Grid, fewest: int, reader: Reader) -> Grid:
         return grid
     check_sentences([], [joined(row, row[0].at) for row in below])
     return replace(grid, rows=grid.rows[:last], notes=(*grid.notes, left_aside(place_of(below[0]))))
+
+
+def _without_repeated_headers(grid: Grid) -> Grid:
+    # A table over several pages has its headers on each page.
+    first, *body = grid.rows
+    texts = [cell.text for cell in first]
+    again = [row for row in body if [cell.text for cell in row] == texts]
+    # Names that are also declared lengths may be the values of a row.
+    if not again or not _names_all_columns(first):
+        return grid
+    message = say("The headers are repeated in the table. These rows were ignored.")
+    rows = (first, *(row for row in body if row not in again))
+    return replace(grid, rows=rows, notes=(*grid.notes, _text_aside(message, again[0])))
+
+
+def _text_aside(message: str, row: Sequence[GridCell]) -> Note:
+    return Note("text_left_aside", message, place_of(row))
+
+
+def _without_rows_of_no_joint(
+    grid: Grid, headings: int, fewest: int, labels: int | None, reader: Reader
+) -> Grid:
+    # A first row for the base, and rows at the end, in which nothing has a value. At least
+    # ``fewest`` rows stay, so that a row that a student has left empty is not ignored.
+    rows = list(grid.rows)
+    aside = []
+    while len(rows) > fewest and _has_no_value(rows[-1], labels):
+        aside.append(rows.pop())
+    if len(rows) > fewest and _is_of_base(rows[headings], labels, reader):
+        aside.append(rows.pop(headings))
+    if not aside:
+        return grid
+    check_sentences([], [joined(row, row[0].at) for row in aside])
+    note = _text_aside(
+        say("Rows that belong to no joint and have no value were ignored."), aside[-1]
+    )
+    return replace(grid, rows=tuple(rows), notes=(*grid.notes, note))
+
+
+def _has_no_value(row: Sequence[GridCell], labels: int | None) -> bool:
+    return not any(cell.text.strip(_DASHES) for i, cell in enumerate(row) if i != labels)
+
+
+def _is_of_base(row: Sequence[GridCell], labels: int | None, reader: Reader) -> bool:
+    if _has_no_value(row, labels):
+        return True
+    label = row[labels].text if labels is not None and labels < len(row) else ""
+    cells = [cell.text for i, cell in enumerate(row) if i != labels and cell.text.strip(_DASHES)]
+    is_base = label_place(label) == 0 or _BASE.search(in_plain_words(" ".join([label, *cells])))
+    return bool(is_base) and not any(
+        _DIGIT.search(text) or reader.read(text, "number").readable for text in cells
+    )
+
+
+_DASHES: Final = "-–—−─/ "
+_DIGIT: Final = regex(r"\d")
+_BASE: Final = regex(
+    r"(?<![a-z])(?:base|basis|world|ground|inertial|origin|reference|welt|boden|ursprung|referenz"
+    r"|mundo|suelo|origen|referencia|monde|sol|origine|bati)(?![a-z])|基座|基坐标|基底|世界|原点"
+)
 
 
 def _is_remark(row: Sequence[GridCell], reader: Reader) -> bool:
