@@ -4,7 +4,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
-from itertools import chain
+from itertools import chain, pairwise
 from typing import Final, Literal
 
 import numpy as np
@@ -460,7 +460,7 @@ def table_of(
     grid = with_units_in_headers(_without_names_above(grid, reader))
     found = _found_headers(grid.rows[0], reader)
     if found is not None:
-        grid = _without_repeated_headers(grid)
+        grid = _without_repeated_headers(grid, len(reader.vocabulary.joints))
     headings = int(found is not None)
     fewest = headings + len(reader.vocabulary.joints)
     grid = _without_remarks_below(grid.without_half_row(fewest), fewest, reader)
@@ -525,13 +525,16 @@ def _without_remarks_below(grid: Grid, fewest: int, reader: Reader) -> Grid:
     return replace(grid, rows=grid.rows[:last], notes=(*grid.notes, left_aside(place_of(below[0]))))
 
 
-def _without_repeated_headers(grid: Grid) -> Grid:
-    # A table over several pages has its headers on each page.
+def _without_repeated_headers(grid: Grid, joints: int) -> Grid:
+    # A table over several pages has its headers on each page. There may be several tables if there
+    # are more rows than those of the joints and of the end effector, or lines between the rows.
     first, *body = grid.rows
     texts = [cell.text for cell in first]
     again = [row for row in body if [cell.text for cell in row] == texts]
-    # Names that are also declared lengths may be the values of a row.
-    if not again or not _names_all_columns(first):
+    if not again or len(body) - len(again) > joints + 1 or not _names_all_columns(first):
+        return grid
+    lines = [row[0].line_number for row in body if row]
+    if any(below - above != 1 for above, below in pairwise(lines)):
         return grid
     message = say("The headers are repeated in the table. These rows were ignored.")
     rows = (first, *(row for row in body if row not in again))
