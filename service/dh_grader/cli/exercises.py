@@ -19,7 +19,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from dh_grader.authoring import Level, Remark, UnusableIdError, examine, summary, template
+from dh_grader.authoring import Level, Remark, UnusableIdError, examine, exercise_template, summary
 from dh_grader.bundles import BUNDLES, BundleError, content_of, zipped
 from dh_grader.catalogue import (
     CatalogueError,
@@ -174,7 +174,7 @@ def import_robot_command(
     """
     name = exercise_id or file.stem
     try:
-        template(name)
+        exercise_template(name)
         data = read_regular(file, MOST_BYTES)
     except UnusableIdError as error:
         give_up(error)
@@ -645,7 +645,7 @@ def new_exercise(
 ) -> None:
     """Write a commented exercise file to start from. It passes `exercises check` as it is."""
     try:
-        text = template(exercise_id, None if like is None else installed_file(like))
+        text = exercise_template(exercise_id, None if like is None else installed_file(like))
     except UnusableIdError as error:
         give_up(error)
     file = write_new(output, exercise_id, text)
