@@ -22,14 +22,14 @@ COUNTS: Final = ("files", "functions", "calls", "depth", "switches")
 # Today's counts, in the order of COUNTS. They may only fall: a change that lowers one lowers it
 # here, too.
 TODAY: Final[Mapping[str, tuple[int, ...]]] = {
-    "right": (18, 116, 488, 14, 211),
-    "right, other frames": (22, 188, 753, 23, 285),
-    "one wrong sign": (34, 394, 1557, 23, 568),
-    "all twists wrong": (35, 537, 14025, 27, 4156),
-    "right, pasted as CSV": (32, 279, 1925, 26, 786),
-    "right, pasted as a toolbox script": (30, 230, 1994, 27, 869),
+    "right": (17, 116, 488, 14, 211),
+    "right, other frames": (21, 188, 753, 23, 284),
+    "one wrong sign": (30, 394, 1557, 23, 565),
+    "all twists wrong": (31, 537, 14025, 27, 4027),
+    "right, pasted as CSV": (29, 279, 1925, 26, 784),
+    "right, pasted as a toolbox script": (27, 230, 1994, 27, 869),
 }
-MODULES: Final = 165
+MODULES: Final = 139
 # What is aimed at. The last test fails when a goal is reached, so that it becomes the ceiling.
 GOALS: Final = {
     ("right", "files"): 14,
@@ -39,7 +39,6 @@ GOALS: Final = {
     ("one wrong sign", "switches"): 400,
     ("one wrong sign", "depth"): 18,
 }
-MODULES_GOAL: Final = 140
 POINTS: Final = {"one wrong sign": 10.25, "all twists wrong": 3.0}
 FULL: Final = 12.0
 
@@ -74,4 +73,3 @@ def test_the_first_answer_imports_few_modules() -> None:
 def test_a_goal_that_is_reached_becomes_the_ceiling() -> None:
     for (name, count), goal in GOALS.items():
         assert TODAY[name][COUNTS.index(count)] > goal, f"{name}: {count}"
-    assert MODULES > MODULES_GOAL
