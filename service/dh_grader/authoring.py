@@ -40,13 +40,20 @@ from dh_grader.grading.report import messages_of
 from dh_grader.kinematics import Numbers, coincident, exponential, identity, moved, rank
 from dh_grader.regex import regex
 from dh_grader.solutions import solve
-from dh_grader.translations import Sentence, joined, say, say_count
-from dh_grader.translations import template as translations_template
+from dh_grader.translations import Sentence, joined, say, say_count, template
 
 # --- Checks of an exercise for its author, before students see it, and a template for a new one
 
 
-__all__ = ["Level", "Remark", "UnusableIdError", "examine", "failures", "summary", "template"]
+__all__ = [
+    "Level",
+    "Remark",
+    "UnusableIdError",
+    "examine",
+    "exercise_template",
+    "failures",
+    "summary",
+]
 
 
 # --- The template of a new exercise file
@@ -69,7 +76,7 @@ class UnusableIdError(ValueError):
         )
 
 
-def template(exercise_id: str, like: Path | None = None) -> str:
+def exercise_template(exercise_id: str, like: Path | None = None) -> str:
     """Return the text of a new exercise file, or a copy of the file ``like``.
 
     Raises UnusableIdError.
@@ -458,12 +465,12 @@ def lost_freedom(exercise: Exercise) -> Iterator[Remark]:
     for i, j in pairs.tolist():
         one, other = robot.joints[i], robot.joints[j]
         motion = (
-            translations_template(
+            template(
                 "joints {first} and {second} slide in one direction, so the arm has lost a degree "
                 "of freedom; check the rows between them"
             )
             if one.prismatic
-            else translations_template(
+            else template(
                 "joints {first} and {second} turn about one line, so the arm has lost a degree of "
                 "freedom; check the rows between them"
             )

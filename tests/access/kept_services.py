@@ -4,7 +4,8 @@ from collections.abc import Callable
 from typing import Any
 
 import pytest
-from dh_grader.access import KeyRing, Secret
+from dh_grader.access import Secret
+from dh_grader.access.keys import KeyRing
 from dh_grader.store import AttemptStore
 from dh_grader.store.tables import metadata
 

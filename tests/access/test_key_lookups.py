@@ -10,7 +10,8 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 from dh_grader import access as key_lookups
-from dh_grader.access import Key, KeyLookups, KeyPlace, KeysBusyError
+from dh_grader.access import Key, KeysBusyError
+from dh_grader.access.keys import KeyLookups, KeyPlace
 
 from tests.guards import ANSWER
 

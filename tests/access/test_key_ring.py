@@ -16,18 +16,20 @@ from dh_grader.access import (
     Caller,
     CredentialError,
     Key,
-    KeyPlace,
-    KeyRing,
     KeysBusyError,
     KeysUnreachableError,
     Scope,
     Secret,
+    new_key_text,
+)
+from dh_grader.access.keys import (
+    KeyPlace,
+    KeyRing,
     add_key,
     all_keys,
     insert_key,
     keys_at,
     link_keys,
-    new_key_text,
     note_use,
     revoke_key,
     settle,
@@ -497,7 +499,7 @@ def test_a_known_key_does_not_wait_for_invented_ones(
             assert answers.wait(ANSWER)
         return keys_at(connection, places)
 
-    monkeypatch.setattr("dh_grader.access.keys_at", slow)
+    monkeypatch.setattr("dh_grader.access.keys.keys_at", slow)
 
     async def ask() -> Caller:
         invented = [asyncio.create_task(ring.caller(new_key_text())) for _ in range(300)]
@@ -555,7 +557,7 @@ def test_a_repeated_wrong_key_is_looked_up_rarely(engine: Engine) -> None:
 def test_too_many_lookups_raise_a_busy_error(
     engine: Engine, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("dh_grader.access.MAX_WAITING", 10)
+    monkeypatch.setattr("dh_grader.access.keys.MAX_WAITING", 10)
     key, known = made(engine)
     ring = KeyRing(engine, SECRET, 0.0)
     asked(ring, key)

@@ -11,7 +11,8 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
-from dh_grader.access import NOBODY, Caller, Rates, UnusableRatesError, rates_in
+from dh_grader.access import NOBODY, Caller
+from dh_grader.access.keys import Rates, UnusableRatesError, rates_in
 from limits.strategies import SlidingWindowCounterRateLimiter
 
 from tests.guards import ANSWER

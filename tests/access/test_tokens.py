@@ -12,18 +12,8 @@ from pathlib import Path
 from typing import Any, Final
 
 import pytest
-from dh_grader.access import (
-    Caller,
-    CredentialError,
-    Key,
-    LearnerToken,
-    Scope,
-    Secret,
-    key_of_session,
-    signed,
-    signed_session,
-    verified,
-)
+from dh_grader.access import Caller, CredentialError, Key, Scope, Secret
+from dh_grader.access.keys import LearnerToken, key_of_session, signed, signed_session, verified
 from dh_grader.settings import SettingsError, load_settings
 
 SECRET: Final = Secret("0123456789abcdef" * 4).token_secret

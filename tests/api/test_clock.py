@@ -14,17 +14,8 @@ from typing import Any
 
 import httpx
 import pytest
-from dh_grader.access import (
-    OPEN_HERE,
-    Caller,
-    KeyRing,
-    Rates,
-    Scope,
-    Secret,
-    add_key,
-    new_key_text,
-    settle,
-)
+from dh_grader.access import OPEN_HERE, Caller, Scope, Secret, new_key_text
+from dh_grader.access.keys import KeyRing, Rates, add_key, settle
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise

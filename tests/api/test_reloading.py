@@ -6,7 +6,7 @@ from pathlib import Path
 
 import httpx
 import pytest
-from dh_grader.authoring import template
+from dh_grader.authoring import exercise_template
 
 from tests.api.serving import Served, served
 from tests.guards import ANSWER
@@ -16,7 +16,7 @@ from tests.guards import ANSWER
 def folder(tmp_path: Path) -> Path:
     place = tmp_path / "exercises"
     place.mkdir()
-    (place / "arm.toml").write_text(template("arm"), encoding="utf-8")
+    (place / "arm.toml").write_text(exercise_template("arm"), encoding="utf-8")
     return place
 
 
@@ -54,7 +54,7 @@ def until(client: httpx.Client, expected: str) -> None:
 def test_a_file_is_changed_broken_mended_and_joined_by_another(
     client: httpx.Client, folder: Path, log: Path
 ) -> None:
-    file, good = folder / "arm.toml", template("arm")
+    file, good = folder / "arm.toml", exercise_template("arm")
     assert title(client) == "Arm"
     before = client.get("/v1/exercises/arm/solution").json()
     file.write_text(good.replace('"Arm"', '"A better arm"'), encoding="utf-8")

@@ -17,18 +17,8 @@ from urllib.parse import urljoin, urlsplit
 import httpx
 import pytest
 from dh_grader import courses as roll
-from dh_grader.access import (
-    OPEN_HERE,
-    Caller,
-    KeyRing,
-    Rates,
-    Scope,
-    Secret,
-    add_key,
-    new_key_text,
-    open_access,
-    revoke_key,
-)
+from dh_grader.access import OPEN_HERE, Caller, Scope, Secret, new_key_text, open_access
+from dh_grader.access.keys import KeyRing, Rates, add_key, revoke_key
 from dh_grader.api import grading
 from dh_grader.api.application import application
 from dh_grader.api.document import example

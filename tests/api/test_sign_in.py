@@ -10,7 +10,8 @@ from typing import Any
 import httpx
 import jwt
 import pytest
-from dh_grader.access import OPEN_HERE, KeyRing, Scope, Secret, add_key, new_key_text, revoke_key
+from dh_grader.access import OPEN_HERE, Scope, Secret, new_key_text
+from dh_grader.access.keys import KeyRing, add_key, revoke_key
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise

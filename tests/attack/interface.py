@@ -7,7 +7,8 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from typing import Final
 
-from dh_grader.access import Scope, Secret, add_key, new_key_text
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.store.database import in_transaction, open_database
 
 from tests.server.raw import Service

@@ -12,7 +12,8 @@ from uuid import uuid4
 import pytest
 from alembic import command
 from alembic.config import Config
-from dh_grader.access import Secret, add_key, fits, revoke_key, settle
+from dh_grader.access import Secret
+from dh_grader.access.keys import add_key, fits, revoke_key, settle
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.store import AttemptStore, database
 from dh_grader.store.attempts import AttemptFilter, GradesFormat

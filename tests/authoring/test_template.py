@@ -1,20 +1,20 @@
 from pathlib import Path
 
 import pytest
-from dh_grader.authoring import UnusableIdError, examine, template
+from dh_grader.authoring import UnusableIdError, examine, exercise_template
 from dh_grader.catalogue import load_exercise
 
 
 def test_a_new_file_gets_no_remarks(tmp_path: Path) -> None:
     file = tmp_path / "elbow-arm.toml"
-    file.write_text(template("elbow-arm"), encoding="utf-8")
+    file.write_text(exercise_template("elbow-arm"), encoding="utf-8")
     exercise = load_exercise(file)
     assert (exercise.id, exercise.title) == ("elbow-arm", "Elbow arm")
     assert examine(exercise) == []
 
 
 def test_the_template_has_comments() -> None:
-    lines = template("arm").splitlines()
+    lines = exercise_template("arm").splitlines()
     assert sum(line.startswith("#") for line in lines) >= 20
     assert max(map(len, lines)) <= 110
 
@@ -25,4 +25,4 @@ def test_the_template_has_comments() -> None:
 )
 def test_an_invalid_id_is_refused(exercise_id: str) -> None:
     with pytest.raises(UnusableIdError, match="small letters"):
-        template(exercise_id)
+        exercise_template(exercise_id)

@@ -11,7 +11,8 @@ from typing import Any
 from urllib.request import Request, urlopen
 
 import pytest
-from dh_grader.access import Scope, Secret, add_key, new_key_text
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.catalogue import shipped_folder
 from dh_grader.store import AttemptStore
 from dh_grader.store.database import in_transaction

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 from dh_grader.catalogue import shipped_folder
-from dh_grader.cli.terminal import user_language
+from dh_grader.cli import user_language
 
 from tests.translations.catalogues import CODES, catalogue, help_texts
 
@@ -253,4 +253,4 @@ def test_nothing_is_printed_that_is_no_sentence() -> None:
                 name = getattr(node.func, "attr", getattr(node.func, "id", ""))
                 if name in printers:
                     found += [(file.name, text) for each in node.args for text in plain_words(each)]
-    assert found == [("program.py", "dh-grader ")]  # before the version
+    assert found == [("__init__.py", "dh-grader ")]  # before the version

@@ -9,7 +9,8 @@ from typing import Any
 import httpx
 import pytest
 from dh_grader import courses as roll
-from dh_grader.access import OPEN_HERE, KeyRing
+from dh_grader.access import OPEN_HERE
+from dh_grader.access.keys import KeyRing
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise

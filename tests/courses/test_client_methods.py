@@ -6,7 +6,8 @@ from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import pytest
-from dh_grader.access import Scope, Secret, add_key, new_key_text
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.client import GraderClient, RequestRefusedError
 from dh_grader.contract.courses import (
     AssignmentChange,

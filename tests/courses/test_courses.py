@@ -13,7 +13,8 @@ from typing import Any
 import httpx
 import pytest
 from dh_grader import courses as roll
-from dh_grader.access import Scope, Secret, add_key, new_key_text, settle
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key, settle
 from dh_grader.api.http import ARRIVED
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import (

@@ -8,10 +8,12 @@ Run ``python -m tests.docs.sentences > docs/sentences.md``.
 # and the corpus of formulas. Each example is graded. The page shows each sentence with the first
 # example that causes the sentence.
 
+import re
 import sys
 import tomllib
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from typing import Any, Final
 
@@ -31,7 +33,7 @@ from tests.grading.diagnosis.traces import END, answered, exercises
 
 ROOT: Final = Path(__file__).parents[2]
 EXAMPLES: Final = Path(__file__).with_name("sentence_examples.toml")
-_READING: Final = ("expressions/", "grids/", "grading/")
+_READING: Final = ("expressions/", "pasting/", "grading/")
 # Strings of two words that are not part of a message, or only of one for programmers.
 _NO_SENTENCES: Final = frozenset(
     {
@@ -44,6 +46,7 @@ _NO_SENTENCES: Final = frozenset(
     }
 )  # fmt: skip
 _LONGEST: Final = 240
+_SECTION: Final = re.compile(r"^(?=# --- )", re.MULTILINE)
 
 
 @dataclass(frozen=True)
@@ -205,21 +208,37 @@ def shown(answer: Any) -> str:
 
 # --- the choice of messages for the page
 
-# A template, and the codes of its file; none if the file only has words for others.
+# A template, and the codes of its section; none if the section only has words for others.
 Known = tuple[Template, frozenset[str]]
 
 
 def known_templates() -> list[Known]:
     codes: dict[str, set[str]] = {}
-    for use in messages_page.program():
-        codes.setdefault(use.file, set()).add(use.code)
+    for section, code in _codes():
+        codes.setdefault(section, set()).add(code)
     files = sources(ROOT / "service" / "dh_grader")
-    telling = {file: text for file, text in files.items() if file.startswith(_READING)}
+    telling = {
+        f"{file}#{number}": section
+        for file, text in files.items()
+        if file.startswith(_READING)
+        for number, section in enumerate(_SECTION.split(text))
+    }
     return [
         (template, frozenset(codes.get(template.file, ())))
         for template in templates_in(telling)
         if template.text not in _NO_SENTENCES
     ]
+
+
+@cache
+def _codes() -> Sequence[tuple[str, str]]:
+    # Each use of a code, with the section of the file: a file has several, with a heading each.
+    files = sources(ROOT / "service" / "dh_grader")
+    found = []
+    for use in messages_page.program():
+        before = "".join(files[use.file].splitlines(keepends=True)[: use.line])
+        found.append((f"{use.file}#{len(_SECTION.findall(before))}", use.code))
+    return found
 
 
 def all_said() -> Iterator[Said]:
@@ -267,7 +286,7 @@ def chosen(said: Iterable[Said], known: Iterable[Known]) -> tuple[list[Row], lis
 
 
 def _section(met: Iterable[Template], code: str) -> str:
-    told = [use.code for use in messages_page.program() for each in met if use.file == each.file]
+    told = [told for section, told in _codes() for each in met if section == each.file]
     listed: dict[str, set[str]] = {}
     for line in messages_page.LINES:
         listed.setdefault(line.section, set()).add(line.code)
@@ -307,7 +326,9 @@ def page() -> str:
             blocks.append(f"## {section}\n\n{table}")
     if unmet:
         blocks.append(_UNMET)
-        blocks.append("\n".join(f"- {_cell(each.text)} ({each.file})" for each in unmet))
+        blocks.append(
+            "\n".join(f"- {_cell(each.text)} ({each.file.partition('#')[0]})" for each in unmet)
+        )
     return "\n\n".join(blocks) + "\n"
 
 

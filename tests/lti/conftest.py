@@ -11,7 +11,8 @@ from urllib.parse import parse_qs, urlsplit
 
 import httpx
 import pytest
-from dh_grader.access import OPEN_HERE, KeyRing
+from dh_grader.access import OPEN_HERE
+from dh_grader.access.keys import KeyRing
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise

@@ -22,8 +22,7 @@ import typer
 from babel.messages.catalog import Catalog
 from babel.messages.extract import extract
 from babel.messages.pofile import read_po, write_po
-from dh_grader.cli import COMMANDS, commands_of, program
-from dh_grader.cli.terminal import paragraphs, with_help
+from dh_grader.cli import COMMANDS, commands_of, paragraphs, program, with_help
 from dh_grader.translations import DOMAINS
 
 ROOT: Final = Path(__file__).parents[2]

@@ -3,9 +3,9 @@
 import tomllib
 
 import pytest
-from dh_grader.variants import (
+from dh_grader.variants import built
+from dh_grader.variants.deployment import (
     TooFewVariantsError,
-    built,
     deploy,
     difficulty_of,
     form_of,

@@ -7,7 +7,8 @@ import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.figures import exercise_figure
 from dh_grader.grading import Submission, grade
-from dh_grader.variants import Form, built, checked_variant, difficulty_of, form_of, seed_of
+from dh_grader.variants import built, seed_of
+from dh_grader.variants.deployment import Form, checked_variant, difficulty_of, form_of
 
 from tests.variants.shipped import VARIED, shipped
 

@@ -45,9 +45,6 @@ if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
 
 
-# --- Build the HTTP service from its routes, limits and headers
-
-
 # --- The outermost middleware, which every request and response passes
 
 
@@ -173,6 +170,9 @@ class WebPages(NamedTuple):
     of_problem: ProblemPage
     close: Callable[[], None]
     drafts: Drafts
+
+
+# --- Build the HTTP service from its routes, limits and headers
 
 
 # Puts a layer around an application.

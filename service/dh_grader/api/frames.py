@@ -91,9 +91,6 @@ from dh_grader.kinematics import Matrices, Numbers
 from dh_grader.slices import checkpoint
 from dh_grader.translations import Language, Sentence, say, say_count
 
-# --- The route that computes where to draw the frames of a DH table and the links of a robot
-
-
 # --- The routes that show how the grader reads a text while a student is typing
 
 
@@ -233,6 +230,9 @@ def _exercise(catalogue: Catalogue, body: PreviewRequest) -> Exercise | None:
     if exercise is not None and body.part is not None:
         require_parts(exercise, [(body.part, ("part",))])
     return exercise
+
+
+# --- The route that computes where to draw the frames of a DH table and the links of a robot
 
 
 _MOST_MECHANISMS: Final = 64

@@ -97,9 +97,6 @@ if TYPE_CHECKING:
     from dh_grader.store import AttemptStore
 
 
-# --- The routes that grade submissions
-
-
 # --- The route that makes tokens for learners
 
 
@@ -567,6 +564,9 @@ def _no_exercises() -> ProblemError:
         "The service has nothing to grade",
         headers={"Retry-After": "5"},
     )
+
+
+# --- The routes that grade submissions
 
 
 _log = logging.getLogger(__name__)

@@ -24,9 +24,6 @@ from dh_grader.translations.catalogues import compiled_catalogue
 from dh_grader.typeset import statement_html
 from dh_grader.variants import hidden_variant, seed_of
 
-# --- Bundles for grading platforms: zip files with the program, an assignment and scripts
-
-
 # --- Pack files into a reproducible zip file
 
 
@@ -430,6 +427,9 @@ def ci_files(content: BundleContent) -> list[BundledFile]:
         setup_script(),
         BundledFile("grade", template("ci", "grade"), is_executable=True),
     ]
+
+
+# --- Bundles for grading platforms: zip files with the program, an assignment and scripts
 
 
 __all__ = ["BUNDLES", "BundleContent", "BundleError", "BundledFile", "content_of", "zipped"]

@@ -55,9 +55,6 @@ from dh_grader.expressions import Kind
 from dh_grader.kinematics import COLUMNS, Convention, Numbers, dh1_residual, dh2_residual
 from dh_grader.translations import say, template
 
-# --- The answer kinds in exercise files: the subclass of ``PartSpec`` of each kind
-
-
 # --- Answer kind ``vector``: a list of values, such as (p_x, p_y, φ)
 
 
@@ -778,6 +775,9 @@ class DhRowSpec(PartSpec):
     def shape(self, _: Reference | None) -> DhRowShape:
         """Return the shape of an answer: one row, or "none"."""
         return DhRowShape(columns=list(COLUMNS), convention=self.convention)
+
+
+# --- The answer kinds in exercise files: the subclass of ``PartSpec`` of each kind
 
 
 SPECS: Final[Mapping[str, type[PartSpec]]] = {

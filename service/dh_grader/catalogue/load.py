@@ -33,9 +33,6 @@ from dh_grader.catalogue.varying import Vary
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# --- Load exercise files from folders
-
-
 # --- Catalogues of a running service: of the files as they were, or as they are now
 
 
@@ -251,6 +248,9 @@ def exercise_after(exercise_id: str, exercises: Iterable[Exercise]) -> Exercise 
 def _place(exercise: Exercise) -> tuple[int, bool, int]:
     level = len(_LEVELS) if exercise.level is None else _LEVELS.index(exercise.level)
     return level, exercise.order is None, exercise.order or 0
+
+
+# --- Load exercise files from folders
 
 
 ID_ADVICE = say("write small letters and digits, with - or _ between them, such as elbow-arm")

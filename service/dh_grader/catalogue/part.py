@@ -20,9 +20,6 @@ from dh_grader.expressions import Kind
 from dh_grader.kinematics import Convention
 from dh_grader.translations import say
 
-# --- The base classes of answer kinds, which are the modules of ``parts/``
-
-
 # --- The shape of an answer, which students see before they answer
 
 
@@ -105,6 +102,9 @@ def choices(**stated: str) -> Iterator[str]:
 
 
 _NAMES = {"base": "base frame", "tool": "tool frame"}
+
+
+# --- The base classes of answer kinds, which are the modules of ``parts/``
 
 
 class PartSpec(StrictModel, ABC):

@@ -29,9 +29,6 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import say
 
-# --- A reference robot given by a DH table: its formulas and their numbers
-
-
 # --- The variables of an exercise, and trial values to check an author's formulas
 
 
@@ -237,6 +234,9 @@ def _check_screws(field: str, numbers: Numbers) -> None:
                 f"{field}[{i}]",
                 say("is no screw axis (ω; v): either ω is a unit vector, or it is 0 and v is one"),
             )
+
+
+# --- A reference robot given by a DH table: its formulas and their numbers
 
 
 FormulaRow = Row[Expression]

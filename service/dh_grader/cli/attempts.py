@@ -16,6 +16,7 @@ from sqlalchemy import Engine, func, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from dh_grader.catalogue import Exercise
+from dh_grader.cli import spoken
 from dh_grader.cli.grade import write
 from dh_grader.cli.terminal import (
     complain,
@@ -23,7 +24,6 @@ from dh_grader.cli.terminal import (
     installed,
     installed_exercise,
     progress,
-    spoken,
     stdout,
     tell,
 )
@@ -67,9 +67,6 @@ from dh_grader.store.results import (
 )
 from dh_grader.store.tables import attempts
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count
-
-# --- `dh-grader attempts`: the recorded attempts of this installation
-
 
 # --- Regrade the attempts at an exercise in one process or several
 
@@ -190,6 +187,9 @@ attempts_commands = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
 )
+
+# --- `dh-grader attempts`: the recorded attempts of this installation
+
 
 _MOST_SLIPS: Final = 15
 _MOST_LISTED: Final = 1_000_000

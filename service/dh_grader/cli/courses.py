@@ -14,18 +14,11 @@ from sqlalchemy import Connection
 
 from dh_grader import courses
 from dh_grader.catalogue import Exercise, FeedbackLevel
+from dh_grader.cli import spoken
 from dh_grader.cli.attempts import database, encodable
 from dh_grader.cli.exercises import warn_of_unread
 from dh_grader.cli.grade import write
-from dh_grader.cli.terminal import (
-    complain,
-    give_up,
-    installed,
-    installed_exercise,
-    spoken,
-    stdout,
-    tell,
-)
+from dh_grader.cli.terminal import complain, give_up, installed, installed_exercise, stdout, tell
 from dh_grader.contract.courses import (
     LONGEST_LINK_DAYS,
     AssignedPoints,
@@ -67,9 +60,6 @@ from dh_grader.submissions.answers import ExerciseAnswers, answers_in, of_file
 from dh_grader.submissions.bodies import field_error, find_exercise
 from dh_grader.submissions.files import HandedIn, all_handed_in
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count, template
-
-# --- `dh-grader courses`: courses with learners, links, assignments and a gradebook
-
 
 # --- Change and delete courses from the command line
 
@@ -506,6 +496,7 @@ def _print(assignment: CourseAssignment) -> None:
 
 
 courses_commands = typer.Typer(
+    # --- `dh-grader courses`: courses with learners, links, assignments and a gradebook
     help="Courses: learners, links, assignments, gradebook.",
     no_args_is_help=True,
     add_completion=False,

@@ -19,7 +19,7 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
-from dh_grader.authoring import Level, Remark, UnusableIdError, examine, summary, template
+from dh_grader.authoring import Level, Remark, UnusableIdError, examine, exercise_template, summary
 from dh_grader.bundles import BUNDLES, BundleError, content_of, zipped
 from dh_grader.catalogue import (
     CatalogueError,
@@ -33,6 +33,7 @@ from dh_grader.catalogue import (
 )
 from dh_grader.catalogue.files import line_of, read_regular, value_lines, with_line
 from dh_grader.catalogue.robot import Robot
+from dh_grader.cli import spoken, user_language
 from dh_grader.cli.grade import chosen_assignment, write
 from dh_grader.cli.terminal import (
     UNUSABLE,
@@ -42,11 +43,9 @@ from dh_grader.cli.terminal import (
     installed_exercise,
     installed_file,
     named_exercise,
-    spoken,
     stdout,
     unreadable,
     unwritable,
-    user_language,
 )
 from dh_grader.figures import exercise_figure, reference_figure
 from dh_grader.figures.drawing import Theme
@@ -68,18 +67,14 @@ from dh_grader.regex import regex
 from dh_grader.settings import load_settings
 from dh_grader.solutions import ModelSolution, Shown, solve
 from dh_grader.translations import joined, say, say_count
-from dh_grader.variants import (
+from dh_grader.variants import NoVariantError, built
+from dh_grader.variants.deployment import (
     CheckedVariant,
-    NoVariantError,
     TooFewVariantsError,
-    built,
     checked_variant,
     deploy,
     with_deployed,
 )
-
-# --- `dh-grader exercises`: list, show, check and create exercises
-
 
 # --- Write new exercise files without replacing existing ones
 
@@ -179,7 +174,7 @@ def import_robot_command(
     """
     name = exercise_id or file.stem
     try:
-        template(name)
+        exercise_template(name)
         data = read_regular(file, MOST_BYTES)
     except UnusableIdError as error:
         give_up(error)
@@ -544,6 +539,9 @@ def _draw(exercise: Exercise, seeds: Iterable[str], folder: Path) -> None:
         give_up(unwritable(folder, error))
 
 
+# --- `dh-grader exercises`: list, show, check and create exercises
+
+
 _NARROWEST = 24
 
 exercises_commands = typer.Typer(
@@ -647,7 +645,7 @@ def new_exercise(
 ) -> None:
     """Write a commented exercise file to start from. It passes `exercises check` as it is."""
     try:
-        text = template(exercise_id, None if like is None else installed_file(like))
+        text = exercise_template(exercise_id, None if like is None else installed_file(like))
     except UnusableIdError as error:
         give_up(error)
     file = write_new(output, exercise_id, text)

@@ -22,6 +22,7 @@ import typer
 from rich.console import Console
 
 from dh_grader.catalogue import load_exercise, read_regular
+from dh_grader.cli import spoken
 from dh_grader.cli.remote import REQUESTS, graded_by, require_no_own_files, server_of, set_exercise
 from dh_grader.cli.running import (
     Shard,
@@ -46,7 +47,6 @@ from dh_grader.cli.terminal import (
     own_file,
     progress,
     report_language,
-    spoken,
     stdout,
     unreadable,
     unwritable,
@@ -88,9 +88,6 @@ from dh_grader.variants import NoVariantError
 
 if TYPE_CHECKING:
     from dh_grader.client import GraderClient
-
-
-# --- `dh-grader grade`: grade submissions in files
 
 
 # --- Remember which files earlier runs have written, to protect the files of students
@@ -414,6 +411,9 @@ class _MergeRun:
 
 
 grade_commands = typer.Typer(add_completion=False)
+
+
+# --- `dh-grader grade`: grade submissions in files
 
 
 # The most earlier outputs that one sentence names.

@@ -13,9 +13,10 @@ from sqlalchemy import Connection
 
 from dh_grader import lti
 from dh_grader.access import Secret
+from dh_grader.cli import spoken, user_language
 from dh_grader.cli.attempts import database, encodable
 from dh_grader.cli.courses import CourseOption, changed
-from dh_grader.cli.terminal import give_up, spoken, stdout, tell, tell_verdict, user_language
+from dh_grader.cli.terminal import give_up, stdout, tell, tell_verdict
 from dh_grader.contract.courses import SendAgainRequest
 from dh_grader.formats.texts import number, visible
 from dh_grader.lti import (
@@ -39,9 +40,6 @@ from dh_grader.settings import load_settings
 from dh_grader.store.database import in_transaction
 from dh_grader.submissions.bodies import field_error
 from dh_grader.translations import joined, say
-
-# --- `dh-grader lti`: the registered platforms, and our keys for signing messages to them
-
 
 # --- `dh-grader lti scores`: the scores of a course at its platform
 
@@ -131,6 +129,9 @@ def own_address(option: str | None) -> str:
     if found is None:
         give_up(say("Give the address of this service: set DH_GRADER_PUBLIC_URL, or --address."))
     return found.rstrip("/")
+
+
+# --- `dh-grader lti`: the registered platforms, and our keys for signing messages to them
 
 
 R = TypeVar("R")

@@ -12,29 +12,13 @@ from sqlalchemy import Connection, select
 from sqlalchemy.exc import SQLAlchemyError
 
 from dh_grader import courses as courses_courses
-from dh_grader.access import (
-    WRONG_SECRET,
-    Key,
-    Scope,
-    add_key,
-    all_keys,
-    fits,
-    new_key_text,
-    revoke_key,
-    settle,
-)
+from dh_grader.access import WRONG_SECRET, Key, Scope, new_key_text
+from dh_grader.access.keys import add_key, all_keys, fits, revoke_key, settle
 from dh_grader.api.permissions import is_loopback
 from dh_grader.catalogue import CatalogueError, load_catalogue
+from dh_grader.cli import spoken
 from dh_grader.cli.attempts import database, encodable
-from dh_grader.cli.terminal import (
-    complain,
-    give_up,
-    installed_exercise,
-    spoken,
-    stdout,
-    tell,
-    tell_verdict,
-)
+from dh_grader.cli.terminal import complain, give_up, installed_exercise, stdout, tell, tell_verdict
 from dh_grader.courses import CourseError, zone_named
 from dh_grader.formats.texts import visible
 from dh_grader.settings import Settings, SettingsError, load_settings

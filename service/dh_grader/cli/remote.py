@@ -1,6 +1,6 @@
 """Let a server grade instead of this program, and continue an interrupted run.
 
-It loads httpx, so `dh-grader grade` imports this file late.
+`dh-grader grade` imports this file always, so the functions that call a server import the client.
 """
 
 import hashlib
@@ -11,11 +11,11 @@ from dataclasses import replace
 from http import HTTPStatus
 from pathlib import Path
 from threading import Lock
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
+from dh_grader.cli import spoken
 from dh_grader.cli.running import mapped_in_threads
-from dh_grader.cli.terminal import complain, give_up, installed_exercise, spoken
-from dh_grader.client import GraderClient, GraderClientError, RequestRefusedError
+from dh_grader.cli.terminal import complain, give_up, installed_exercise
 from dh_grader.formats.documents import read_report, rendered
 from dh_grader.formats.graded import GradedSubmission
 from dh_grader.formats.local_grading import GradingTerms, graded, unknown_part
@@ -35,9 +35,10 @@ from dh_grader.submissions.bodies import GradeRequest, UnknownExerciseError
 from dh_grader.submissions.files import HandedIn
 from dh_grader.translations import say
 
+if TYPE_CHECKING:
+    from dh_grader.client import GraderClient, GraderClientError
+
 # --- Use a server that grades instead of this program
-#
-# Modules that load httpx are imported late.
 
 
 # Concurrent requests without --jobs: the server has work while answers are on their way.
@@ -224,16 +225,16 @@ def _places(path: Path) -> list[tuple[str, int]]:
 
 
 # --- Let a server grade submissions
-#
-# This module loads httpx, so import the module late.
 
 
 # The statuses that concern the key or the connection; other client errors concern the answers.
 _CONCERNING_ALL: Final = {HTTPStatus.UNAUTHORIZED, HTTPStatus.FORBIDDEN, HTTPStatus.REQUEST_TIMEOUT}
 
 
-def exercise_of(server: GraderClient, exercise_id: str) -> ExerciseOutline:
+def exercise_of(server: "GraderClient", exercise_id: str) -> ExerciseOutline:
     """Return an exercise of the server. Raises UnknownExerciseError or GraderClientError."""
+    from dh_grader.client import RequestRefusedError
+
     try:
         told = server.exercise(exercise_id)
     except RequestRefusedError as error:
@@ -256,7 +257,7 @@ class RemoteGrading:
     # because the feedback of a server may depend on the key.
 
     def __init__(
-        self, server: GraderClient, key: str | None, terms: GradingTerms, journal: Journal
+        self, server: "GraderClient", key: str | None, terms: GradingTerms, journal: Journal
     ) -> None:
         self._server = server
         self._key = key
@@ -268,6 +269,7 @@ class RemoteGrading:
 
     def graded(self, handed: HandedIn) -> GradedSubmission:
         """Grade a submission; return a report or an error message for each exercise."""
+        from dh_grader.client import GraderClientError
 
         def report_on(
             body: GradeRequest, assigned: AssignedExercise, terms: GradingTerms
@@ -287,6 +289,8 @@ class RemoteGrading:
         return graded(handed, self._terms, report_on)
 
     def _report(self, assigned: AssignedExercise, submission: Submission) -> Report:
+        from dh_grader.client import GraderClientError
+
         exercise = assigned.exercise
         parts = tuple(part.id for part in exercise.parts)
         terms = (submission.angle_unit, submission.feedback, submission.echo)
@@ -322,14 +326,18 @@ def restricted(report: Report, parts: Collection[str]) -> Report:
     return replace(report, parts=kept, points=points, max_points=max_points, score=score)
 
 
-def _concerns_all(error: GraderClientError) -> bool:
+def _concerns_all(error: "GraderClientError") -> bool:
     # True if other submissions would cause the same error.
+    from dh_grader.client import RequestRefusedError
+
     if isinstance(error, RequestRefusedError):
         return error.status in _CONCERNING_ALL or error.is_temporary
     return True
 
 
-def _concerns_these(error: GraderClientError) -> bool:
+def _concerns_these(error: "GraderClientError") -> bool:
     # True if the server refuses these answers, so that sending them again is useless.
+    from dh_grader.client import RequestRefusedError
+
     is_refusal = isinstance(error, RequestRefusedError) and 400 <= error.status < 500
     return is_refusal and not _concerns_all(error)

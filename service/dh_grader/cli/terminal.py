@@ -1,6 +1,5 @@
 """The terminal: output, progress, interrupts, the reader's language, and errors that end it."""
 
-import gettext
 import os
 import signal
 import sys
@@ -10,31 +9,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from enum import StrEnum
-from gettext import NullTranslations
 from pathlib import Path
-from typing import Any, Final, NoReturn, TypeVar
+from typing import Final, NoReturn, TypeVar
 
 import typer
 from rich.cells import cell_len, set_cell_size
 from rich.console import Console
-from typer.core import TyperCommand
 
 from dh_grader.catalogue import Exercise, exercise_files, load_catalogue, load_exercise
+from dh_grader.cli import spoken, user_language
 from dh_grader.settings import Settings, load_settings
 from dh_grader.submissions.bodies import find_exercise, nearest
-from dh_grader.translations import (
-    ENGLISH,
-    Language,
-    Sentence,
-    language_named,
-    paragraph,
-    say,
-    template,
-    told,
-)
-
-# --- Output to the terminal, errors that end the program, and the installed exercises
-
+from dh_grader.translations import Language, Sentence, language_named, paragraph, say
 
 # --- Handle SIGINT and SIGTERM so that no unfinished files and no processes are left
 
@@ -100,6 +86,9 @@ def _end(number: int) -> NoReturn:
     if number == signal.SIGINT:
         raise KeyboardInterrupt
     raise SystemExit(TERMINATED)
+
+
+# --- Output to the terminal, errors that end the program, and the installed exercises
 
 
 BELOW_PASS_MARK = 1
@@ -240,92 +229,6 @@ def progress(total: int) -> Iterator[Progress]:
         yield Progress(
             lambda: bar.advance(task), lambda text: console.print(text, soft_wrap=True), True
         )
-
-
-# --- Translate the command line into the language of the user
-#
-# Help texts are English in the source; ``translate_help`` translates them when a command is loaded.
-#
-# Output for programs, the names of commands and options, and exit codes have no language.
-
-
-OWN_VARIABLE: Final = "DH_GRADER_LANGUAGE"
-# The words that typer adds to help texts. It asks gettext for all but the last.
-_USAGE: Final = template("Usage: ")
-_TYPER_WORDS: Final = (
-    template("Arguments"),
-    template("Options"),
-    template("Commands"),
-    template("Error"),
-    template("Aborted."),
-    template("[default: {}]"),
-    template("[required]"),
-    template("Try [blue]'{command_path} {help_option}'[/] for help."),
-    template("Show this message and exit."),
-    _USAGE,
-)
-
-
-def user_language(variables: Mapping[str, str] = os.environ) -> Language:
-    """Return the language that the environment names, or English."""
-    # DH_GRADER_LANGUAGE decides. Without it, the first known language of the list LANGUAGE and of
-    # the locale decides. The locales C and POSIX mean English.
-    if own := variables.get(OWN_VARIABLE):
-        return language_named(own) or ENGLISH
-    named = (variables.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
-    locale = _tag(next(filter(None, named), ""))
-    # As in gettext: these locales have no languages.
-    if locale in ("C", "POSIX"):
-        return ENGLISH
-    wanted = [*map(_tag, variables.get("LANGUAGE", "").split(":")), locale]
-    return next(filter(None, map(language_named, wanted)), ENGLISH)
-
-
-def _tag(locale: str) -> str:
-    return locale.partition(".")[0].partition("@")[0]
-
-
-def spoken(text: str, language: Language | None = None) -> str:
-    """Return a sentence in a language, by default that of the user."""
-    return told(text, (language or user_language()).translation_of_commands)
-
-
-def translate_help(command: Any) -> Any:
-    """Translate the help texts of a typer command and its subcommands; return the command."""
-    translation = user_language().translation_of_commands
-    if translation is not None:
-        # typer asks gettext when it loads the module that shows help.
-        gettext.translation = lambda *_, **__: translation  # type: ignore[assignment]
-        command.context_class.formatter_class = _Formatter
-        for each in with_help(command):
-            for name in ("help", "short_help"):
-                if text := getattr(each, name, None):
-                    setattr(each, name, _translated(text, translation))
-    return command
-
-
-def with_help(command: Any) -> Iterable[Any]:
-    """Yield a command, all its subcommands, and all their options and arguments."""
-    yield command
-    yield from command.get_params(typer.Context(command))
-    for each in getattr(command, "commands", {}).values():
-        yield from with_help(each)
-
-
-def paragraphs(text: str) -> list[str]:
-    """Return the paragraphs of a help text, each as one line."""
-    return [" ".join(each.split()) for each in text.split("\n\n")]
-
-
-def _translated(text: str, translation: NullTranslations) -> str:
-    return "\n\n".join(translation.gettext(each) if each else "" for each in paragraphs(text))
-
-
-class _Formatter(TyperCommand.context_class.formatter_class):  # type: ignore[name-defined, misc]
-    def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
-        translation = user_language().translation_of_commands
-        shown = translation.gettext(_USAGE) if translation else prefix
-        super().write_usage(prog, args, shown)
 
 
 # --- Options of the command line that take one of several words

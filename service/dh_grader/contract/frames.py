@@ -18,9 +18,6 @@ from dh_grader.figures.table_figure import LARGEST
 from dh_grader.kinematics import Convention
 from dh_grader.translations import Sentence, told
 
-# --- The bodies of requests for the numbers with which a table or a mechanism is drawn
-
-
 # --- The bodies of previews, which show how a text is read while the student types
 
 
@@ -143,6 +140,9 @@ class PreviewManyResponse(BaseModel):
     """The readings in the order of the entries."""
 
     results: list[PreviewAnswer]
+
+
+# --- The bodies of requests for the numbers with which a table or a mechanism is drawn
 
 
 # The most configurations in one request: one second of a motion at 30 pictures per second.

@@ -17,7 +17,8 @@ from zoneinfo import ZoneInfo, ZoneInfoNotFoundError
 from pydantic import ValidationError
 from sqlalchemy import ColumnElement, Connection, Row, func, insert, select, true, update
 
-from dh_grader.access import WRONG_SECRET, Key, Scope, Secret, insert_key, link_keys, settle
+from dh_grader.access import WRONG_SECRET, Key, Scope, Secret
+from dh_grader.access.keys import insert_key, link_keys, settle
 from dh_grader.contract.courses import (
     MOST_LEARNERS,
     Course,

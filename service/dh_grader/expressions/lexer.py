@@ -53,9 +53,6 @@ from dh_grader.expressions.words import (
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# --- Split plain characters into tokens: numbers, operators, brackets and words
-
-
 # --- Notes on formulas that are read literally although the student may mean something else
 #
 # ``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine plus 2, and
@@ -401,6 +398,9 @@ class WordLexer(TokenWriter):
             return UnreadableError("not_finite", span)
         called = self.text[end : end + 1] == "("
         return UnreadableError("name", span, run=run, called=called, before=self.last)
+
+
+# --- Split plain characters into tokens: numbers, operators, brackets and words
 
 
 NUMBER: Final = r"(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?"

@@ -48,9 +48,6 @@ from dh_grader.expressions.words import END, Token
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 
-# --- Read a typed formula in four stages: characters, tokens, syntax tree, program
-
-
 # --- Estimate the cost of reading a text before it is read
 #
 # Every machine gets the same result.
@@ -167,6 +164,9 @@ def _scanned(text: str) -> _Count:
 
 _reading_work_memoized: Final = lru_cache(maxsize=8192)(_by_words)
 _of_word: Final = lru_cache(maxsize=2048)(_packed)
+
+
+# --- Read a typed formula in four stages: characters, tokens, syntax tree, program
 
 
 AngleUnit = Literal["radians", "degrees"]

@@ -33,9 +33,6 @@ from dh_grader.submissions.files import MAX_START, ClassEntry
 from dh_grader.submissions.office_files import UNREADABLE_ARCHIVE
 from dh_grader.translations import Language, say, say_count
 
-# --- The overview of a class: a folder with an index and a page for each submission
-
-
 # --- Recognise what this program has written, and the worksheets of platforms, by their contents
 #
 # Tutors keep reports and worksheets in the folder of the submissions, so these files come back as
@@ -107,6 +104,9 @@ def is_earlier_output(file: Path) -> bool:
             return is_feedback(archive.namelist())
     except UNREADABLE_ARCHIVE:
         return False
+
+
+# --- The overview of a class: a folder with an index and a page for each submission
 
 
 __all__ = ["FEEDBACK", "INDEX", "class_folder", "feedback_zip"]

@@ -28,9 +28,6 @@ if TYPE_CHECKING:
     from rich.console import Console
 
 
-# --- Submissions with their reports: the input of every format
-
-
 # --- JSON that is safe to print to a terminal or the log of a build
 
 
@@ -48,6 +45,9 @@ def json_document(content: Mapping[str, object]) -> bytes:
 def printable(document: bytes) -> bytes:
     """Return equivalent JSON that is safe to print to a terminal or the log of a build."""
     return _UNPRINTABLE.sub(lambda sign: b"\\u%04x" % ord(sign[0].decode()), document)
+
+
+# --- Submissions with their reports: the input of every format
 
 
 # Scores are rounded to six digits, so 1/3 passes a pass mark of 0.33333333.

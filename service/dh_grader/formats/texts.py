@@ -17,7 +17,6 @@ from rich.cells import cell_len, set_cell_size
 from rich.console import Console, RenderableType
 from rich.padding import Padding
 from rich.segment import Segment, Segments
-from rich.table import Table
 from rich.text import Text
 
 from dh_grader import typeset as typeset_typeset
@@ -866,7 +865,10 @@ class AlignedTable:
             segments[-1] = Segment.line()
         return Segments(segments)
 
-    def _narrowed(self) -> Table:
+    def _narrowed(self) -> RenderableType:
+        # It takes long to load, and few tables are too wide.
+        from rich.table import Table
+
         table = Table(
             box=None,
             pad_edge=False,

@@ -30,9 +30,6 @@ from dh_grader.pasting import GridError
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, joined, listed, say
 
-# --- Read a pasted DH table as a robot: what the text says, and what its author must be asked
-
-
 # --- The rows of an imported DH table, and the robot that they describe
 #
 # A table is a chain of factors X_0 Z_1 X_1 … Z_n X_n (see ``kinematics.chain``). Z and X are turned

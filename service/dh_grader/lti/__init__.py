@@ -22,9 +22,6 @@ from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.translations import Sentence, joined, say, template
 
-# --- Registered platforms (learning management systems), roles, and what is wrong with them
-
-
 # --- Convert a user's roles in a launch to one LtiRole
 #
 # Roles are compared by their full URIs.

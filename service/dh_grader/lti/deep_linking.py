@@ -9,7 +9,8 @@ from typing import Any, Final
 import jwt
 from sqlalchemy import Connection, update
 
-from dh_grader.access import Secret, settle
+from dh_grader.access import Secret
+from dh_grader.access.keys import settle
 from dh_grader.lti import LtiError, LtiRole, Registration, unusable
 from dh_grader.lti.fetching import ensure_key, signing_key
 from dh_grader.lti.handed_files import KIND

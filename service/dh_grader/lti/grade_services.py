@@ -34,9 +34,6 @@ from dh_grader.store.tables import assignments, attempts, line_items, resource_l
 from dh_grader.translations import ENGLISH, Language, Sentence, SentenceValue, say, template
 from dh_grader.translations import told as told_in
 
-# --- The services of a platform's gradebook (AGS): send scores, and find or make columns
-
-
 # --- Line items: the columns of a platform's gradebook, one for each resource link
 
 
@@ -293,6 +290,9 @@ def seconds_to_wait(headers: Mapping[str, str]) -> float | None:
     """Return the seconds of the header ``Retry-After``, or None."""
     text = headers.get("retry-after", "")
     return float(text) if re.fullmatch(r"\d{1,9}", text, re.ASCII) else None
+
+
+# --- The services of a platform's gradebook (AGS): send scores, and find or make columns
 
 
 _SCORE: Final = "application/vnd.ims.lis.v1.score+json"

@@ -17,7 +17,8 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from sqlalchemy import Connection, Row, delete, insert, select, update
 
 from dh_grader import courses
-from dh_grader.access import Scope, Secret, add_key, keys_at, new_key_text, settle
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key, keys_at, settle
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import CourseAssignment, NewAssignment, NewCourse
 from dh_grader.courses import CourseError

@@ -196,7 +196,7 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
     ring = None
     if store is not None:
         # Imported only here, because it imports the database drivers.
-        from dh_grader.access import KeyRing
+        from dh_grader.access.keys import KeyRing
 
         try:
             ring = KeyRing(store.engine, secret)
@@ -243,7 +243,7 @@ def _rates(settings: Settings) -> RequestRates | None:
     if not any(each is not None for each in given):
         return None
     # Imported only here: few installations limit the rate of requests.
-    from dh_grader.access import Rates, UnusableRatesError, rates_in
+    from dh_grader.access.keys import Rates, UnusableRatesError, rates_in
 
     for name in ("key_rate", "address_rate"):
         try:

@@ -31,9 +31,6 @@ from dh_grader.expressions.vocabulary import (
 )
 from dh_grader.kinematics import Convention
 
-# --- Convert an exercise's formulas from syntax trees to SymPy
-
-
 # --- Multiply rigid motions (turns and shifts) in the form that textbooks print
 #
 # Vectors are 3×1, rotations 3×3 matrices of SymPy; angles are in radians.

@@ -48,9 +48,6 @@ from sqlalchemy.exc import ArgumentError, DBAPIError, SQLAlchemyError
 from dh_grader.store.tables import UtcTime, attempts, contexts, learners, line_items, scores
 from dh_grader.translations import Sentence, joined, say
 
-# --- Open the database of attempts by its URL, and migrate its tables
-
-
 # --- The queue of scores to be sent to learning platforms
 #
 # A row belongs to a learner and a line item (a column of the platform's gradebook). Points are read
@@ -539,6 +536,9 @@ class UnusablePointsError(ValueError):
 
 class BadCursorError(ValueError):
     """The text is not a valid cursor."""
+
+
+# --- Open the database of attempts by its URL, and migrate its tables
 
 
 R = TypeVar("R")

@@ -589,9 +589,6 @@ def _wrong_places(content: Mapping[str, Mapping[str, Any]]) -> Iterable[str]:
                 yield f"{part}/{place}"
 
 
-# --- All that is known of one learner, and what is deleted
-
-
 # --- Changes by tutors: they override points, and delete the data of a learner
 
 

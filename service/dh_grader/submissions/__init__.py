@@ -19,9 +19,6 @@ from dh_grader.submissions.bodies import UnknownExerciseError, nearest
 from dh_grader.translations import paragraph, say
 from dh_grader.variants import hidden_variant
 
-# --- Assignments: exercises for one hand-in, their points, and the names of answer files
-
-
 # --- The outline of an exercise on a server: the data needed to submit answers to it
 
 
@@ -48,6 +45,9 @@ class ExerciseOutline:
 
 # An assigned exercise; this program can grade only an Exercise, not an ExerciseOutline.
 SetExercise = Exercise | ExerciseOutline
+
+
+# --- Assignments: exercises for one hand-in, their points, and the names of answer files
 
 
 PASS_MARK: Final = 0.8

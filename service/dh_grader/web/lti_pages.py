@@ -48,9 +48,6 @@ if TYPE_CHECKING:
     from dh_grader.lti.launch import Landing, NewLogin
 
 
-# --- The pages that learning platforms open here, and their HTTP headers
-
-
 # --- The page with the report on files that a student has handed in at the learning platform
 #
 # The files are not stored here. For each view, the service reads them from the platform and grades
@@ -310,6 +307,9 @@ def return_page(address: str, response: str, assets: Assets, language: Language)
     """Return the page that sends the signed ``response`` to the platform."""
     values = {"address": address, "response": response}
     return lti_page("return.html", assets, ["send_form.js"], language=language, **values)
+
+
+# --- The pages that learning platforms open here, and their HTTP headers
 
 
 _FOLDER = "web/templates/lti"

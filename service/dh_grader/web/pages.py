@@ -45,9 +45,6 @@ from dh_grader.translations import ENGLISH, LANGUAGES, Language, say, template, 
 from dh_grader.typeset import matrix, statement_html, typeset
 from dh_grader.variants.robots import practice_id
 
-# --- The static files, which are served under names with a hash of the content
-
-
 # --- Translate the sentences in the pages' scripts: one dictionary for each language
 #
 # English needs none.

@@ -345,13 +345,13 @@ def editor_routes(
     async def editor(request: Request, exercise: str | None = None) -> Response:
         """Return the editor of an exercise's file, or of a new file."""
         # Imported here, because it loads an algebra system.
-        from dh_grader.authoring import template
+        from dh_grader.authoring import exercise_template
 
         exercise_id = exercise or _NEW
         file = folder.opened(exercise_id)
         if file is None and exercise is not None:
             exercise_or_404(catalogue, exercise)
-        text, mark = (file.text, file.mark) if file else (template(exercise_id), "")
+        text, mark = (file.text, file.mark) if file else (exercise_template(exercise_id), "")
         is_copy = file is not None and not mark
         page = editor_page(
             folder.free_id(exercise_id) if is_copy else exercise_id,

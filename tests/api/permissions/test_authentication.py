@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from dh_grader.access import NOBODY, Caller, KeyRing, Rates, Scope, add_key, new_key_text
+from dh_grader.access import NOBODY, Caller, Scope, new_key_text
+from dh_grader.access.keys import KeyRing, Rates, add_key
 from dh_grader.api.http import CLIENT, Client, ProblemError
 from dh_grader.api.permissions import (
     IDENTITY,
@@ -168,11 +169,11 @@ def test_a_key_that_cannot_be_checked_gives_no_rights(
 
     nobody = Identity(NOBODY, by_key=True)
     assert outcome("dhg_x") == outcome(new_key_text()) == (nobody, "401 key-not-valid")
-    monkeypatch.setattr("dh_grader.access.MAX_WAITING", 0)
+    monkeypatch.setattr("dh_grader.access.keys.MAX_WAITING", 0)
     assert outcome(new_key_text()) == (nobody, "503 busy")
     monkeypatch.undo()
     # The database does not answer.
-    monkeypatch.setattr("dh_grader.access.TIMEOUT", 0.0)
+    monkeypatch.setattr("dh_grader.access.keys.TIMEOUT", 0.0)
     assert outcome(new_key_text()) == (nobody, "503 store-down")
 
 

@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 from dh_grader import courses as roll
-from dh_grader.access import Scope, Secret, add_key, new_key_text
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.contract.courses import LinksRequest, NewAssignment, NewCourse, NewLearner
 from dh_grader.courses import issue_links
 from dh_grader.courses.assignments import add_assignment

@@ -6,7 +6,8 @@ from typing import Any
 
 import httpx
 import pytest
-from dh_grader.access import Scope, Secret, add_key, new_key_text
+from dh_grader.access import Scope, Secret, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.store.database import in_transaction, open_database
 from playwright.sync_api import Frame, Page, expect
 

@@ -4,7 +4,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import pytest
-from dh_grader.authoring import template
+from dh_grader.authoring import exercise_template
 from dh_grader.catalogue import shipped_folder
 from typer.testing import Result
 
@@ -69,7 +69,7 @@ def test_show_prints_the_task_without_answers(run: Run) -> None:
 
 def test_show_takes_a_path(run: Run, tmp_path: Path) -> None:
     file = tmp_path / "arm.toml"
-    file.write_text(template("arm"), encoding="utf-8")
+    file.write_text(exercise_template("arm"), encoding="utf-8")
     assert run("exercises", "show", str(file), "--solution").stdout == SOLUTION
     absent = run("exercises", "show", str(tmp_path / "absent.toml"))
     assert absent.exit_code == 2
@@ -79,7 +79,7 @@ def test_show_takes_a_path(run: Run, tmp_path: Path) -> None:
 def test_show_solution_prints_answers_and_link_transforms(
     run: Run, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    (tmp_path / "arm.toml").write_text(template("arm"), encoding="utf-8")
+    (tmp_path / "arm.toml").write_text(exercise_template("arm"), encoding="utf-8")
     monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", str(tmp_path))
     result = run("exercises", "show", "arm", "--solution")
     assert result.exit_code == 0

@@ -15,7 +15,8 @@ from zoneinfo import ZoneInfo
 
 import pytest
 from dh_grader import courses as roll
-from dh_grader.access import Scope, add_key, new_key_text
+from dh_grader.access import Scope, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.catalogue import Exercise
 from dh_grader.cli import program
 from dh_grader.contract.courses import NewLearner

@@ -10,7 +10,8 @@ from typing import Any
 import httpx
 import jwt
 import pytest
-from dh_grader.access import Scope, add_key, new_key_text
+from dh_grader.access import Scope, new_key_text
+from dh_grader.access.keys import add_key
 from dh_grader.catalogue import Exercise
 from dh_grader.lti import handed_files as queue
 from dh_grader.lti import registration, remove_registration

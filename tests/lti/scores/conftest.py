@@ -106,7 +106,8 @@ class Journey:
         return found
 
     def tutor(self) -> dict[str, str]:
-        from dh_grader.access import Scope, add_key, new_key_text
+        from dh_grader.access import Scope, new_key_text
+        from dh_grader.access.keys import add_key
 
         if "tutor" not in self.tokens:
             text, now = new_key_text(), datetime.now(UTC)

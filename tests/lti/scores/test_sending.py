@@ -10,7 +10,8 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 
 import pytest
-from dh_grader.access import OPEN_HERE, KeyRing, Secret
+from dh_grader.access import OPEN_HERE, Secret
+from dh_grader.access.keys import KeyRing
 from dh_grader.api.application import application
 from dh_grader.api.permissions import Access
 from dh_grader.catalogue import Exercise

@@ -18,9 +18,6 @@ from dh_grader.expressions.words import split
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# --- The input and the result of a repair rule, and helpers that several rules share
-
-
 # --- Find the known name that is most similar to an unknown name
 
 
@@ -90,6 +87,9 @@ def _ratio(run: str, name: str) -> float:
 
 def _names(vocabulary: Vocabulary) -> set[str]:
     return {name for name in vocabulary.by_name if name.isascii()}
+
+
+# --- The input and the result of a repair rule, and helpers that several rules share
 
 
 # The error that a rule returns, or None if it does not apply. The suggestion may be unreadable.

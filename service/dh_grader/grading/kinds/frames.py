@@ -73,9 +73,6 @@ from dh_grader.kinematics.placement import (
 )
 from dh_grader.translations import say
 
-# --- Answer kind ``frames``: the frames that the student places on the joint axes
-
-
 # --- Judge the frames that a student places on the joint axes, with all joint variables 0
 
 

@@ -59,9 +59,6 @@ from dh_grader.pasting.source import joined, line_number
 from dh_grader.regex import regex
 from dh_grader.translations import listed, say, say_count
 
-# --- Read a pasted DH table as rows of entries
-
-
 # --- Move the units in the second row of a pasted table into its headers
 
 
