@@ -14,8 +14,8 @@ from typing import Any
 
 import pytest
 from dh_grader.cli.running import WorkerLostError, mapped
+from dh_grader.submissions.documents import UnusableFileError
 from dh_grader.submissions.files import read_file
-from dh_grader.submissions.office_files import UnusableFileError
 
 from tests.benchmarks.class_folder import BROKEN, EXERCISE, write_class
 from tests.guards import ANSWER

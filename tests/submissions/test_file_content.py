@@ -1,8 +1,8 @@
 """Files that would take long to parse are refused."""
 
 import pytest
+from dh_grader.submissions.documents import UnusableFileError
 from dh_grader.submissions.files import MAX_TOML_DOTS, MAX_TOML_SIZE, read_content
-from dh_grader.submissions.office_files import UnusableFileError
 
 
 @pytest.mark.parametrize(

@@ -10,8 +10,8 @@ from typing import Any
 
 import pytest
 from dh_grader.submissions import files as handed_in
+from dh_grader.submissions.documents import UnusableFileError
 from dh_grader.submissions.files import ClassEntry, HandedIn, UnusableClassError, all_handed_in
-from dh_grader.submissions.office_files import UnusableFileError
 
 needs_links = pytest.mark.skipif(os.name == "nt", reason="needs a right for symbolic links")
 

@@ -15,11 +15,10 @@ import openpyxl
 import pytest
 from dh_grader.formats.local_grading import GradingTerms, graded
 from dh_grader.submissions import of_one
+from dh_grader.submissions.documents import Excerpt, UnusableFileError
 from dh_grader.submissions.files import all_handed_in
 from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
-    Excerpt,
-    UnusableFileError,
     decoded,
     excerpts,
     typed_text,

@@ -5,9 +5,8 @@ from collections.abc import Mapping
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.grading import PartReport, Submission, grade
-from dh_grader.submissions.documents import pasted_from
+from dh_grader.submissions.documents import UnusableFileError, pasted_from
 from dh_grader.submissions.files import read_content
-from dh_grader.submissions.office_files import UnusableFileError
 
 ROWS = (
     ("1", "a1", "0", "0", "theta1"), ("2", "a2", "180°", "0", "theta2"),

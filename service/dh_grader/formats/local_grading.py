@@ -19,8 +19,8 @@ from dh_grader.grading.report import was_read_in_full
 from dh_grader.submissions import AssignedExercise, Assignment, SetExercise
 from dh_grader.submissions.answers import ExerciseAnswers, answers_in, of_file
 from dh_grader.submissions.bodies import GradeRequest, nearest
+from dh_grader.submissions.documents import Excerpt, UnusableFileError
 from dh_grader.submissions.files import HandedIn
-from dh_grader.submissions.office_files import Excerpt, UnusableFileError
 from dh_grader.translations import ENGLISH, Language, joined, say, told
 
 _LONGEST_NAME = 60

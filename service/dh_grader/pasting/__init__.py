@@ -47,11 +47,9 @@ from dh_grader.pasting.program import (
     with_own_symbols,
     without_function,
     without_harmless_lines,
-    without_print,
     without_remarks,
     without_styles,
     without_title,
-    without_uses,
 )
 from dh_grader.pasting.robots import describes_robot, read_script
 from dh_grader.pasting.source import (
@@ -84,6 +82,7 @@ from dh_grader.pasting.tables import (
     with_decimal_points,
     without_frame,
 )
+from dh_grader.pasting.uses import without_print, without_uses
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 from dh_grader.translations import say

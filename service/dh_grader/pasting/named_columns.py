@@ -14,10 +14,8 @@ from dh_grader.pasting.program import (
     RobotTable,
     arguments,
     excerpt,
-    first_change,
     split_call,
     statements,
-    tells,
     text_around,
     unquoted,
     unread_script,
@@ -32,6 +30,7 @@ from dh_grader.pasting.source import (
     strict_pairs,
     too_many_rows,
 )
+from dh_grader.pasting.uses import first_change, tells
 from dh_grader.regex import regex
 from dh_grader.translations import say, say_count
 

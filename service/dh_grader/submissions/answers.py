@@ -28,7 +28,13 @@ from dh_grader.submissions import (
     without_copy_number,
 )
 from dh_grader.submissions.bodies import GradeRequest, nearest
-from dh_grader.submissions.documents import changing_remark, is_prose, shortened
+from dh_grader.submissions.documents import (
+    Excerpt,
+    UnusableFileError,
+    changing_remark,
+    is_prose,
+    shortened,
+)
 from dh_grader.submissions.files import (
     BY_HAND_ENDINGS,
     DATA_ENDINGS,
@@ -40,7 +46,7 @@ from dh_grader.submissions.files import (
     read_content,
     typed_in_receipt,
 )
-from dh_grader.submissions.office_files import Excerpt, UnusableFileError, decoded
+from dh_grader.submissions.office_files import decoded
 from dh_grader.translations import Sentence, joined, say
 
 if TYPE_CHECKING:

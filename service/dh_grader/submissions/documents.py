@@ -1,11 +1,11 @@
-"""The table or matrix in a LaTeX, Markdown or MATLAB document, and sentences beside it."""
+"""The table or matrix in a LaTeX, Markdown or MATLAB document or a notebook, and its remarks."""
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from html import unescape
 from itertools import zip_longest
-from typing import Final
+from typing import Any, Final
 from xml.etree import ElementTree as ET
 
 from dh_grader.grading.reading.entries import comments, is_beside_code, units_in
@@ -20,7 +20,32 @@ from dh_grader.grading.reading.headers import (
 from dh_grader.pasting import ASSIGNMENT, GridError, read_grid, read_robot
 from dh_grader.pasting.around import UNIT, is_sentence, names_unit
 from dh_grader.pasting.remarks import Claim, claims, contradicts, may_change
+from dh_grader.pasting.uses import changing_statement
 from dh_grader.regex import regex
+from dh_grader.submissions.bodies import MalformedError, read_json
+from dh_grader.translations import say
+
+
+class UnusableFileError(Exception):
+    """The file has no usable submission; the message says why."""
+
+
+@dataclass(frozen=True, slots=True)
+class Excerpt:
+    """A piece of a file that may be the answer to a part.
+
+    ``name`` is the name of a sheet, or empty. An excerpt of a higher ``level`` counts only if none
+    of a lower level can be read. ``around`` are the lines and cells around it, and ``beside`` the
+    remarks on its cells. ``changed`` is a later statement that changes it, or empty.
+    """
+
+    text: str
+    name: str = ""
+    level: int = 0
+    around: tuple[str, ...] = ()
+    beside: tuple[str, ...] = ()
+    changed: str = ""
+
 
 # --- Find the table or matrix in a LaTeX, Markdown or MATLAB document
 #
@@ -494,3 +519,55 @@ _TABLES: Final[Mapping[str, Callable[[str], Iterator[str]]]] = {
     ".md": _markdown,
     ".m": _matlab,
 }
+
+
+# --- Notebooks ---
+
+
+def notebook_excerpts(data: bytes) -> Iterator[Excerpt]:
+    """Yield the pieces of a notebook that may be the answer. Raises UnusableFileError."""
+    try:
+        content: Any = read_json(data)
+        cells = content["cells"] if "cells" in content else content["worksheets"][0]["cells"]
+        found = [(str(cell["cell_type"]), _source(cell), list(_outputs(cell))) for cell in cells]
+    except (MalformedError, KeyError, IndexError, TypeError) as error:
+        raise UnusableFileError(say("is not a usable notebook")) from error
+    code = [source for kind, source, _ in found if kind == "code" and source.strip()]
+    texts = [source for kind, source, _ in found if kind != "code" and source.strip()]
+    lines = tuple(line for text in texts for line in text.splitlines() if "|" not in line)
+    said = tuple(comment[1] for source in code for comment in comments(source))
+    # A function that converts angles shows that those of the table are in degrees.
+    lines = (*lines, *(found[0] for source in code for found in CONVERTS_ANGLES.finditer(source)))
+    for text in texts:
+        if (table := pasted_from(text, ".md")) != text:
+            yield Excerpt(table, around=(*lines, *said))
+    if code:
+        yield Excerpt("\n".join(code), around=lines)
+        for i, each in enumerate(code if len(code) > 1 else ()):
+            changed = changing_statement(each, "\n".join(code[i + 1 :]))
+            yield Excerpt(each, level=1, around=(*lines, *said), changed=changed)
+    yield from (
+        Excerpt(text, level=1, around=(*lines, *said, *around_rows(text))) for text in texts
+    )
+    # What the code printed last counts only if nothing else is there.
+    printed = [text for _, _, outputs in found for text in outputs if text.strip()]
+    if printed:
+        yield Excerpt(printed[-1], level=2)
+
+
+def _source(cell: Mapping[str, Any]) -> str:
+    return _joined_lines(cell.get("source", cell.get("input", "")))
+
+
+def _joined_lines(lines: object) -> str:
+    if isinstance(lines, str):
+        return lines
+    if not isinstance(lines, list):
+        raise TypeError
+    return "".join(lines)
+
+
+def _outputs(cell: Mapping[str, Any]) -> Iterator[str]:
+    for output in cell.get("outputs") or ():
+        text = output.get("text") or (output.get("data") or {}).get("text/plain") or ""
+        yield _joined_lines(text)

@@ -26,12 +26,16 @@ from dh_grader.submissions.bodies import (
     nested_deeper,
     read_json,
 )
-from dh_grader.submissions.documents import around_rows, around_table, pasted_from
+from dh_grader.submissions.documents import (
+    Excerpt,
+    UnusableFileError,
+    around_rows,
+    around_table,
+    pasted_from,
+)
 from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
     UNREADABLE_ARCHIVE,
-    Excerpt,
-    UnusableFileError,
     decoded,
     excerpts,
     has_pictures,

@@ -21,16 +21,15 @@ from itertools import groupby, islice
 from typing import Any, Final
 from xml.etree import ElementTree as ET
 
-from dh_grader.grading.reading.entries import comments
 from dh_grader.grading.reading.headers import QUANTITIES, is_wordy, read_header
-from dh_grader.pasting.program import changing_statement
 from dh_grader.regex import regex
-from dh_grader.submissions.bodies import MalformedError, read_json
 from dh_grader.submissions.documents import (
-    CONVERTS_ANGLES,
+    Excerpt,
+    UnusableFileError,
     around_rows,
     around_table,
     local_name,
+    notebook_excerpts,
     pasted_from,
     written_formula,
 )
@@ -54,27 +53,6 @@ MAX_EXCERPTS: Final = 12
 # Documents with tables in tables have about 40.
 MAX_DEPTH: Final = 200
 MAX_ARCHIVE_ENTRIES: Final = 4_000
-
-
-class UnusableFileError(Exception):
-    """The file has no usable submission; the message says why."""
-
-
-@dataclass(frozen=True, slots=True)
-class Excerpt:
-    """A piece of a file that may be the answer to a part.
-
-    ``name`` is the name of a sheet, or empty. An excerpt of a higher ``level`` counts only if none
-    of a lower level can be read. ``around`` are the lines and cells around it, and ``beside`` the
-    remarks on its cells. ``changed`` is a later statement that changes it, or empty.
-    """
-
-    text: str
-    name: str = ""
-    level: int = 0
-    around: tuple[str, ...] = ()
-    beside: tuple[str, ...] = ()
-    changed: str = ""
 
 
 SheetRow = Sequence[str]
@@ -959,54 +937,6 @@ def _is_picture(piece: bytes) -> bool:
     return len(piece.translate(None, b"0123456789abcdefABCDEF\r\n")) < _OTHER_SIGNS
 
 
-def _notebook(data: bytes) -> Iterator[Excerpt]:
-    try:
-        content: Any = read_json(data)
-        cells = content["cells"] if "cells" in content else content["worksheets"][0]["cells"]
-        found = [(str(cell["cell_type"]), _source(cell), list(_outputs(cell))) for cell in cells]
-    except (MalformedError, KeyError, IndexError, TypeError) as error:
-        raise UnusableFileError(say("is not a usable notebook")) from error
-    code = [source for kind, source, _ in found if kind == "code" and source.strip()]
-    texts = [source for kind, source, _ in found if kind != "code" and source.strip()]
-    lines = tuple(line for text in texts for line in text.splitlines() if "|" not in line)
-    said = tuple(comment[1] for source in code for comment in comments(source))
-    # A function that converts angles shows that those of the table are in degrees.
-    lines = (*lines, *(found[0] for source in code for found in CONVERTS_ANGLES.finditer(source)))
-    for text in texts:
-        if (table := pasted_from(text, ".md")) != text:
-            yield Excerpt(table, around=(*lines, *said))
-    if code:
-        yield Excerpt("\n".join(code), around=lines)
-        for i, each in enumerate(code if len(code) > 1 else ()):
-            changed = changing_statement(each, "\n".join(code[i + 1 :]))
-            yield Excerpt(each, level=1, around=(*lines, *said), changed=changed)
-    yield from (
-        Excerpt(text, level=1, around=(*lines, *said, *around_rows(text))) for text in texts
-    )
-    # What the code printed last counts only if nothing else is there.
-    printed = [text for _, _, outputs in found for text in outputs if text.strip()]
-    if printed:
-        yield Excerpt(printed[-1], level=2)
-
-
-def _source(cell: Mapping[str, Any]) -> str:
-    return _joined_lines(cell.get("source", cell.get("input", "")))
-
-
-def _joined_lines(lines: object) -> str:
-    if isinstance(lines, str):
-        return lines
-    if not isinstance(lines, list):
-        raise TypeError
-    return "".join(lines)
-
-
-def _outputs(cell: Mapping[str, Any]) -> Iterator[str]:
-    for output in cell.get("outputs") or ():
-        text = output.get("text") or (output.get("data") or {}).get("text/plain") or ""
-        yield _joined_lines(text)
-
-
 # --- Web pages
 
 _TABLE: Final = regex(r"<(?:table|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
@@ -1151,7 +1081,7 @@ _READERS: Final[Mapping[str, Callable[[bytes], Iterator[Excerpt]]]] = {
     ".docx": _docx,
     ".docm": partial(_docx, may_have_macros=True),
     ".rtf": _rtf,
-    ".ipynb": _notebook,
+    ".ipynb": notebook_excerpts,
     ".html": _web_page,
     ".htm": _web_page,
 }
