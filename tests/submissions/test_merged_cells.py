@@ -9,7 +9,8 @@ import docx
 import openpyxl
 import pytest
 import xlwt
-from dh_grader.submissions.office_files import UnusableFileError, excerpts
+from dh_grader.submissions.documents import UnusableFileError
+from dh_grader.submissions.office_files import excerpts
 from odf.opendocument import OpenDocumentSpreadsheet
 from odf.table import CoveredTableCell, Table, TableCell, TableRow
 from odf.text import P

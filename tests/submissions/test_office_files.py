@@ -19,10 +19,9 @@ from dh_grader.submissions.documents import Excerpt, UnusableFileError
 from dh_grader.submissions.files import all_handed_in
 from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
-    decoded,
     excerpts,
-    typed_text,
 )
+from dh_grader.submissions.typed_texts import decoded, typed_text
 from hypothesis import given
 from hypothesis import strategies as st
 

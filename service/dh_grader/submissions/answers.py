@@ -46,7 +46,7 @@ from dh_grader.submissions.files import (
     read_content,
     typed_in_receipt,
 )
-from dh_grader.submissions.office_files import decoded
+from dh_grader.submissions.typed_texts import decoded
 from dh_grader.translations import Sentence, joined, say
 
 if TYPE_CHECKING:

@@ -36,13 +36,12 @@ from dh_grader.submissions.documents import (
 from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
     UNREADABLE_ARCHIVE,
-    decoded,
     excerpts,
     has_pictures,
     open_archive,
-    typed_text,
     unpacked,
 )
+from dh_grader.submissions.typed_texts import decoded, typed_text
 from dh_grader.translations import Sentence, say
 
 # --- Find the submissions in files, folders of a class, and folders of single students

@@ -12,11 +12,9 @@ import struct
 import zipfile
 import zlib
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from datetime import date, datetime, time, timedelta
 from functools import partial
-from html import unescape
 from itertools import groupby, islice
 from typing import Any, Final
 from xml.etree import ElementTree as ET
@@ -26,20 +24,22 @@ from dh_grader.regex import regex
 from dh_grader.submissions.documents import (
     Excerpt,
     UnusableFileError,
-    around_rows,
     around_table,
     local_name,
     notebook_excerpts,
     pasted_from,
     written_formula,
 )
+from dh_grader.submissions.typed_texts import (
+    MAX_TAGS,
+    struck_out,
+    too_much,
+    web_page,
+)
 from dh_grader.translations import say
 
 # Bytes of the XML in one file after unpacking. A table of a student needs a hundredth of that.
 MAX_XML: Final = 2 * 1024 * 1024
-# The most tags in one file. A document of two megabytes from Word has about as many; a hostile file
-# has a tag in every third byte, and each tag takes more time than a thousand letters.
-MAX_TAGS: Final = 60_000
 # The most cells of a sheet. A wide table with its title and scratch work has a few hundred.
 MAX_CELLS: Final = 10_000
 # Records of a workbook of Excel 97: a cell is one, and so are a row, a font and a style.
@@ -95,18 +95,12 @@ def unpacked(archive: zipfile.ZipFile, name: str, most: int) -> bytes:
     except UNREADABLE_ARCHIVE as error:
         raise _damaged() from error
     if len(content) > most:
-        raise _too_much()
+        raise too_much()
     return content
 
 
 def _damaged() -> UnusableFileError:
     return UnusableFileError(say("is damaged, or not what its name says"))
-
-
-def _too_much() -> UnusableFileError:
-    return UnusableFileError(
-        say("holds more than a hand-in needs; leave only the table or matrix in it")
-    )
 
 
 class _Package:
@@ -136,7 +130,7 @@ class _Package:
         self._left -= len(content)
         self._tags -= content.count(b"<")
         if self._tags < 0:
-            raise _too_much()
+            raise too_much()
         return content
 
     def parsed(self, name: str) -> ET.Element:
@@ -223,7 +217,7 @@ def _of_xlsx(cell: Any) -> str:
     if cell.value is None:
         return ""
     text = _with_unit(cell.value, cell.number_format)
-    return _struck(text) if cell.font and cell.font.strike else text
+    return struck_out(text) if cell.font and cell.font.strike else text
 
 
 # A piece of a text that is struck out, in the XML of a workbook.
@@ -271,7 +265,7 @@ def _filled(rows: Sequence[SheetRow], areas: Iterable[_Area]) -> list[SheetRow]:
         bottom, last = min(bottom, len(filled)), min(last, MAX_COLUMNS)
         left -= max(bottom - top, 0) * max(last - first, 0)
         if left < 0:
-            raise _too_much()
+            raise too_much()
         value = filled[top][first] if top < len(filled) and first < len(filled[top]) else ""
         is_value = len(value.split()) == 1 and not is_wordy(value)
         is_entry = top > headers and (last - first == 1 or is_value)
@@ -356,13 +350,6 @@ _UNITS_SHOWN: Final = {
 }
 
 
-def _struck(text: str) -> str:
-    """Return struck-out text as Markdown writes it, which no reader of tables takes."""
-    inner = text.strip(" ~")
-    before, _, after = text.partition(inner) if inner else (text, "", "")
-    return f"{before}~~{inner.replace('~', '')}~~{after}" if inner else text
-
-
 _OF_SHEETS: Final = regex(
     r"\[Content_Types\]\.xml$|_rels/\.rels$|docProps/(core|app)\.xml$|xl/(_rels/)?workbook\.xml(\.rels)?$|"
     r"xl/(styles|sharedStrings)\.xml$|xl/worksheets/[^/]+\.xml$"
@@ -377,14 +364,14 @@ def _require_few_cells(content: bytes) -> None:
     cells, rows = (len(each.findall(content)) for each in (_CELL_OF_XLSX, _ROW_OF_XLSX))
     others = content.count(b"<") - 4 * cells - 2 * rows
     if max(cells, rows, others) > MAX_CELLS:
-        raise _too_much()
+        raise too_much()
 
 
 def _xls(data: bytes) -> Iterator[Excerpt]:
     import xlrd
 
     if sum(_cells_in_records(data)) > MAX_RECORDS:
-        raise _too_much()
+        raise too_much()
     book = xlrd.open_workbook(
         file_contents=data, ragged_rows=True, formatting_info=True, logfile=io.StringIO()
     )
@@ -394,7 +381,7 @@ def _xls(data: bytes) -> Iterator[Excerpt]:
         if sheet.visibility == 0:
             notes += [note.text for note in sheet.cell_note_map.values()]
             if sum(map(sheet.row_len, range(sheet.nrows))) > MAX_CELLS:
-                raise _too_much()
+                raise too_much()
             rows = [
                 [
                     _of_xls(book, cell, sheet.rich_text_runlist_map.get((i, j), ()))
@@ -444,8 +431,8 @@ def _of_xls(book: Any, cell: Any, fonts: Sequence[tuple[int, int]]) -> str:
     for start, font in reversed(fonts):
         if book.font_list[font].struck_out:
             end = next((at for at, _ in fonts if at > start), len(text))
-            text = text[:start] + _struck(text[start:end]) + text[end:]
-    return _struck(text) if text and book.font_list[format_.font_index].struck_out else text
+            text = text[:start] + struck_out(text[start:end]) + text[end:]
+    return struck_out(text) if text and book.font_list[format_.font_index].struck_out else text
 
 
 def _value_of_xls(cell: Any, datemode: int, number_format: str) -> str:
@@ -526,7 +513,7 @@ def _rows_of_ods(
             if not text:
                 blank += repeated
             elif len(cells) + blank + repeated > MAX_COLUMNS:
-                raise _too_much()
+                raise too_much()
             else:
                 cells += [""] * blank + [text] * repeated
                 blank = 0
@@ -539,7 +526,7 @@ def _rows_of_ods(
             continue
         found += waiting + times
         if found > MAX_ROWS:
-            raise _too_much()
+            raise too_much()
         # Empty rows before the next filled row; those at the end are the rest of the sheet.
         yield from ([] for _ in range(waiting))
         yield from (cells for _ in range(times))
@@ -556,7 +543,7 @@ def _times(element: ET.Element, name: str) -> int:
 
 def _cell_of_ods(cell: ET.Element, struck: frozenset[str]) -> str:
     text = _value_of_ods(cell, struck)
-    return _struck(text) if _attribute(cell, "style-name") in struck else text
+    return struck_out(text) if _attribute(cell, "style-name") in struck else text
 
 
 def _value_of_ods(cell: ET.Element, struck: frozenset[str]) -> str:
@@ -583,7 +570,7 @@ def _paragraph_of_ods(paragraph: ET.Element, struck: frozenset[str]) -> str:
     pieces = [paragraph.text or ""]
     for each in paragraph:
         text = "".join(each.itertext())
-        pieces += [_struck(text) if _attribute(each, "style-name") in struck else text]
+        pieces += [struck_out(text) if _attribute(each, "style-name") in struck else text]
         pieces += [each.tail or ""]
     return "".join(pieces)
 
@@ -784,7 +771,7 @@ def _table_of_word(table: ET.Element) -> list[SheetRow]:
             span, merge = _merging_in_word(cell)
             cells += [_one_line(" ".join(_paragraphs(cell))), *[""] * (span - 1)]
             if len(cells) > MAX_COLUMNS:
-                raise _too_much()
+                raise too_much()
             if merge == "continue" and first in above:
                 begun[first] = above[first]
             elif merge:
@@ -868,7 +855,7 @@ def _run(element: ET.Element) -> str:
     if "vanish" in looks:
         return ""
     if "strike" in looks or "dstrike" in looks:
-        return _struck(text)
+        return struck_out(text)
     if looks.get("vertAlign") == "superscript":
         return f"^({text})" if text.strip() not in ("o", "°") else "°"
     return text
@@ -907,13 +894,13 @@ def _rtf(data: bytes) -> Iterator[Excerpt]:
     from striprtf.striprtf import rtf_to_text
 
     if sum(map(data.count, (b"\\", b"{", b"}"))) > MAX_RTF_SIGNS:
-        raise _too_much()
+        raise too_much()
     data = b"{".join(
         b"}".join(b"" if _is_picture(piece) else piece for piece in group.split(b"}"))
         for group in data.split(b"{")
     )
     if len(data) > MAX_RTF:
-        raise _too_much()
+        raise too_much()
     data = _STRUCK_IN_RTF.sub(rb"{~~\1~~}", data)
     text: str = rtf_to_text(data.decode("cp1252", "replace"), errors="replace")  # type: ignore[no-untyped-call]
     table = pasted_from(text, ".md")
@@ -937,140 +924,7 @@ def _is_picture(piece: bytes) -> bool:
     return len(piece.translate(None, b"0123456789abcdefABCDEF\r\n")) < _OTHER_SIGNS
 
 
-# --- Web pages
-
-_TABLE: Final = regex(r"<(?:table|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
-# What begins a new line on a web page.
-_BREAK: Final = regex(
-    r"</?(?:p|div|br|li|ul|ol|pre|h[1-6]|blockquote|section|article|body|html|head)"
-    r"(?![A-Za-z0-9-])[^<>]{0,2000}>",
-    re.IGNORECASE,
-)
-# The start of an element that a browser does not show.
-_HIDDEN: Final = regex(r"<(head|style|script|title)(?![A-Za-z0-9-])|<!--|<!", re.IGNORECASE)
-_OFFICE_FILES_TAG: Final = regex(r"</?[A-Za-z][^<>]{0,2000}>")
-_STRUCK_TAG: Final = regex(
-    r"<(s|del|strike|span(?=[^<>]{1,400}line-through))(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,400})"
-    r"</\1>",
-    re.IGNORECASE,
-)
-_RAISED: Final = regex(r"<sup(?![A-Za-z0-9-])[^<>]{0,2000}>([^<>]{1,40})</sup>", re.IGNORECASE)
-
-
-def typed_text(page: str) -> str:
-    r"""Return the lines that a person typed into a platform's editor, which sends a web page.
-
-    >>> typed_text("<p>0,&nbsp;0, 0, q1<br>l1, 0, 0, q2</p>")
-    '0, 0, 0, q1\nl1, 0, 0, q2'
-    """
-    is_preformatted = re.search("<pre(?![A-Za-z0-9-])", page, re.IGNORECASE) is not None
-    page = _visible(page)
-    if not is_preformatted and _BREAK.search(page):
-        # Line ends in the source of a page mean no more than blanks.
-        page = " ".join(page.split("\n"))
-    page = _STRUCK_TAG.sub(lambda found: _struck(found[2]), page)
-    page = _RAISED.sub(lambda found: "°" if found[1] in "oO0°" else f"^({found[1]})", page)
-    text = unescape(_OFFICE_FILES_TAG.sub("", _BREAK.sub("\n", page))).replace("\u00a0", " ")
-    lines = (line.strip(" ") for line in text.splitlines())
-    return "\n".join(line for line in lines if line.strip())
-
-
-def _visible(page: str) -> str:
-    """Return a web page without its head, styles, scripts and comments."""
-    lowered = page.lower()
-    pieces = []
-    start = position = 0
-    unclosed: set[str] = set()
-    while found := _HIDDEN.search(lowered, position):
-        opening = found[0]
-        closing = {"<!--": "-->", "<!": ">"}.get(opening, f"</{opening[1:]}")
-        close = -1 if opening in unclosed else lowered.find(closing, found.end())
-        end = lowered.find(">", close) + 1 if close >= 0 else 0
-        position = found.end()
-        if end:
-            pieces.append(page[start : found.start()])
-            start = position = end
-        else:
-            # Such an element is not searched for again, so that the time stays linear.
-            unclosed.add(opening)
-    return "".join(pieces) + page[start:]
-
-
-def _web_page(data: bytes) -> Iterator[Excerpt]:
-    page = decoded(data)
-    if page.count("<") + page.count("&") > MAX_TAGS:
-        raise _too_much()
-    page = _visible(page)
-    has_table = _TABLE.search(page) is not None
-    if has_table:
-        yield Excerpt(page, around=around_rows(page))
-    text = typed_text(page)
-    if text:
-        yield Excerpt(text, level=1 if has_table else 0)
-
-
 # --- The face of this file
-
-
-def decoded(data: bytes) -> str:
-    """Return the text of a file in UTF-8, UTF-16 or Windows-1252. Raises UnusableFileError."""
-    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
-        try:
-            return data.decode("utf-16")
-        except UnicodeError as error:
-            raise UnusableFileError(
-                say("is not text: it begins like UTF-16, but is invalid")
-            ) from error
-    if b"\0" in data:
-        return _wide(data)
-    try:
-        return data.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        pass
-    # Python leaves five bytes of Windows-1252 undefined; no text has them.
-    if any(byte < 32 and byte not in b"\t\n\r\f" for byte in data):
-        raise UnusableFileError(say("is not text"))
-    try:
-        text = data.decode("cp1252")
-    except UnicodeDecodeError as error:
-        raise _other_encoding() from error
-    if _IMPLAUSIBLE.search(text):
-        raise _other_encoding()
-    return text
-
-
-# Signs that no text in Windows-1252 has at such places, but one in GBK, in the code page of a Mac
-# or in Cyrillic letters, which is decoded as Windows-1252: "Á¬¸Ë³¤¶È", "180¡", "LŠnge", "¹/2".
-_IMPLAUSIBLE: Final = regex(
-    r"[¬¸¶¤¦¨¯]|[À-ÖØ-öø-ÿ¡-§©-¯±-¶¸-º¼-¿×÷ŠšŒœŽžŸƒˆ˜]{4}|[²³µ¼½¾±][À-ÖØ-öø-ÿ]"
-    r"|\w[¡§]|[€†‡…ˆ‰][a-z]|[A-Za-z][ŠŽŒŸ€†‡ˆ‰](?=[a-z\s])|(?<![\w)])¹"
-)
-
-
-def _other_encoding() -> UnusableFileError:
-    return UnusableFileError(
-        say(
-            "is not text in UTF-8 or Windows-1252; if it is a text, save it as UTF-8, and hand it "
-            "in again"
-        )
-    )
-
-
-def _wide(data: bytes) -> str:
-    """Return the text of a file in UTF-16 without a byte order mark. Raises UnusableFileError.
-
-    The file must be certain: half of its letters are ASCII, and all of them can be printed.
-    """
-    for encoding, first in (("utf-16-le", 1), ("utf-16-be", 0)):
-        high, low = data[first::2], data[1 - first :: 2]
-        if len(data) % 2 == 0 and 0 not in low and 2 * high.count(0) >= len(high):
-            with suppress(UnicodeDecodeError):
-                text = data.decode(encoding)
-                if all(sign.isprintable() or sign in "\t\n\r\f" for sign in text):
-                    return text
-    raise UnusableFileError(
-        say("is not text: it has zero bytes; if it is a text, save it as UTF-8")
-    )
 
 
 _READERS: Final[Mapping[str, Callable[[bytes], Iterator[Excerpt]]]] = {
@@ -1082,8 +936,8 @@ _READERS: Final[Mapping[str, Callable[[bytes], Iterator[Excerpt]]]] = {
     ".docm": partial(_docx, may_have_macros=True),
     ".rtf": _rtf,
     ".ipynb": notebook_excerpts,
-    ".html": _web_page,
-    ".htm": _web_page,
+    ".html": web_page,
+    ".htm": web_page,
 }
 OFFICE_ENDINGS: Final = tuple(_READERS)
 
@@ -1102,7 +956,7 @@ def excerpts(data: bytes, ending: str) -> tuple[Excerpt, ...]:
     if not any(each.text.strip() for each in found):
         raise UnusableFileError(say("is empty"))
     return tuple(
-        replace(each, around=_not_struck(each.around), beside=_not_struck(each.beside))
+        replace(each, around=_notstruck(each.around), beside=_notstruck(each.beside))
         for each in found
     )
 
@@ -1127,7 +981,7 @@ _PICTURE_MARKS: Final = {
 }
 
 
-def _not_struck(lines: Iterable[str]) -> tuple[str, ...]:
+def _notstruck(lines: Iterable[str]) -> tuple[str, ...]:
     return tuple(_STRUCK_TEXT.sub(" ", line) for line in lines)
 
 
