@@ -119,11 +119,11 @@ def test_a_wheel_contains_the_program_and_the_catalogue(tmp_path: Path) -> None:
     with zipfile.ZipFile(wheel) as archive:
         carried = set(archive.namelist())
     exercises = {
-        f"service/dh_grader/_exercises/{path.relative_to(ROOT / 'exercises').as_posix()}"
+        f"dh_grader/_exercises/{path.relative_to(ROOT / 'exercises').as_posix()}"
         for path in (ROOT / "exercises").rglob("*.toml")
     }
     program = {
-        path.relative_to(ROOT).as_posix()
+        path.relative_to(ROOT / "service").as_posix()
         for path in (ROOT / "service" / "dh_grader").rglob("*")
         if path.is_file() and "__pycache__" not in path.parts and path.suffix != ".mo"
     }

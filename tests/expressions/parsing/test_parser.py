@@ -24,7 +24,7 @@ CLOSING = {"{": "}", "[": "]", "(": ")"}
 
 def grammar() -> dict[str, list[list[Part]]]:
     """Return the grammar rules in the docstring of the parser module."""
-    text = str(parser.__doc__).split("\n\n")[2]
+    [text] = (each for each in str(parser.__doc__).split("\n\n") if each.startswith("    sum "))
     rules = re.split(r"^ +(\w+) +=", text, flags=re.MULTILINE)[1:]
     return {
         name: alternatives(re.findall(r"\w+|[{}\[\]()|]", body))
