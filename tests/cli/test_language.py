@@ -175,7 +175,7 @@ def test_other_formats_do_not_follow_the_locale(form: str, tmp_path: Path) -> No
         ("exercises check scara --seeds 3 --output", "Hilfe: 'dh-grader exercises check --help'"),
         ("exercises show scara --figure /nowhere/a.svg", "/nowhere/a.svg: kann nicht geschrieben"),
         ("attempts list", "Hier werden keine Versuche aufgezeichnet"),
-        ("merge /nowhere/a.jsonl", "/nowhere/a.jsonl: kann nicht gelesen werden"),
+        ("merge /nowhere/a.jsonl", "/nowhere/a.jsonl kann nicht gelesen werden"),
         ("keys create tutor --scope tutor", "Schlüssel brauchen ein Geheimnis, das auch"),
     ],
 )

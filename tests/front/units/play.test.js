@@ -1,7 +1,14 @@
 import assert from "node:assert/strict";
 import { test } from "node:test";
 import { ROBOTS } from "../../../service/dh_grader/web/static/play/robots.js";
-import { jointCount, jointNumbers, robotOf, rowsOf, withKind, without } from "../../../service/dh_grader/web/static/play/rows.js";
+import {
+  jointCount,
+  jointNumbers,
+  robotOf,
+  rowsOf,
+  withKind,
+  without,
+} from "../../../service/dh_grader/web/static/play/rows.js";
 
 const row = (kind, ...cells) => ({ kind, cells });
 // A joint that turns, one that slides, one that turns.
