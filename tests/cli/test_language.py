@@ -173,7 +173,7 @@ def test_other_formats_do_not_follow_the_locale(form: str, tmp_path: Path) -> No
         ("grade a.json --exercise planar-rx", "Eine Aufgabe 'planar-rx' gibt es nicht. Meinten"),
         ("grade a.json --exercise scara --format xml", "'xml' ist keines von text"),
         ("exercises check scara --seeds 3 --output", "Hilfe: 'dh-grader exercises check --help'"),
-        ("exercises show scara --figure /nowhere/a.svg", "/nowhere/a.svg: kann nicht geschrieben"),
+        ("exercises show scara --figure /nowhere/a.svg", "/nowhere/a.svg kann nicht geschrieben"),
         ("attempts list", "Hier werden keine Versuche aufgezeichnet"),
         ("merge /nowhere/a.jsonl", "/nowhere/a.jsonl kann nicht gelesen werden"),
         ("keys create tutor --scope tutor", "Schlüssel brauchen ein Geheimnis, das auch"),
@@ -214,8 +214,13 @@ def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:
     grade = ("-m", "dh_grader", "grade", tmp_path, "--exercise", "planar-rrr", "--format", "json")
     german, english = process(*grade, "--lang", "de"), process(*grade, LANG="de_DE.UTF-8")
     told = [entry["error"] for entry in json.loads(german.stdout)]
-    assert told[0] == "pose.csv ist leer; table.csv ist kein Text"
-    assert told[1].startswith("a.zzz ist eine Datei, deren Art nicht gelesen wird (.zzz); bekannt")
+    assert told[0] == (
+        "pose.csv ist leer; table.csv ist kein Text in UTF-8 oder Windows-1252; wenn sie ein Text "
+        "ist, speichern Sie sie als UTF-8, und geben Sie sie noch einmal ab"
+    )
+    assert told[1].startswith(
+        "a.zzz ist eine Datei einer Art, die dieses Programm nicht liest (.zzz)"
+    )
     # The format does not follow the locale, but complaints do.
     assert [entry["error"][:22] for entry in json.loads(english.stdout)] == [
         "pose.csv is empty; tab",

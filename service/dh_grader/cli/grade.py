@@ -943,7 +943,7 @@ class _GradeRun:
     def submissions(self) -> Iterator[GradedSubmission]:
         for submission in self._submissions:
             self._check()
-            for told in _complaints(submission, self._language):
+            for told in _complaints(submission):
                 self._complain(told)
             self.exit_code = max(self.exit_code, _exit_code(submission))
             if self._has_worksheet:
@@ -951,7 +951,7 @@ class _GradeRun:
             yield submission
             self._shown.advance()
         if (more := self._without_part - _MOST_WITHOUT_PART) > 0:
-            self._shown.complain(spoken(_more_without_part(more), self._language))
+            self._shown.complain(spoken(_more_without_part(more)))
 
     def _complain(self, told: str) -> None:
         # Without --part, all files of a class may have this problem.
@@ -972,14 +972,14 @@ def _more_without_part(count: int) -> Sentence:
     )
 
 
-def _complaints(submission: GradedSubmission, language: Language) -> list[str]:
+def _complaints(submission: GradedSubmission) -> list[str]:
     reasons = ((file.file, file.by_hand) for file in submission.files if file.by_hand)
     beside = (
         (file.file, say("Graded, but without this file: {reason}", reason=each))
         for file in submission.files
         for each in file.beside
     )
-    told = ((path, spoken(reason, language)) for path, reason in (*reasons, *beside))
+    told = ((path, spoken(reason)) for path, reason in (*reasons, *beside))
     # A problem begins with the name of its file; that of a file in a folder gets its path.
     lines = (said if said.startswith(path) else f"{path}: {said}" for path, said in told)
     return [visible(line) for line in dict.fromkeys(lines)]
