@@ -89,7 +89,7 @@ _TABLE: Final = _words(
 _NOT: Final = r"(?:not|never|\w{2,6}n['’]?t|cannot)"
 # It is wrong.
 _WRONG: Final = _words(
-    rf"wrong(?:ly)?|incorrect(?:ly)?|{_NOT}\s(?:\w{1, 12}\s)?(?:correct|right|true|valid)"
+    rf"wrong(?:ly)?|incorrect(?:ly)?|{_NOT}\s(?:\w{{1,12}}\s)?(?:correct|right|true|valid)"
     r"|mistakes?|mistaken(?:ly)?|errors?|erroneous(?:ly)?|typos?|misprint|messed\sup|misread"
     r"|falsch\w{0,2}|fehlerhaft\w{0,2}|fehler|irrtümlich|irrtum|versehentlich|aus\sversehen"
     r"|(?:tipp|schreib|rechen|vorzeichen|abschreib)fehler|unrichtig|verschrieben|verrechnet|vertan"
