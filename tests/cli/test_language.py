@@ -214,7 +214,10 @@ def test_problems_of_files_are_in_the_language(tmp_path: Path) -> None:
     grade = ("-m", "service", "grade", tmp_path, "--exercise", "planar-rrr", "--format", "json")
     german, english = process(*grade, "--lang", "de"), process(*grade, LANG="de_DE.UTF-8")
     told = [entry["error"] for entry in json.loads(german.stdout)]
-    assert told[0] == "pose.csv ist leer; table.csv ist kein Text"
+    assert told[0] == (
+        "pose.csv ist leer; table.csv ist kein Text in UTF-8 oder Windows-1252; wenn sie ein Text "
+        "ist, speichern Sie sie als UTF-8, und geben Sie sie noch einmal ab"
+    )
     assert told[1].startswith("a.zzz ist eine Datei, deren Art nicht gelesen wird (.zzz); bekannt")
     # The format does not follow the locale, but complaints do.
     assert [entry["error"][:22] for entry in json.loads(english.stdout)] == [
