@@ -67,8 +67,8 @@ CHECKED: Final = """async ([part, cells, choice, unit]) => {
   const range = document.createRange();
   range.selectNodeContents(text);
   let found;
-  // The page follows changes of sizes within a few frames.
-  for (let i = 0; i < 60; i += 1) {
+  // The page follows changes of sizes within a few frames, which a busy machine draws late.
+  for (let i = 0; i < 300; i += 1) {
     await frame();
     found = [
       ...seen("message", text, range.getClientRects()[0]),
