@@ -19,7 +19,7 @@ from dh_grader.expressions.repairs import RULES
 from dh_grader.grading.kinds import KINDS
 from dh_grader.pasting import FORMATS
 from dh_grader.solutions.answers import ANSWERS
-from dh_grader.solutions.lazy import LAZY as LAZY_ANSWERS
+from dh_grader.solutions.answers import LAZY as LAZY_ANSWERS
 
 ROOT = Path(__file__).parents[1]
 SERVICE = ROOT / "service" / "dh_grader"
@@ -43,7 +43,7 @@ GRADING: Final = (
 # Ceilings, which may only fall: a change that lowers a number lowers it here, too. Only a new
 # feature may raise the number of lines, by what its commit states.
 LINES: Final = 96_343
-FILES: Final = 205  # the goal is 175
+FILES: Final = 198  # the goal is 175
 PARAMETERS_IN_GRADING: Final = 20  # functions of grading with more than five; the goal is none
 EXAMPLES_IN_RECORDS: Final = 345  # test data beside the misconceptions; the goal is none
 
@@ -70,7 +70,7 @@ MIGRATIONS: Final = "store/migrations/versions"
 SMALL_FOLDERS: Final = {
     "access": 3, "bundles": 1, "bundles/templates/prairielearn": 1, "contract": 3, "courses": 4,
     "grading/frames": 3, "importing": 4, "kinematics": 4, "store/migrations": 1,
-    "translations": 2, "variants": 4,
+    "solutions": 4, "translations": 1, "variants": 4,
 }  # fmt: skip
 
 # What may be imported inside functions, because it takes long to load and most runs do without.
@@ -99,7 +99,7 @@ LAZY: Final = {
     "striprtf": "hand-ins in .rtf",
     "sympy": "model solutions",
     "xlrd": "hand-ins in .xls",
-    "dh_grader.web.lti_landing": "drivers of databases",
+    "dh_grader.web.lti_pages": "drivers of databases",
     "dh_grader.web.lti_routes": "drivers of databases",
     "xlsxwriter": "the gradebook as a workbook",
 }

@@ -40,7 +40,7 @@ from dh_grader.grading.report import messages_of
 from dh_grader.kinematics import Numbers, coincident, exponential, identity, moved, rank
 from dh_grader.regex import regex
 from dh_grader.solutions import solve
-from dh_grader.solutions.lazy import LAZY
+from dh_grader.solutions.answers import LAZY
 from dh_grader.translations import Sentence, joined, say, say_count, template
 
 # --- Checks of an exercise for its author, before students see it, and a template for a new one

@@ -13,8 +13,13 @@ from pathlib import Path
 
 from dh_grader.catalogue import Exercise, load_exercise, open_catalogue
 from dh_grader.formats.documents import page_of, rendered
-from dh_grader.formats.graded import GradedFile, GradedSubmission
-from dh_grader.formats.local_grading import GradingTerms, report_of, unknown_part
+from dh_grader.formats.graded import (
+    GradedFile,
+    GradedSubmission,
+    GradingTerms,
+    report_of,
+    unknown_part,
+)
 from dh_grader.grading import FeedbackLevel, Report
 from dh_grader.settings import load_settings
 from dh_grader.submissions import UnknownPartNameError, of_one

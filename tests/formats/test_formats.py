@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from dh_grader.formats import FORMAT_NAMES, documents, platforms, report_format, terminal
+from dh_grader.formats import FORMAT_NAMES, documents, report_format, terminal
 from dh_grader.formats.graded import GradedSubmission, ReportFormat, UnusableSettingError
 from dh_grader.formats.texts import distinct_names
 
@@ -20,7 +20,7 @@ FOR_STUDENTS = {*SINGLE, "html", "junit", "markdown", "github"}
 def test_each_format_is_listed() -> None:
     defined = {
         name.lower()
-        for module in (documents, platforms, terminal)
+        for module in (documents, terminal)
         for name, value in vars(module).items()
         if isinstance(value, ReportFormat)
     }

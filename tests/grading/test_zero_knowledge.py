@@ -10,7 +10,7 @@ import pytest
 from dh_grader.catalogue import Exercise, PartSpec, exercise_files, shipped_folder
 from dh_grader.grading import Submission, Verdict, grade
 from dh_grader.solutions import solve
-from dh_grader.solutions.lazy import IDENTITY, LAZY, motion
+from dh_grader.solutions.answers import IDENTITY, LAZY, motion
 
 from tests.samples import one_in
 

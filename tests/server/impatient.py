@@ -10,10 +10,7 @@ import time
 from dh_grader import server as start
 from dh_grader.api import grading as health
 from dh_grader.cli import main
-from dh_grader.server import connections as open_connections
-from dh_grader.server import connections as protocol
-from dh_grader.server import installed_app
-from dh_grader.server import processes as process
+from dh_grader.server import connections, installed_app
 from dh_grader.settings import Settings
 from fastapi import FastAPI
 
@@ -38,11 +35,11 @@ def _with_hanging(settings: Settings, host: str) -> FastAPI:
 
 if __name__ == "__main__":
     for module, name, seconds in (
-        (protocol, "TIMEOUT", float(os.environ.get("TIMEOUT", TIMEOUT))),
-        (protocol, "HEAD_TIMEOUT", HEAD_TIMEOUT),
-        (protocol, "LINGER", 0.3),
-        (open_connections, "SWEEP", 0.05),
-        (process, "GRACE", TIMEOUT / 2),
+        (connections, "TIMEOUT", float(os.environ.get("TIMEOUT", TIMEOUT))),
+        (connections, "HEAD_TIMEOUT", HEAD_TIMEOUT),
+        (connections, "LINGER", 0.3),
+        (connections, "SWEEP", 0.05),
+        (start, "GRACE", TIMEOUT / 2),
         (health, "_PATIENCE", TIMEOUT / 2),
     ):
         vars(module)[name] = seconds

@@ -11,8 +11,8 @@ from functools import cache
 from typing import Any
 
 import uvicorn
+from dh_grader.server import Server
 from dh_grader.server.connections import GuardedProtocol, GuardedState, Valve
-from dh_grader.server.processes import Server
 from uvicorn.protocols.http.flow_control import FlowControl
 from uvicorn.protocols.http.httptools_impl import HttpToolsProtocol, RequestResponseCycle
 from uvicorn.server import ServerState

@@ -13,15 +13,14 @@ from typing import Any, Final
 
 import openpyxl
 import pytest
-from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.formats.graded import GradingTerms, graded
 from dh_grader.submissions import of_one
-from dh_grader.submissions.documents import Excerpt, UnusableFileError
+from dh_grader.submissions.documents import Excerpt, UnusableFileError, decoded, typed_text
 from dh_grader.submissions.files import all_handed_in
 from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
     excerpts,
 )
-from dh_grader.submissions.typed_texts import decoded, typed_text
 from hypothesis import given
 from hypothesis import strategies as st
 

@@ -11,8 +11,7 @@ import docx
 import openpyxl
 import pytest
 from dh_grader.catalogue import Exercise
-from dh_grader.formats.graded import GradedFile
-from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.formats.graded import GradedFile, GradingTerms, graded
 from dh_grader.grading import Submission, grade
 from dh_grader.submissions import of_one
 from dh_grader.submissions.documents import changing_remark

@@ -9,7 +9,7 @@ import openpyxl
 import pytest
 import xlwt
 from dh_grader.catalogue import Exercise
-from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.formats.graded import GradingTerms, graded
 from dh_grader.grading import Submission, Verdict, grade
 from dh_grader.submissions import of_one
 from dh_grader.submissions.files import all_handed_in

@@ -12,8 +12,7 @@ import pytest
 import xlsxwriter
 from dh_grader.catalogue import FeedbackLevel
 from dh_grader.formats import report_format
-from dh_grader.formats.graded import GradedSubmission, Setting
-from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.formats.graded import GradedSubmission, GradingTerms, Setting, graded
 from dh_grader.formats.worksheets import grade_of
 from dh_grader.submissions import of_one
 from dh_grader.submissions.files import all_handed_in

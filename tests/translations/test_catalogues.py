@@ -12,8 +12,7 @@ import pytest
 from babel.messages.catalog import Catalog
 from babel.messages.mofile import write_mo
 from babel.messages.pofile import read_po
-from dh_grader.translations import DOMAINS
-from dh_grader.translations.catalogues import compiled_catalogue, read_catalogue
+from dh_grader.translations import DOMAINS, compiled_catalogue, read_catalogue
 
 from tests.translations.catalogues import (
     CODES,
@@ -190,7 +189,7 @@ def test_a_catalogue_is_read_where_nothing_can_be_written(
 def test_several_processes_compile_a_catalogue_at_once(tmp_path: Path) -> None:
     (tmp_path / "sentences.po").write_bytes((FOLDER / "de" / "sentences.po").read_bytes())
     ask = (
-        "import sys, pathlib; from dh_grader.translations.catalogues import read_catalogue;"
+        "import sys, pathlib; from dh_grader.translations import read_catalogue;"
         "sys.stdin.readline(); found = read_catalogue(pathlib.Path(sys.argv[1]), 'sentences');"
         "print(found.gettext('The key was revoked.'))"
     )

@@ -20,8 +20,7 @@ from dh_grader.expressions import reader, words
 from dh_grader.expressions import reader as decimals
 from dh_grader.expressions import reader as reading_work
 from dh_grader.formats import report_format
-from dh_grader.formats.graded import Setting
-from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.formats.graded import GradingTerms, Setting, graded
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.submissions import of_one
 from dh_grader.submissions.files import all_handed_in

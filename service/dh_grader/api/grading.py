@@ -97,475 +97,6 @@ if TYPE_CHECKING:
     from dh_grader.store.attempt_store import AttemptStore
 
 
-# --- The route that makes tokens for learners
-
-
-def tokens_routes(catalogue: Catalogue, access: Access) -> APIRouter:
-    """Return the route that makes tokens for learners."""
-    router = APIRouter(prefix="/v1", tags=["tokens"])
-
-    @router.post(
-        "/tokens",
-        operation_id="createToken",
-        summary="Make a token for a learner",
-        response_description="The token.",
-        status_code=HTTPStatus.CREATED,
-        **posting(
-            TokenRequest,
-            TokenResponse,
-            "token",
-            HTTPStatus.NOT_FOUND,
-            success=HTTPStatus.CREATED,
-        ),
-    )
-    async def create_token(request: Request) -> Response:
-        """Make a token. A learner's browser grades, records and reads its own attempts with it.
-
-        A page with a token calls the service without showing the key. The token has no
-        right that its key does not have, and expires no later than the key. The service
-        does not store it.
-        """
-        caller = access.caller(request)
-        body = await read_body(TokenRequest, request)
-        exercises = caller.exercises
-        if body.exercises is not None:
-            require_exercises(catalogue, body.exercises, "exercises")
-            for exercise in body.exercises:
-                require_reach(caller, exercise)
-            exercises = frozenset(body.exercises)
-        # A token has no fractions of seconds.
-        now = datetime.now(UTC).replace(microsecond=0)
-        expires_at = now + timedelta(minutes=body.minutes)
-        learner = replace(caller, learner=body.learner, exercises=exercises)
-        token = access.token(learner, expires_at)
-        answer = TokenResponse(token=token, learner=body.learner, expires_at=expires_at)
-        return Response(
-            answer.model_dump_json(),
-            HTTPStatus.CREATED,
-            {"Cache-Control": "no-store"},
-            "application/json",
-        )
-
-    return router
-
-
-# --- The routes that show model solutions: to tutors, and to students with full marks
-
-
-_SOLUTION: Final = TypeAdapter(ModelSolution)
-
-
-class SolvedExercises:
-    """The model solutions of exercises, memoized."""
-
-    def __init__(self) -> None:
-        self._memoized = MemoizedResults()
-
-    async def answer(self, exercise: Exercise) -> Response:
-        """Return the model solution of an exercise as JSON."""
-        key = (exercise.id, exercise.version)
-        content = await self._memoized.of(key, partial(_solved, exercise))
-        return Response(content, 200, {"Cache-Control": "no-store"}, "application/json")
-
-
-def _solved(exercise: Exercise) -> bytes:
-    return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
-
-
-def solutions_routes(
-    catalogue: Catalogue, access: Access, practice: PracticeGate, own: OwnVariants
-) -> APIRouter:
-    """Return the routes that show model solutions."""
-    router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
-    solutions = SolvedExercises()
-
-    @router.get(
-        "/{exercise_id}/solution",
-        operation_id="getSolution",
-        summary="Show the model solution",
-        response_description="The model solution.",
-        responses=answers(
-            ModelSolution, "solution-response", HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
-        ),
-        openapi_extra=MAY_NEED_KEY,
-    )
-    async def show_solution(exercise_id: ExerciseId) -> Response:
-        """Show the right answer to each part, each link transform and the pose, for tutors."""
-        return await solutions.answer(exercise_or_404(catalogue, exercise_id))
-
-    @router.post(
-        "/{exercise_id}/solution",
-        operation_id="getSolutionForRightAnswers",
-        summary="Show the model solution for right answers",
-        response_description="The model solution.",
-        **of_assignment(
-            posting(GradeRequest, ModelSolution, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
-        ),
-    )
-    async def show_solution_for_right_answers(
-        exercise_id: ExerciseId, request: Request
-    ) -> Response:
-        """Show the model solution to a student whose answers have full marks in all parts.
-
-        An exercise that counts has none: its assignment says when its solution is shown.
-        """
-        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
-        await practice.check_solution(access.caller(request), exercise.plain_id)
-        if exercise.attempts != AttemptsSpec():
-            raise _not_shown()
-        body = await read_body(GradeRequest, request)
-        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-        submission = body.submission(FeedbackLevel.SCORE)
-        if not await run_in_turns(request, partial(is_all_right, exercise, submission)):
-            raise _not_shown()
-        return await solutions.answer(exercise)
-
-    return router
-
-
-def _not_shown() -> ProblemError:
-    return ProblemError(
-        HTTPStatus.FORBIDDEN,
-        say("The solution is shown after full marks, and not for exercises that count."),
-        "solution-not-shown",
-        say("The solution is not shown"),
-    )
-
-
-# --- The page /docs, which documents the HTTP interface
-#
-# Swagger UI draws the page. The service has a copy of Swagger UI, so the page works without the
-# internet.
-
-
-FOLDER: Final = Path(__file__).parent / "swagger_ui"
-SCRIPT: Final = "swagger-ui-5.35.0.js"
-STYLE: Final = "swagger-ui-5.35.0.css"
-START: Final = "start.js"
-
-# The media type and caching of each file. A file with a version in its name never changes.
-_FOR_EVER: Final = "public, max-age=31536000, immutable"
-_FILES: Final = {
-    SCRIPT: ("text/javascript", _FOR_EVER),
-    STYLE: ("text/css", _FOR_EVER),
-    START: ("text/javascript", "no-cache"),
-}
-
-
-def reference_routes() -> APIRouter:
-    """Return the route that serves the files for the page /docs."""
-    router = APIRouter(include_in_schema=False)
-    contents = {name: (FOLDER / name).read_bytes() for name in _FILES}
-
-    @router.get("/docs/{name}")
-    async def file(name: str) -> responses_Response:
-        """Return a script or style of the page."""
-        if name not in _FILES:
-            raise ProblemError(HTTPStatus.NOT_FOUND, "The page /docs has no such file.")
-        media_type, caching = _FILES[name]
-        headers = {"Cache-Control": caching}
-        return ChunkedResponse(contents[name], headers=headers, media_type=media_type)
-
-    return router
-
-
-# --- The route that gives students generated robots to practise with
-
-
-_LEVEL = Query(ge=1, le=4, description="From 1, robots with two or three joints, to 4.")
-_CONVENTION = Query(description="The DH convention of the table.")
-_AFTER = Query(
-    max_length=60,
-    description="The id of the last robot. Robots that are dealt after one another are not alike.",
-)
-_FAVOUR = Query(description="A situation that the robot should have.")
-
-
-def practice_routes(catalogue: Catalogue) -> APIRouter:
-    """Return the route that chooses a generated robot.
-
-    ``catalogue`` contains all generated robots as exercises.
-    """
-    router = APIRouter(prefix="/v1/practice", tags=["exercises"])
-
-    @router.get(
-        "/next",
-        operation_id="getNextRobot",
-        summary="Deal a generated robot",
-        response_model=PracticeRobot,
-        response_description="The robot.",
-        responses=refusals(HTTPStatus.UNPROCESSABLE_ENTITY),
-        openapi_extra=MAY_NEED_KEY,
-    )
-    async def deal(
-        request: Request,
-        level: Annotated[int, _LEVEL] = 1,
-        convention: Annotated[Convention, _CONVENTION] = Convention.STANDARD,
-        after: Annotated[str | None, _AFTER] = None,
-        favour: Annotated[Situation | None, _FAVOUR] = None,
-    ) -> PracticeRobot:
-        """Deal a robot to practise with: any one, or the next one after another.
-
-        An id always means the same robot. Robots are not recorded and not in the list of
-        exercises; show, draw and grade them by their ids.
-        """
-        last = None if after is None else practice_id(after)
-        if after is not None and last is None:
-            message = say("This is not the id of a practice robot.")
-            detail = {"type": "unknown", "loc": ("after",), "msg": message}
-            raise invalid([detail])
-        chosen = None
-        for chosen in candidates(level, convention, last):
-            # A look takes a millisecond and a grading more, so others work in between.
-            await give_way(request)
-            if favour is not None and not has_situation(chosen, favour):
-                continue
-            if await run_in_turns(request, partial(asks_enough, catalogue[str(chosen)])):
-                break
-        assert chosen is not None
-        return PracticeRobot(
-            id=str(chosen), level=level, convention=convention, difficulty=difficulty_of(chosen)
-        )
-
-    return router
-
-
-# --- The routes for hints, for pictures of DH rules, and for alternatives to a correct table
-
-
-_RULE = fastapi_Path(max_length=60, description="The name of a rule.", examples=["link_twist"])
-
-
-def hints_routes(
-    catalogue: Catalogue,
-    feedback: FeedbackLevel,
-    access: Access,
-    practice: PracticeGate,
-    own: OwnVariants,
-) -> APIRouter:
-    """Return the routes for hints; ``feedback`` is the highest feedback level of reports."""
-    router = APIRouter(prefix="/v1", tags=["grading"])
-    pictures = MemoizedResults()
-
-    @router.post(
-        "/exercises/{exercise_id}/hints",
-        operation_id="getHint",
-        summary="Get a hint for a message of a report",
-        response_description="One step of the hint.",
-        **in_languages(
-            of_assignment(
-                posting(HintRequest, Hint, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
-            )
-        ),
-    )
-    async def hint(exercise_id: ExerciseId, request: Request) -> Response:
-        """Return a step of the hint for a message on a mistake. Nothing is recorded.
-
-        The body has the answers that got the message, its code and its place, and the step: what
-        to look at, the rule with its picture, or the rule on this row. A hint has no value of the
-        answer. Messages on unreadable or empty entries have no hints.
-        """
-        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
-        await practice.check_hints(access.caller(request), exercise)
-        body = await read_body(HintRequest, request)
-        found = await run_in_turns(request, partial(hint_for, exercise, body, feedback))
-        language = language_of(request)
-        content = found.model_dump_json(exclude_none=True, context=language.translation)
-        return told_json(content, language)
-
-    @router.post(
-        "/exercises/{exercise_id}/choices",
-        operation_id="getFrameChoices",
-        summary="Show other valid choices of frames",
-        response_description="Other valid tables.",
-        **in_languages(
-            of_assignment(
-                posting(
-                    ChoicesRequest, FrameChoices, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
-                )
-            )
-        ),
-    )
-    async def choices(exercise_id: ExerciseId, request: Request) -> Response:
-        """Return up to three other tables that are as right as a right table.
-
-        They are made from that table: in each, one frame is turned by a half turn, or its origin
-        lies elsewhere on its z axis. For a table that is not right there are none.
-        """
-        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
-        await practice.check(access.caller(request), exercise.plain_id)
-        body = await read_body(ChoicesRequest, request)
-        found = await run_in_turns(request, partial(choices_for, exercise, body))
-        language = language_of(request)
-        return told_json(found.model_dump_json(context=language.translation), language)
-
-    @router.get(
-        "/rules/{convention}/{rule}.svg",
-        operation_id="getRulePicture",
-        summary="Draw the picture of a rule",
-        response_class=SvgResponse,
-        response_description="The drawing.",
-        responses=refusals(HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY),
-    )
-    async def draw_rule(
-        convention: Annotated[Convention, fastapi_Path(description="The convention.")],
-        rule: Annotated[str, _RULE],
-        theme: Annotated[Theme, Query(description="The colours, as of a figure.")] = Theme.AUTO,
-    ) -> Response:
-        """Draw two frames, and the lengths and angles between them that a rule is about."""
-        name = next((each for each in RULES if each == rule and RULES[each].pictured), None)
-        if name is None:
-            raise ProblemError(HTTPStatus.NOT_FOUND, "There is no picture of such a rule.")
-        content = await pictures.of(
-            (name, convention, theme), partial(_drawn, name, convention, theme)
-        )
-        return SvgResponse(content, headers=figure_headers(theme))
-
-    return router
-
-
-def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint:
-    """Return the requested step of a hint. Raises ProblemError."""
-    require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-    require_parts(exercise, [(body.part, ("part",))])
-    submission = body.submission(least(exercise.feedback, most, FeedbackLevel.HINTS))
-    if submission.feedback is not FeedbackLevel.HINTS:
-        raise ProblemError(
-            HTTPStatus.FORBIDDEN,
-            say("Reports on this exercise have no messages, and so no hints."),
-            "no-hints",
-            say("There are no hints"),
-        )
-    topic = Topic(body.part, body.code, body.row, body.cell)
-    step = None
-    # Otherwise nothing is read.
-    if may_have_hints(topic, submission.answers):
-        told = report_on_part(exercise, submission, topic.part)
-        step = hint_step(exercise, topic, body.step, submission.answers, told)
-    if step is None:
-        raise ProblemError(
-            HTTPStatus.NOT_FOUND,
-            say("The report on these answers has no such message, or there is no hint for it."),
-            "no-hint",
-            say("There is no hint"),
-        )
-    picture = step.rule and f"v1/rules/{step.convention}/{step.rule}.svg"
-    lesson = step.screen and f"learn-dh?convention={step.convention}#{step.screen}"
-    return Hint(
-        step=body.step,
-        steps=STEPS,
-        title=step.title,
-        text=step.text,
-        picture=picture or None,
-        lesson=lesson or None,
-    )
-
-
-def choices_for(exercise: Exercise, body: ChoicesRequest) -> FrameChoices:
-    """Return alternatives to a submitted table if it is correct. Raises ProblemError."""
-    require_parts(exercise, [(body.part, ("part",))])
-    part = exercise.part(body.part)
-    found = []
-    if isinstance(part, DhTableSpec):
-        rows = [row.model_dump() for row in body.rows]
-        found = other_choices(exercise, part, rows, Submission({}, body.angle_unit))
-    tables = [
-        ValidTable(change=each.change, rows=[TableRow(**row) for row in each.rows])
-        for each in found
-    ]
-    return FrameChoices(choices=tables)
-
-
-def _drawn(rule: RuleName, convention: Convention, theme: Theme) -> bytes:
-    return rule_picture(rule, convention, theme).encode()
-
-
-# --- The routes for health checks
-
-
-# The seconds that the database may take to answer.
-_PATIENCE: Final = 3.0
-
-
-class Alive(BaseModel):
-    """The answer of a process that is alive."""
-
-    status: Literal["ok"] = "ok"
-
-
-class Ready(BaseModel):
-    """The answer of a service with exercises."""
-
-    status: Literal["ready"] = "ready"
-    exercises: int
-
-
-def health_routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
-    """Return the routes for health checks."""
-    router = APIRouter(tags=["health"])
-    checks = None if store is None else _Checks(store)
-
-    @router.get(
-        "/healthz",
-        operation_id="getLiveness",
-        summary="Is the service alive?",
-        response_description="It answers.",
-    )
-    async def alive() -> Alive:
-        """Answer if the process is alive."""
-        return Alive()
-
-    @router.get(
-        "/readyz",
-        operation_id="getReadiness",
-        summary="Is the service ready?",
-        response_description="It is ready.",
-        responses=refusals(HTTPStatus.SERVICE_UNAVAILABLE),
-    )
-    async def ready() -> Ready:
-        """Say whether the service can grade submissions and, if it has a database, record them."""
-        exercises = len(catalogue)
-        if not exercises:
-            raise _no_exercises()
-        if checks is not None:
-            try:
-                await checks.passed()
-            except StoreDownError as error:
-                raise store_down(say("The database does not answer.")) from error
-        return Ready(exercises=exercises)
-
-    return router
-
-
-class _Checks:
-    # Checks the database once at a time; requests that arrive during a check share it.
-    def __init__(self, store: "AttemptStore") -> None:
-        self._store = store
-        self._under_way: asyncio.Task[None] | None = None
-
-    async def passed(self) -> None:
-        if self._under_way is None or self._under_way.done():
-            self._under_way = asyncio.create_task(self._check())
-        # If one client goes away, the others still wait for the check.
-        await asyncio.shield(self._under_way)
-
-    async def _check(self) -> None:
-        try:
-            await asyncio.wait_for(self._store.check(), _PATIENCE)
-        except TimeoutError as error:
-            raise StoreDownError(f"the database does not react within {_PATIENCE:g} s") from error
-
-
-def _no_exercises() -> ProblemError:
-    return ProblemError(
-        HTTPStatus.SERVICE_UNAVAILABLE,
-        "No exercise is loaded.",
-        "no-exercises",
-        "The service has nothing to grade",
-        headers={"Retry-After": "5"},
-    )
-
-
 # --- The routes that grade submissions
 
 
@@ -740,3 +271,472 @@ def exercises_routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVari
         }
 
     return router
+
+
+# --- The routes for hints, for pictures of DH rules, and for alternatives to a correct table
+
+
+_RULE = fastapi_Path(max_length=60, description="The name of a rule.", examples=["link_twist"])
+
+
+def hints_routes(
+    catalogue: Catalogue,
+    feedback: FeedbackLevel,
+    access: Access,
+    practice: PracticeGate,
+    own: OwnVariants,
+) -> APIRouter:
+    """Return the routes for hints; ``feedback`` is the highest feedback level of reports."""
+    router = APIRouter(prefix="/v1", tags=["grading"])
+    pictures = MemoizedResults()
+
+    @router.post(
+        "/exercises/{exercise_id}/hints",
+        operation_id="getHint",
+        summary="Get a hint for a message of a report",
+        response_description="One step of the hint.",
+        **in_languages(
+            of_assignment(
+                posting(HintRequest, Hint, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
+            )
+        ),
+    )
+    async def hint(exercise_id: ExerciseId, request: Request) -> Response:
+        """Return a step of the hint for a message on a mistake. Nothing is recorded.
+
+        The body has the answers that got the message, its code and its place, and the step: what
+        to look at, the rule with its picture, or the rule on this row. A hint has no value of the
+        answer. Messages on unreadable or empty entries have no hints.
+        """
+        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
+        await practice.check_hints(access.caller(request), exercise)
+        body = await read_body(HintRequest, request)
+        found = await run_in_turns(request, partial(hint_for, exercise, body, feedback))
+        language = language_of(request)
+        content = found.model_dump_json(exclude_none=True, context=language.translation)
+        return told_json(content, language)
+
+    @router.post(
+        "/exercises/{exercise_id}/choices",
+        operation_id="getFrameChoices",
+        summary="Show other valid choices of frames",
+        response_description="Other valid tables.",
+        **in_languages(
+            of_assignment(
+                posting(
+                    ChoicesRequest, FrameChoices, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
+                )
+            )
+        ),
+    )
+    async def choices(exercise_id: ExerciseId, request: Request) -> Response:
+        """Return up to three other tables that are as right as a right table.
+
+        They are made from that table: in each, one frame is turned by a half turn, or its origin
+        lies elsewhere on its z axis. For a table that is not right there are none.
+        """
+        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
+        await practice.check(access.caller(request), exercise.plain_id)
+        body = await read_body(ChoicesRequest, request)
+        found = await run_in_turns(request, partial(choices_for, exercise, body))
+        language = language_of(request)
+        return told_json(found.model_dump_json(context=language.translation), language)
+
+    @router.get(
+        "/rules/{convention}/{rule}.svg",
+        operation_id="getRulePicture",
+        summary="Draw the picture of a rule",
+        response_class=SvgResponse,
+        response_description="The drawing.",
+        responses=refusals(HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY),
+    )
+    async def draw_rule(
+        convention: Annotated[Convention, fastapi_Path(description="The convention.")],
+        rule: Annotated[str, _RULE],
+        theme: Annotated[Theme, Query(description="The colours, as of a figure.")] = Theme.AUTO,
+    ) -> Response:
+        """Draw two frames, and the lengths and angles between them that a rule is about."""
+        name = next((each for each in RULES if each == rule and RULES[each].pictured), None)
+        if name is None:
+            raise ProblemError(HTTPStatus.NOT_FOUND, "There is no picture of such a rule.")
+        content = await pictures.of(
+            (name, convention, theme), partial(_drawn, name, convention, theme)
+        )
+        return SvgResponse(content, headers=figure_headers(theme))
+
+    return router
+
+
+def hint_for(exercise: Exercise, body: HintRequest, most: FeedbackLevel) -> Hint:
+    """Return the requested step of a hint. Raises ProblemError."""
+    require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
+    require_parts(exercise, [(body.part, ("part",))])
+    submission = body.submission(least(exercise.feedback, most, FeedbackLevel.HINTS))
+    if submission.feedback is not FeedbackLevel.HINTS:
+        raise ProblemError(
+            HTTPStatus.FORBIDDEN,
+            say("Reports on this exercise have no messages, and so no hints."),
+            "no-hints",
+            say("There are no hints"),
+        )
+    topic = Topic(body.part, body.code, body.row, body.cell)
+    step = None
+    # Otherwise nothing is read.
+    if may_have_hints(topic, submission.answers):
+        told = report_on_part(exercise, submission, topic.part)
+        step = hint_step(exercise, topic, body.step, submission.answers, told)
+    if step is None:
+        raise ProblemError(
+            HTTPStatus.NOT_FOUND,
+            say("The report on these answers has no such message, or there is no hint for it."),
+            "no-hint",
+            say("There is no hint"),
+        )
+    picture = step.rule and f"v1/rules/{step.convention}/{step.rule}.svg"
+    lesson = step.screen and f"learn-dh?convention={step.convention}#{step.screen}"
+    return Hint(
+        step=body.step,
+        steps=STEPS,
+        title=step.title,
+        text=step.text,
+        picture=picture or None,
+        lesson=lesson or None,
+    )
+
+
+def choices_for(exercise: Exercise, body: ChoicesRequest) -> FrameChoices:
+    """Return alternatives to a submitted table if it is correct. Raises ProblemError."""
+    require_parts(exercise, [(body.part, ("part",))])
+    part = exercise.part(body.part)
+    found = []
+    if isinstance(part, DhTableSpec):
+        rows = [row.model_dump() for row in body.rows]
+        found = other_choices(exercise, part, rows, Submission({}, body.angle_unit))
+    tables = [
+        ValidTable(change=each.change, rows=[TableRow(**row) for row in each.rows])
+        for each in found
+    ]
+    return FrameChoices(choices=tables)
+
+
+def _drawn(rule: RuleName, convention: Convention, theme: Theme) -> bytes:
+    return rule_picture(rule, convention, theme).encode()
+
+
+# --- The route that gives students generated robots to practise with
+
+
+_LEVEL = Query(ge=1, le=4, description="From 1, robots with two or three joints, to 4.")
+_CONVENTION = Query(description="The DH convention of the table.")
+_AFTER = Query(
+    max_length=60,
+    description="The id of the last robot. Robots that are dealt after one another are not alike.",
+)
+_FAVOUR = Query(description="A situation that the robot should have.")
+
+
+def practice_routes(catalogue: Catalogue) -> APIRouter:
+    """Return the route that chooses a generated robot.
+
+    ``catalogue`` contains all generated robots as exercises.
+    """
+    router = APIRouter(prefix="/v1/practice", tags=["exercises"])
+
+    @router.get(
+        "/next",
+        operation_id="getNextRobot",
+        summary="Deal a generated robot",
+        response_model=PracticeRobot,
+        response_description="The robot.",
+        responses=refusals(HTTPStatus.UNPROCESSABLE_ENTITY),
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def deal(
+        request: Request,
+        level: Annotated[int, _LEVEL] = 1,
+        convention: Annotated[Convention, _CONVENTION] = Convention.STANDARD,
+        after: Annotated[str | None, _AFTER] = None,
+        favour: Annotated[Situation | None, _FAVOUR] = None,
+    ) -> PracticeRobot:
+        """Deal a robot to practise with: any one, or the next one after another.
+
+        An id always means the same robot. Robots are not recorded and not in the list of
+        exercises; show, draw and grade them by their ids.
+        """
+        last = None if after is None else practice_id(after)
+        if after is not None and last is None:
+            message = say("This is not the id of a practice robot.")
+            detail = {"type": "unknown", "loc": ("after",), "msg": message}
+            raise invalid([detail])
+        chosen = None
+        for chosen in candidates(level, convention, last):
+            # A look takes a millisecond and a grading more, so others work in between.
+            await give_way(request)
+            if favour is not None and not has_situation(chosen, favour):
+                continue
+            if await run_in_turns(request, partial(asks_enough, catalogue[str(chosen)])):
+                break
+        assert chosen is not None
+        return PracticeRobot(
+            id=str(chosen), level=level, convention=convention, difficulty=difficulty_of(chosen)
+        )
+
+    return router
+
+
+# --- The routes that show model solutions: to tutors, and to students with full marks
+
+
+_SOLUTION: Final = TypeAdapter(ModelSolution)
+
+
+class SolvedExercises:
+    """The model solutions of exercises, memoized."""
+
+    def __init__(self) -> None:
+        self._memoized = MemoizedResults()
+
+    async def answer(self, exercise: Exercise) -> Response:
+        """Return the model solution of an exercise as JSON."""
+        key = (exercise.id, exercise.version)
+        content = await self._memoized.of(key, partial(_solved, exercise))
+        return Response(content, 200, {"Cache-Control": "no-store"}, "application/json")
+
+
+def _solved(exercise: Exercise) -> bytes:
+    return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
+
+
+def solutions_routes(
+    catalogue: Catalogue, access: Access, practice: PracticeGate, own: OwnVariants
+) -> APIRouter:
+    """Return the routes that show model solutions."""
+    router = APIRouter(prefix="/v1/exercises", tags=["solutions"])
+    solutions = SolvedExercises()
+
+    @router.get(
+        "/{exercise_id}/solution",
+        operation_id="getSolution",
+        summary="Show the model solution",
+        response_description="The model solution.",
+        responses=answers(
+            ModelSolution, "solution-response", HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND
+        ),
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def show_solution(exercise_id: ExerciseId) -> Response:
+        """Show the right answer to each part, each link transform and the pose, for tutors."""
+        return await solutions.answer(exercise_or_404(catalogue, exercise_id))
+
+    @router.post(
+        "/{exercise_id}/solution",
+        operation_id="getSolutionForRightAnswers",
+        summary="Show the model solution for right answers",
+        response_description="The model solution.",
+        **of_assignment(
+            posting(GradeRequest, ModelSolution, None, HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND)
+        ),
+    )
+    async def show_solution_for_right_answers(
+        exercise_id: ExerciseId, request: Request
+    ) -> Response:
+        """Show the model solution to a student whose answers have full marks in all parts.
+
+        An exercise that counts has none: its assignment says when its solution is shown.
+        """
+        exercise = await own.of(request, exercise_or_404(catalogue, exercise_id))
+        await practice.check_solution(access.caller(request), exercise.plain_id)
+        if exercise.attempts != AttemptsSpec():
+            raise _not_shown()
+        body = await read_body(GradeRequest, request)
+        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
+        submission = body.submission(FeedbackLevel.SCORE)
+        if not await run_in_turns(request, partial(is_all_right, exercise, submission)):
+            raise _not_shown()
+        return await solutions.answer(exercise)
+
+    return router
+
+
+def _not_shown() -> ProblemError:
+    return ProblemError(
+        HTTPStatus.FORBIDDEN,
+        say("The solution is shown after full marks, and not for exercises that count."),
+        "solution-not-shown",
+        say("The solution is not shown"),
+    )
+
+
+# --- The route that makes tokens for learners
+
+
+def tokens_routes(catalogue: Catalogue, access: Access) -> APIRouter:
+    """Return the route that makes tokens for learners."""
+    router = APIRouter(prefix="/v1", tags=["tokens"])
+
+    @router.post(
+        "/tokens",
+        operation_id="createToken",
+        summary="Make a token for a learner",
+        response_description="The token.",
+        status_code=HTTPStatus.CREATED,
+        **posting(
+            TokenRequest,
+            TokenResponse,
+            "token",
+            HTTPStatus.NOT_FOUND,
+            success=HTTPStatus.CREATED,
+        ),
+    )
+    async def create_token(request: Request) -> Response:
+        """Make a token. A learner's browser grades, records and reads its own attempts with it.
+
+        A page with a token calls the service without showing the key. The token has no
+        right that its key does not have, and expires no later than the key. The service
+        does not store it.
+        """
+        caller = access.caller(request)
+        body = await read_body(TokenRequest, request)
+        exercises = caller.exercises
+        if body.exercises is not None:
+            require_exercises(catalogue, body.exercises, "exercises")
+            for exercise in body.exercises:
+                require_reach(caller, exercise)
+            exercises = frozenset(body.exercises)
+        # A token has no fractions of seconds.
+        now = datetime.now(UTC).replace(microsecond=0)
+        expires_at = now + timedelta(minutes=body.minutes)
+        learner = replace(caller, learner=body.learner, exercises=exercises)
+        token = access.token(learner, expires_at)
+        answer = TokenResponse(token=token, learner=body.learner, expires_at=expires_at)
+        return Response(
+            answer.model_dump_json(),
+            HTTPStatus.CREATED,
+            {"Cache-Control": "no-store"},
+            "application/json",
+        )
+
+    return router
+
+
+# --- The page /docs, which documents the HTTP interface
+#
+# Swagger UI draws the page. The service has a copy of Swagger UI, so the page works without the
+# internet.
+
+
+FOLDER: Final = Path(__file__).parent / "swagger_ui"
+SCRIPT: Final = "swagger-ui-5.35.0.js"
+STYLE: Final = "swagger-ui-5.35.0.css"
+START: Final = "start.js"
+
+# The media type and caching of each file. A file with a version in its name never changes.
+_FOR_EVER: Final = "public, max-age=31536000, immutable"
+_FILES: Final = {
+    SCRIPT: ("text/javascript", _FOR_EVER),
+    STYLE: ("text/css", _FOR_EVER),
+    START: ("text/javascript", "no-cache"),
+}
+
+
+def reference_routes() -> APIRouter:
+    """Return the route that serves the files for the page /docs."""
+    router = APIRouter(include_in_schema=False)
+    contents = {name: (FOLDER / name).read_bytes() for name in _FILES}
+
+    @router.get("/docs/{name}")
+    async def file(name: str) -> responses_Response:
+        """Return a script or style of the page."""
+        if name not in _FILES:
+            raise ProblemError(HTTPStatus.NOT_FOUND, "The page /docs has no such file.")
+        media_type, caching = _FILES[name]
+        headers = {"Cache-Control": caching}
+        return ChunkedResponse(contents[name], headers=headers, media_type=media_type)
+
+    return router
+
+
+# --- The routes for health checks
+
+
+# The seconds that the database may take to answer.
+_PATIENCE: Final = 3.0
+
+
+class Alive(BaseModel):
+    """The answer of a process that is alive."""
+
+    status: Literal["ok"] = "ok"
+
+
+class Ready(BaseModel):
+    """The answer of a service with exercises."""
+
+    status: Literal["ready"] = "ready"
+    exercises: int
+
+
+def health_routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRouter:
+    """Return the routes for health checks."""
+    router = APIRouter(tags=["health"])
+    checks = None if store is None else _Checks(store)
+
+    @router.get(
+        "/healthz",
+        operation_id="getLiveness",
+        summary="Is the service alive?",
+        response_description="It answers.",
+    )
+    async def alive() -> Alive:
+        """Answer if the process is alive."""
+        return Alive()
+
+    @router.get(
+        "/readyz",
+        operation_id="getReadiness",
+        summary="Is the service ready?",
+        response_description="It is ready.",
+        responses=refusals(HTTPStatus.SERVICE_UNAVAILABLE),
+    )
+    async def ready() -> Ready:
+        """Say whether the service can grade submissions and, if it has a database, record them."""
+        exercises = len(catalogue)
+        if not exercises:
+            raise _no_exercises()
+        if checks is not None:
+            try:
+                await checks.passed()
+            except StoreDownError as error:
+                raise store_down(say("The database does not answer.")) from error
+        return Ready(exercises=exercises)
+
+    return router
+
+
+class _Checks:
+    # Checks the database once at a time; requests that arrive during a check share it.
+    def __init__(self, store: "AttemptStore") -> None:
+        self._store = store
+        self._under_way: asyncio.Task[None] | None = None
+
+    async def passed(self) -> None:
+        if self._under_way is None or self._under_way.done():
+            self._under_way = asyncio.create_task(self._check())
+        # If one client goes away, the others still wait for the check.
+        await asyncio.shield(self._under_way)
+
+    async def _check(self) -> None:
+        try:
+            await asyncio.wait_for(self._store.check(), _PATIENCE)
+        except TimeoutError as error:
+            raise StoreDownError(f"the database does not react within {_PATIENCE:g} s") from error
+
+
+def _no_exercises() -> ProblemError:
+    return ProblemError(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        "No exercise is loaded.",
+        "no-exercises",
+        "The service has nothing to grade",
+        headers={"Retry-After": "5"},
+    )

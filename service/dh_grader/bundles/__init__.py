@@ -20,7 +20,7 @@ from typing import Any, Final
 
 from dh_grader.catalogue import Exercise, load_exercise, shipped_folder
 from dh_grader.submissions import Assignment
-from dh_grader.translations.catalogues import compiled_catalogue
+from dh_grader.translations import compiled_catalogue
 from dh_grader.typeset import statement_html
 from dh_grader.variants import hidden_variant, seed_of
 

@@ -53,12 +53,13 @@ from dh_grader.formats.documents import comment
 from dh_grader.formats.graded import (
     Document,
     GradedSubmission,
+    GradingTerms,
     ReportFormat,
     Setting,
     UnusableSettingError,
     Visibility,
+    graded,
 )
-from dh_grader.formats.local_grading import GradingTerms, graded
 from dh_grader.formats.texts import visible
 from dh_grader.formats.worksheets import (
     MAX_WORKSHEET,

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Final
 from dh_grader.cli.options import installed_exercise
 from dh_grader.cli.running import mapped_in_threads
 from dh_grader.cli.terminal import complain, give_up, spoken
-from dh_grader.formats.graded import GradedSubmission
-from dh_grader.formats.local_grading import GradingTerms
+from dh_grader.formats.graded import GradedSubmission, GradingTerms
 from dh_grader.formats.texts import visible
 from dh_grader.settings import Settings
 from dh_grader.submissions import (

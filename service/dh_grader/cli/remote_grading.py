@@ -12,8 +12,7 @@ from typing import Final
 from dh_grader.cli.terminal import complain, spoken
 from dh_grader.client import GraderClient, GraderClientError, RequestRefusedError
 from dh_grader.formats.documents import read_report, rendered
-from dh_grader.formats.graded import GradedSubmission
-from dh_grader.formats.local_grading import GradingTerms, graded, unknown_part
+from dh_grader.formats.graded import GradedSubmission, GradingTerms, graded, unknown_part
 from dh_grader.grading import Report, Submission
 from dh_grader.grading.report import rounded_points
 from dh_grader.regex import regex

@@ -22,8 +22,7 @@ from sqlalchemy import Connection, Engine, delete, func, or_, select, update
 from dh_grader.access import Secret
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.catalogue.schema_fields import least
-from dh_grader.formats.graded import GradedSubmission
-from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.formats.graded import GradedSubmission, GradingTerms, graded
 from dh_grader.formats.texts import points, points_in_words
 from dh_grader.lti.fetching import TIMEOUT, FetchError, TooLargeError, answer, content
 from dh_grader.lti.grade_services import (

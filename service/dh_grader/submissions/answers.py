@@ -32,6 +32,7 @@ from dh_grader.submissions.documents import (
     Excerpt,
     UnusableFileError,
     changing_remark,
+    decoded,
     is_prose,
     shortened,
 )
@@ -46,7 +47,6 @@ from dh_grader.submissions.files import (
     read_content,
     typed_in_receipt,
 )
-from dh_grader.submissions.typed_texts import decoded
 from dh_grader.translations import Sentence, joined, say
 
 if TYPE_CHECKING:

@@ -31,7 +31,9 @@ from dh_grader.submissions.documents import (
     UnusableFileError,
     around_rows,
     around_table,
+    decoded,
     pasted_from,
+    typed_text,
 )
 from dh_grader.submissions.office_files import (
     OFFICE_ENDINGS,
@@ -41,7 +43,6 @@ from dh_grader.submissions.office_files import (
     open_archive,
     unpacked,
 )
-from dh_grader.submissions.typed_texts import decoded, typed_text
 from dh_grader.translations import Sentence, say
 
 # --- Find the submissions in files, folders of a class, and folders of single students

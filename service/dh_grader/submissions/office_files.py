@@ -22,19 +22,17 @@ from xml.etree import ElementTree as ET
 from dh_grader.grading.reading.headers import QUANTITIES, is_wordy, read_header
 from dh_grader.regex import regex
 from dh_grader.submissions.documents import (
+    MAX_TAGS,
     Excerpt,
     UnusableFileError,
     around_table,
     local_name,
     notebook_excerpts,
     pasted_from,
-    written_formula,
-)
-from dh_grader.submissions.typed_texts import (
-    MAX_TAGS,
     struck_out,
     too_much,
     web_page,
+    written_formula,
 )
 from dh_grader.translations import say
 

@@ -81,9 +81,9 @@ from dh_grader.lti.registrations import (
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.tables import contexts, resource_links
 from dh_grader.translations import ENGLISH, Language, say
-from dh_grader.web.lti_landing import Landings
 from dh_grader.web.lti_pages import (
     Choice,
+    Landings,
     NotYetError,
     Offer,
     binding_page,

@@ -37,8 +37,7 @@ from dh_grader.catalogue.files import line_of, value_lines
 from dh_grader.expressions import AngleUnit
 from dh_grader.formats.class_page import is_output
 from dh_grader.formats.documents import comment
-from dh_grader.formats.graded import GradedSubmission
-from dh_grader.formats.local_grading import GradingTerms, graded
+from dh_grader.formats.graded import GradedSubmission, GradingTerms, graded
 from dh_grader.formats.texts import number, visible
 from dh_grader.formats.worksheets import Grade, UnusableWorksheetError, Worksheet, grade_of
 from dh_grader.importing import (

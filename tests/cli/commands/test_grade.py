@@ -204,7 +204,7 @@ def test_an_interrupted_run_leaves_no_incomplete_file(
             raise KeyboardInterrupt
         return grade(*arguments)
 
-    monkeypatch.setattr("dh_grader.formats.local_grading.grade", interrupted)
+    monkeypatch.setattr("dh_grader.formats.graded.grade", interrupted)
     result = table_only(run, answer, answer, "--format", "csv", "--output", target)
     assert result.exit_code != 0
     assert len(graded) == 2
