@@ -60,7 +60,7 @@ from dh_grader.submissions.files import (
     handed_in_out_of_place,
     leads_out,
 )
-from dh_grader.translations import ENGLISH, Language, Translation, say, told
+from dh_grader.translations import ENGLISH, Language, Translation, reason_of, say, told
 from dh_grader.typeset import statement_html
 
 # --- Make the text of an exercise file from a URDF file or a pasted DH table, for the editor
@@ -646,7 +646,7 @@ class ExerciseFolder:
                 self._write(self._written / f"{body.id}.toml", content, body)
             except OSError as error:
                 raise _exercise_folder_refused(
-                    say("The file cannot be saved: {reason}.", reason=str(error.strerror))
+                    say("The file cannot be saved: {reason}.", reason=reason_of(error))
                 ) from error
         return _mark(content)
 
