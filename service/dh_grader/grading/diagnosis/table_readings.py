@@ -663,7 +663,8 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
         order for order, misfit in zip(orders, found, strict=True) if misfit == min(found)
     ):
         intended = _reordered(order, table, other)
-        if any(_is_same(intended, one) for one in tried):
+        changes_to = (np.nan_to_num(np.abs(intended.values - one.values)) for one in tried)
+        if any(change.max() < INTENDED_CELL for change in changes_to):
             continue
         if len(tried) > _MAX_ORDERS:
             return
@@ -741,10 +742,6 @@ def _reordered_row(order: Order, one: StudentRow, two: StudentRow) -> StudentRow
         cells.append((row.entries[place], row.values[place]))
     entries, values = zip(*cells, strict=True)
     return StudentRow(entries, np.array(values))
-
-
-def _is_same(one: StudentTable, other: StudentTable) -> bool:
-    return bool(np.nan_to_num(np.abs(one.values - other.values)).max() < INTENDED_CELL)
 
 
 def _moved(intended: StudentTable, table: StudentTable) -> frozenset[CellIndex]:

@@ -347,8 +347,10 @@ def _shifted(named: str, late: bool, other: Convention | None) -> Finding:
     unlike="l2, 0, l1, q1 ↵ l3, 180deg, 0, q2 ↵ q3, l4, 0, 0 ↵ 0, 0, q4, 0",
 )
 def column_sign(table: WrittenTable) -> Iterator[RepairedTable]:
-    """One column has the wrong sign in all rows."""
-    # With or without its joint variables.
+    """One column has the wrong sign in all rows.
+
+    Its joint variables have the wrong sign, too, or not.
+    """
     for column in range(len(COLUMNS)):
         constants, motion = table.constants.copy(), table.motion.copy()
         constants[:, column] *= -1
@@ -373,8 +375,10 @@ def _turned_sign(column: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def columns_swapped(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two columns are exchanged: a with d, or α with θ."""
-    # The exchange is in all rows or in one, with or without the joint variables.
+    """Two columns are exchanged: a with d, or α with θ.
+
+    The exchange is in all rows or in one, with or without the joint variables.
+    """
     for one, other in ((A, D), (ALPHA, THETA)):
         still = np.abs(table.constants[:, one] - table.constants[:, other]).max(axis=-1) > 0
         moving = np.abs(table.motion[:, one] - table.motion[:, other]).max(axis=-1) > 0
@@ -418,8 +422,10 @@ def exchanged_columns(one: int, other: int) -> Finding:
     unlike={"2/d": "90°"},
 )
 def row_order(table: WrittenTable) -> Iterator[RepairedTable]:
-    """Two rows are exchanged, or the rows are in reverse order."""
-    # The last row may keep its place.
+    """Two rows are exchanged, or the rows are in reverse order.
+
+    The last row may keep its place.
+    """
     rows = range(len(table.constants))
     exchanges = [{i: j, j: i} for i, j in combinations(rows, 2)]
     orders = [[exchange.get(row, row) for row in rows] for exchange in exchanges]
