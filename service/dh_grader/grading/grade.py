@@ -1,4 +1,8 @@
-"""Grade a submission: read and judge each answer, and return a report."""
+"""Grade a submission: read and judge each answer, and return a report.
+
+This file knows in which order parts are graded, and when an answer follows from an earlier one. How
+an answer is read and judged is known to its kind (``kinds``), its points to ``marks.py``.
+"""
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
@@ -106,9 +110,9 @@ class GradedAnswers:
 def grade(exercise: Exercise, submission: Submission) -> Report:
     """Return the report on a submission.
 
-    Raises UnknownPartError for a part that does not exist.
+    The same submission gives the same report. Raises UnknownPartError for a part that does not
+    exist; no other submission raises an error.
     """
-    # Pure: the same submission gives the same report. No other submission raises an error.
     return graded_answers(exercise, submission).report(submission.feedback)
 
 
@@ -182,15 +186,14 @@ class _Graded:
 
     def carries(self, share: float, grading: Grading) -> bool:
         # True if later parts may be judged by this answer instead of by the reference. It must be
-        # an arm with the robot's joints (can_carry) and must have earned share of the points. These
-        # are counted as in the marking "content", even if the part has another marking.
-        if (
-            self.judged is None
-            or self.chain is None
-            or not has_earned(self.part, self.judged, share)
-        ):
-            return False
-        return can_carry(self.chain, grading)
+        # an arm with the robot's joints (``can_carry``) and must have earned ``share`` of the
+        # points. These are counted as in the marking "content", even if the part has another one.
+        return (
+            self.judged is not None
+            and self.chain is not None
+            and has_earned(self.part, self.judged, share)
+            and can_carry(self.chain, grading)
+        )
 
 
 def _graded(

@@ -1,6 +1,7 @@
-"""The part that is graded, its correct numbers, and the judgement of lists and matrices.
+"""The state of grading a submission, the correct numbers of a part, and how answers are judged.
 
-Right or wrong by numbers only: messages are made in ``diagnosis``.
+This file decides right or wrong by numbers only, for lists and matrices; tables are judged in
+``judging_table.py``. Messages on mistakes are made in ``diagnosis``.
 """
 
 import math
@@ -44,9 +45,9 @@ from dh_grader.grading.report import (
 )
 from dh_grader.kinematics import Matrices, Numbers, inverse
 
-# --- The part that is graded, and what its kind returns
+# --- The submission that is graded, and what the kind of a part returns
 #
-# Each kind is a file in kinds.
+# The kinds are in ``kinds``.
 
 
 # The number of entries that show how a student names symbols.
@@ -104,8 +105,10 @@ class Grading:
     def messages(
         self, findings: tuple[Finding, ...], places: tuple[Place, ...] = ()
     ) -> tuple[Feedback, ...]:
-        """Return the findings as messages about ``places`` (rows and cells)."""
-        # The feedback level later decides which messages are visible.
+        """Return the findings as messages about ``places`` (rows and cells).
+
+        The feedback level later decides which messages are visible.
+        """
         return tuple(finding.message(places, corrects=self.corrects) for finding in findings)
 
     def spelling(self, entries: Iterable[Entry]) -> Spelling:
@@ -133,8 +136,10 @@ class Grading:
         return lambda symbol: spelling().names.get(symbol, symbol)
 
     def unwritten(self, entries: Iterable[Entry]) -> frozenset[str]:
-        """Return the constants of the exercise that no entry contains."""
-        # A hint must not name them, because a missing constant may be the whole answer.
+        """Return the constants of the exercise that no entry contains.
+
+        A hint must not name them, because a missing constant may be the whole answer.
+        """
         read = (each.expression.symbols for each in entries if each.expression is not None)
         joints = (joint.variable for joint in self.exercise.joints)
         names = {variable.name for variable in self.exercise.variables}
@@ -245,9 +250,7 @@ class Judged:
 
 @dataclass(frozen=True, slots=True)
 class AnswerKind:
-    """The functions that read and judge a kind of answer."""
-
-    # Pure: the result depends only on part, answer and samples.
+    """The pure functions that read and judge a kind of answer."""
 
     # Takes a part and a JSON value, and returns the form that ``judge`` expects, or None for an
     # empty answer. Raises UnreadableAnswerError if nothing can be read.
@@ -285,8 +288,10 @@ class ComparedValues:
 
 
 def number_corrections(expected: Numbers, grading: Grading) -> list[Correction | None]:
-    """Return the expected values as numbers; None for a value that varies."""
-    # All are None if the report shows no corrections.
+    """Return the expected values as numbers; None for a value that varies.
+
+    All are None if the report shows no corrections.
+    """
     return [number_formula(each) if grading.corrects else None for each in expected]
 
 
@@ -367,9 +372,9 @@ def cell_report(
 ) -> CellReport:
     """Return the report on an entry; ``column`` is the label of the cell.
 
-    ``match`` is the result of comparing the entry.
+    ``match`` is the result of comparing the entry. If a wrong entry has no ``slip``, a message on
+    the part explains it.
     """
-    # If a wrong entry has no ``slip``, a message on the part explains it.
     verdict, findings = entry.verdict, entry.findings
     if match == _EXACT and not findings and entry.expression is not None and not grading.echo:
         return _right(column)
@@ -379,13 +384,10 @@ def cell_report(
         verdict = Verdict.INCORRECT
         if slip is not None:
             findings = (*findings, slip)
-    return CellReport(column, verdict, grading.messages(findings), _read(entry, grading))
-
-
-def _read(entry: Entry, grading: Grading) -> ReadEntry | None:
-    if not grading.echo or entry.expression is None:
-        return None
-    return ReadEntry(entry.expression.text(), entry.expression.latex())
+    read = None
+    if grading.echo and entry.expression is not None:
+        read = ReadEntry(entry.expression.text(), entry.expression.latex())
+    return CellReport(column, verdict, grading.messages(findings), read)
 
 
 # --- Compare a matrix with the expected matrix, entry by entry
@@ -420,8 +422,10 @@ class ExpectedMatrix:
 
 
 def formula_values(part: PartSpec, grading: Grading) -> Numbers | None:
-    """Return the values of the part's formulas in the exercise file, or None."""
-    # ``(rows, columns, SAMPLES)``. Without formulas, the correct answer follows from the robot.
+    """Return the values ``(rows, columns, SAMPLES)`` of the part's formulas in the exercise file.
+
+    Return None if there are none: the correct answer follows from the robot.
+    """
     grid = grading.exercise.formulas.get(part.id)
     return None if grid is None else grid_values(grid, grading.samples.values, SAMPLES)
 
@@ -451,8 +455,10 @@ def robot_pose(part: PosePartSpec, exercise: Exercise, samples: Samples) -> Matr
 
 
 def asked_pose(part: PosePartSpec, grading: Grading) -> Matrices:
-    """Return the expected pose ``(SAMPLES, 4, 4)``, from the robot or from an earlier answer."""
-    # The student's chain must have both frames that the part asks for.
+    """Return the expected pose ``(SAMPLES, 4, 4)``, from the robot or from an earlier answer.
+
+    The student's chain must have both frames that the part asks for.
+    """
     chain, exercise, samples = grading.student_chain, grading.exercise, grading.samples
     if chain is None or not grading.following:
         return robot_pose(part, exercise, samples)
@@ -488,8 +494,9 @@ def as_entries(matrices: Matrices) -> Numbers:
 
 # --- Find the content cells of a correct answer: the cells that need knowledge and earn points
 #
-# An answer with only zeros and joint variables is called lazy. A content cell is a cell in which
-# the correct answer differs from the lazy one. ``known`` is a mask of the content cells.
+# An answer with only zeros and joint variables is called lazy: it needs no knowledge. A content
+# cell is a cell in which the correct answer differs from the lazy one. ``known`` is a mask of the
+# content cells.
 
 
 KnownCells = NDArray[np.bool_]
@@ -498,11 +505,11 @@ KnownCells = NDArray[np.bool_]
 def known_cells(
     right: Numbers, lazy: ArrayLike, scale: ArrayLike = 1.0, angle: ArrayLike = False
 ) -> KnownCells:
-    """Return a mask of the cells in which the correct answer differs from the lazy one.
+    """Return a mask ``(...)`` of the cells in which the correct answer differs from the lazy one.
 
-    A lazy answer needs no knowledge. ``scale`` is the unit of the tolerance.
+    ``right`` is ``(..., samples)``. ``scale`` is the unit of the tolerance; ``angle`` is true for
+    angles.
     """
-    # ``right`` is ``(..., samples)``, the result ``(...)``; ``angle`` is true for angles.
     error = np.abs(difference(right, np.asarray(lazy), angle)).max(axis=-1)
     return np.asarray(error > SAME_CONTENT * np.asarray(scale))
 
@@ -513,32 +520,33 @@ def of_rows(
     most: int | None = None,
     usual: tuple[int, int] | None = None,
 ) -> Content:
-    """Return the content cells (those that earn points) of a table or of screw axes.
+    """Return the content cells ``(rows, cells)`` of a table or of screw axes.
 
-    ``Content`` explains ``most`` and ``usual``.
+    Each row is also worth something besides its content cells. ``Content`` explains ``most`` and
+    ``usual``.
     """
-    # ``known`` is ``(rows, cells)``. Each row is also worth something besides its content cells.
     rows = _rows(known)
     groups = tuple((i,) * len(row) for i, row in enumerate(rows))
     return Content(rows, groups, besides=True, most=most, usual=usual)
 
 
 def of_one_row(known: KnownCells) -> Content:
-    """Return the content cells (those that earn points) of a single row."""
+    """Return the content cells of a single row."""
     return Content(_rows(_all_if_none(known)[None]), ((0,) * len(known),))
 
 
 def of_list(known: KnownCells, reference: KnownCells | None = None) -> Content:
-    """Return the content cells (those that earn points) of a list of single values."""
-    # At most as many values count as ``reference`` marks.
+    """Return the content cells of a list; at most as many values count as ``reference`` marks."""
     return Content(
         _rows(_all_if_none(known)[:, None]), ((0,),) * len(known), most=_count(reference)
     )
 
 
 def of_rigid(right: Numbers, part: PartSpec, grading: Grading) -> Content:
-    """Return the content cells of a rotation or transform: the entries that earn points."""
-    # If both the rotation and the position have content cells, each of the two is worth one half.
+    """Return the content cells of a rotation or transform.
+
+    If both the rotation and the position have content cells, each of the two is worth one half.
+    """
     exercise = grading.exercise
     if grading.following:
         return _of_rigid(right, exercise.length_scale)
@@ -560,7 +568,9 @@ def _of_asked(asked: _Asked) -> Content:
 
 
 def _of_rigid(right: Numbers, length_scale: float) -> Content:
-    known = _differs_from_identity(right, length_scale)
+    scales = np.ones(right.shape[1])
+    scales[3:] = length_scale
+    known = known_cells(right, np.eye(len(right))[..., None], scales)
     halves = known[:, :3].any() and known[:, 3:].any()
     groups = tuple(int(halves and column == 3) for column in range(known.shape[1]))
     bottom = (3,) if len(known) == 4 else ()
@@ -568,8 +578,10 @@ def _of_rigid(right: Numbers, length_scale: float) -> Content:
 
 
 def of_matrix(right: Numbers, scale: Numbers) -> Content:
-    """Return the content cells (those that earn points) of a matrix that is not a pose."""
-    # The zero matrix and the identity are both lazy, so a content cell differs from both.
+    """Return the content cells of a matrix that is not a pose.
+
+    The zero matrix and the identity are both lazy, so a content cell differs from both.
+    """
     known = known_cells(right, 0.0, scale)
     if known.shape[0] == known.shape[1]:
         known &= known_cells(right, np.eye(len(right))[..., None], scale)
@@ -579,8 +591,10 @@ def of_matrix(right: Numbers, scale: Numbers) -> Content:
 def of_links(
     right: Matrices, reference: Matrices, joints: Sequence[Joint], samples: Samples, scale: float
 ) -> Content:
-    """Return the content cells of link transforms: the entries that earn points."""
-    # At most as many cells count as the ``reference`` links have content cells.
+    """Return the content cells of link transforms; at most as many count as those of the reference.
+
+    ``right`` and ``reference`` are ``(links, SAMPLES, 4, 4)``.
+    """
     known = _differs_from_motion(right, joints, samples, scale)
     most = _differs_from_motion(reference, joints, samples, scale)
     groups = tuple((i // 4,) * 4 for i in range(4 * len(right)))
@@ -604,12 +618,6 @@ def _differs_from_motion(
             link[:, 0, 1] = -np.sin(q)
     scales = np.array([1.0, 1.0, 1.0, scale])
     return known_cells(np.moveaxis(links, 1, -1), np.moveaxis(lazy, 1, -1), scales)
-
-
-def _differs_from_identity(right: Numbers, length_scale: float) -> KnownCells:
-    scales = np.ones(right.shape[1])
-    scales[3:] = length_scale
-    return known_cells(right, np.eye(len(right))[..., None], scales)
 
 
 def _rows(known: KnownCells) -> tuple[tuple[bool, ...], ...]:

@@ -1,6 +1,7 @@
-"""Judge a submitted table cell by cell, in the convention that fits; bound its points.
+"""Judge a submitted table cell by cell, in the convention that fits, and limit its points.
 
-Right or wrong by numbers only: messages on single cells are made in ``diagnosis``.
+This file decides right or wrong by numbers only, and knows which rows are missing or extra. What is
+wrong in a single cell is said in ``diagnosis``; points are counted in ``marks.py``.
 """
 
 import math
@@ -16,7 +17,6 @@ from numpy.typing import NDArray
 
 from dh_grader.catalogue import Exercise, Joint, ReferenceTable
 from dh_grader.catalogue.kinds import DhTableSpec
-from dh_grader.expressions import Expression
 from dh_grader.grading.frames import (
     FrameFreedom,
     Role,
@@ -72,89 +72,10 @@ from dh_grader.kinematics import ALPHA, COLUMNS, A, Convention, Matrices, Number
 from dh_grader.kinematics.frame_choice import NO_SUCH_CELL, ROW_COSTS, WRONG_CELL, departure
 from dh_grader.translations import Sentence, say, template
 
-# --- Replace numbers in a table, or empty cells
-
-
-def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
-    """Return the table with each empty or unreadable cell set to its joint variable or 0."""
-    roles = roles_in(answer.rows, convention, grading, in_order=True)
-    lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
-    return _filled(answer, np.asarray(np.isnan(answer.values).any(axis=-1)), lazy)
-
-
-def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) -> StudentTable:
-    """Return the table with wrong numbers in ``cells`` ``(rows, 4)``."""
-    # The numbers are wrong whatever frames are chosen.
-    numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
-    return _filled(answer, cells, np.repeat(numbers, SAMPLES, axis=-1), GIVEN_UP)
-
-
-def with_wrong_rows(answer: StudentTable, more: int, grading: Grading) -> StudentTable:
-    """Return the table with ``more`` rows of wrong numbers at its end."""
-    # The numbers are wrong whatever frames are chosen.
-    rows = len(answer.rows)
-    numbers = out_of_place(rows + more, grading.exercise.length_scale)[rows:]
-    values = np.repeat(numbers, SAMPLES, axis=-1)
-    given_up = tuple(computed_row(row, GIVEN_UP) for row in values)
-    return replace(
-        answer, rows=(*answer.rows, *given_up), values=np.concatenate([answer.values, values])
-    )
-
-
-def with_empty_cells(answer: StudentTable, cells: KnownCells) -> StudentTable:
-    """Return the table without its entries in ``cells`` ``(rows, 4)``."""
-    return _filled(answer, cells, np.full_like(answer.values, np.nan), EMPTY)
-
-
-def written_content(answer: StudentTable, given: Sequence[bool], grading: Grading) -> int:
-    """Return the number of cells in which the student wrote more than 0 or a joint variable.
-
-    ``given`` marks the rows that the exercise gives; their cells are not counted.
-    """
-    values = answer.values[..., None, :: SAMPLES - 1]
-    variables = [grading.samples.values[joint.variable] for joint in grading.exercise.joints]
-    lazy = np.array([np.zeros(SAMPLES), *variables, *(-each for each in variables)])
-    scales = np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)[:, None]
-    known = known_cells(values, lazy[:, :: SAMPLES - 1], scales, IS_ANGLE[:, None, None])
-    written = (known | np.isnan(values).any(axis=-1)).all(axis=-1) & ~empty_cells(answer)
-    if len(given) == len(written):
-        written = written[~np.array(given)]
-    return int(np.count_nonzero(written))
-
-
-def with_zeros(answer: StudentTable) -> Table:
-    """Return the numbers of the table, with 0 in empty cells."""
-    return np.where(empty_cells(answer)[..., None], 0.0, answer.values)
-
-
-def empty_cells(answer: StudentTable) -> KnownCells:
-    """Return a mask ``(rows, 4)`` of the empty cells."""
-    return np.array(
-        [[entry.verdict is Verdict.MISSING for entry in row.entries] for row in answer.rows]
-    )
-
-
-def _filled(
-    answer: StudentTable, cells: KnownCells, numbers: Table, filling: Entry = COMPUTED
-) -> StudentTable:
-    values = np.where(cells[..., None], numbers, answer.values)
-    rows = tuple(
-        StudentRow(
-            tuple(
-                filling if is_filled else entry
-                for entry, is_filled in zip(row.entries, cells[i].tolist(), strict=True)
-            ),
-            values[i],
-        )
-        for i, row in enumerate(answer.rows)
-    )
-    return replace(answer, rows=rows, values=values)
-
-
 # --- Judge a submitted table cell by cell
 #
 # The table is compared with the reference table. If the student chose the frames, it is compared
-# with the nearest table that describes the robot (``own_frames``).
+# with the nearest table that describes the robot (``best_roles``).
 
 
 _ARE_ANGLES: Final = tuple(IS_ANGLE.tolist())
@@ -164,10 +85,10 @@ _ARE_ANGLES: Final = tuple(IS_ANGLE.tolist())
 class JudgedRow:
     """A submitted row (None if missing), and its correct values ``(4, SAMPLES)``.
 
-    ``shared`` is true if the axis of the row is parallel to a neighbouring axis.
+    ``shared`` is true if the axis of the row is parallel to a neighbouring axis, so that offsets
+    along both axes add up.
     """
 
-    # Then offsets along both axes add up.
     label: str
     joint: Joint | None
     row: StudentRow | None
@@ -177,15 +98,17 @@ class JudgedRow:
 
 @dataclass(frozen=True)
 class Judgement:
-    """A submitted table compared with the correct table, in the frames in which it is judged."""
+    """A submitted table compared with the correct table, in the frames in which it is judged.
 
-    # ``matches`` is the Match of each cell, ``(rows, 4)``; no cell of a missing row matches.
-    # ``roles`` are the roles of the submitted rows if the student chose the frames. ``departures``
-    # is the cost of these frames, infinite if the intended frames are unknown. ``extra`` are the
-    # rows without a counterpart. ``in_place`` is true if each row was compared with the reference's
-    # row of the same place. ``reached`` is true if the rows lead to the given tool frame. ``lost``
-    # is the number of units that the wrong cells lose, in the frames in which they lose the fewest;
-    # a single wrong cell loses one unit.
+    ``matches`` is the Match of each cell, ``(rows, 4)``; no cell of a missing row matches.
+    ``roles`` are the roles of the submitted rows if the student chose the frames. ``departures`` is
+    the cost of these frames, infinite if the intended frames are unknown. ``extra`` are the rows
+    without a counterpart. ``in_place`` is true if each row was compared with the reference's row of
+    the same place. ``reached`` is true if the rows lead to the given tool frame. ``lost`` is the
+    number of units that the wrong cells lose, in the frames in which they lose the fewest; a single
+    wrong cell loses one unit.
+    """
+
     rows: tuple[JudgedRow, ...]
     matches: NDArray[np.int_]
     roles: tuple[Role, ...] = ()
@@ -367,8 +290,10 @@ _UNREACHED = _TOOL_NOT_REACHED.finding(
 def judged_by_intended(
     intended: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
 ) -> Judgement:
-    """Compare a table with the table that the student intended; no row may be missing."""
-    # ``intended`` is ``(rows, 4, SAMPLES)``.
+    """Compare a table with the table ``(rows, 4, SAMPLES)`` that the student intended.
+
+    No row may be missing.
+    """
     frames = frames_from_reference(intended, roles, convention, grading)
     nearest = NearestTable(roles, intended, frames, WRONG_CELL)
     judgement = _judged_by(nearest, roles, convention, grading)
@@ -449,7 +374,10 @@ def _matches_of(judged: Sequence[JudgedRow], grading: Grading) -> NDArray[np.int
     nothing = np.full((len(COLUMNS), SAMPLES), np.nan)
     actual = np.array([nothing if row.row is None else row.row.handed_in for row in judged])
     expected = np.array([row.expected for row in judged])
-    expressions = [each for row in judged for each in _expressions(row.row)]
+    unwritten = [None] * len(COLUMNS)
+    expressions = [
+        each for row in judged for each in (row.row.expressions if row.row else unwritten)
+    ]
     angle, scales = IS_ANGLE[:, None], column_scales(grading)
     found = entry_matches(expressions, actual, expected, scales, grading.samples, angle)
     if np.abs(expected[..., 0]).max() > HUGE_LENGTH * grading.exercise.length_scale:
@@ -465,11 +393,7 @@ def column_scales(grading: Grading) -> Numbers:
     return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
 
 
-def _expressions(row: StudentRow | None) -> Sequence[Expression | None]:
-    return [None] * len(COLUMNS) if row is None else row.expressions
-
-
-# --- The content cells of a table: the cells that need knowledge (see ``content``)
+# --- The content cells of a table: the cells that need knowledge (see ``Content``)
 
 
 def table_content(
@@ -477,7 +401,7 @@ def table_content(
 ) -> Content:
     """Return the content cells of a table: the cells that need knowledge."""
     exercise = grading.exercise
-    task = _Task(exercise.version, part.id, convention, part, exercise)
+    task = _TaskKey(exercise.version, part.id, convention, part, exercise)
     # Unreadable cells alone do not increase the cost of a unit.
     is_spoiled = part.frames == "free" and bool(judgement.wrong_as_read or judgement.empty)
     most = _fewest(task) if is_spoiled else None
@@ -505,7 +429,7 @@ def _differs_from_lazy(
 
 
 @dataclass(frozen=True)
-class _Task:
+class _TaskKey:
     # A cache key: equal for the same exercise version, part and convention.
     version: str
     part_id: str
@@ -515,7 +439,7 @@ class _Task:
 
 
 @lru_cache(maxsize=256)
-def _of_reference(task: _Task) -> Content:
+def _of_reference(task: _TaskKey) -> Content:
     grading = _own_grading(task.exercise)
     table = reference_values(task.exercise.robot.tables[task.convention], grading.samples)
     joints = _joints_of_rows(task)
@@ -546,14 +470,14 @@ def _own_grading(exercise: Exercise) -> Grading:
     return Grading(exercise, samples, reader)
 
 
-def _joints_of_rows(task: _Task) -> list[Joint | None]:
+def _joints_of_rows(task: _TaskKey) -> list[Joint | None]:
     joints, reference = task.exercise.joints, task.exercise.robot.tables.get(task.convention)
     count = len(joints if reference is None else reference.rows)
     return [*joints, *[None] * (count - len(joints))]
 
 
 @lru_cache(maxsize=256)
-def _fewest(task: _Task) -> int:
+def _fewest(task: _TaskKey) -> int:
     # Along parallel axes, a table may have the sum of two lengths in one cell, or arbitrary numbers
     # in other cells that cancel out. Such additional cells have no worth.
     grading, joints = _own_grading(task.exercise), _joints_of_rows(task)
@@ -728,9 +652,9 @@ def judged_in_convention(
 ) -> tuple[Convention, Judgement, tuple[Finding, ...]]:
     """Choose the convention of a table, and judge the table; also return findings on the choice.
 
-    If both conventions are allowed, the convention with fewer wrong cells is chosen.
+    If both conventions are allowed, the convention with fewer wrong cells is chosen, the
+    reference's if the counts are equal.
     """
-    # If the counts are equal, the reference's convention is chosen.
     if part.convention == "either" and table.convention is None:
         convention, judgement = _fitting(part, table, grading)
         return convention, judgement, (_taken(convention),)
@@ -786,10 +710,87 @@ def _not_asked_for(asked: Convention, table: StudentTable) -> tuple[Finding, ...
     return (_NOT_ASKED_FOR.finding(hint, severity=Severity.WARNING),)
 
 
+# --- Replace numbers in a table, or empty cells
+
+
+def with_lazy_cells(answer: StudentTable, convention: Convention, grading: Grading) -> StudentTable:
+    """Return the table with each empty or unreadable cell set to its joint variable or 0."""
+    roles = roles_in(answer.rows, convention, grading, in_order=True)
+    lazy = joint_variables([role.joint for role in roles], grading.samples)[: len(answer.rows)]
+    return _filled(answer, np.asarray(np.isnan(answer.values).any(axis=-1)), lazy)
+
+
+def with_wrong_cells(answer: StudentTable, cells: KnownCells, grading: Grading) -> StudentTable:
+    """Return the table with numbers in ``cells`` ``(rows, 4)`` that are wrong in any frames."""
+    numbers = out_of_place(len(answer.rows), grading.exercise.length_scale)
+    return _filled(answer, cells, np.repeat(numbers, SAMPLES, axis=-1), GIVEN_UP)
+
+
+def with_wrong_rows(answer: StudentTable, more: int, grading: Grading) -> StudentTable:
+    """Return the table with ``more`` rows at its end of numbers that are wrong in any frames."""
+    rows = len(answer.rows)
+    numbers = out_of_place(rows + more, grading.exercise.length_scale)[rows:]
+    values = np.repeat(numbers, SAMPLES, axis=-1)
+    given_up = tuple(computed_row(row, GIVEN_UP) for row in values)
+    return replace(
+        answer, rows=(*answer.rows, *given_up), values=np.concatenate([answer.values, values])
+    )
+
+
+def with_empty_cells(answer: StudentTable, cells: KnownCells) -> StudentTable:
+    """Return the table without its entries in ``cells`` ``(rows, 4)``."""
+    return _filled(answer, cells, np.full_like(answer.values, np.nan), EMPTY)
+
+
+def written_content(answer: StudentTable, given: Sequence[bool], grading: Grading) -> int:
+    """Return the number of cells in which the student wrote more than 0 or a joint variable.
+
+    ``given`` marks the rows that the exercise gives; their cells are not counted.
+    """
+    values = answer.values[..., None, :: SAMPLES - 1]
+    variables = [grading.samples.values[joint.variable] for joint in grading.exercise.joints]
+    lazy = np.array([np.zeros(SAMPLES), *variables, *(-each for each in variables)])
+    scales = np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)[:, None]
+    known = known_cells(values, lazy[:, :: SAMPLES - 1], scales, IS_ANGLE[:, None, None])
+    written = (known | np.isnan(values).any(axis=-1)).all(axis=-1) & ~empty_cells(answer)
+    if len(given) == len(written):
+        written = written[~np.array(given)]
+    return int(np.count_nonzero(written))
+
+
+def with_zeros(answer: StudentTable) -> Table:
+    """Return the numbers of the table, with 0 in empty cells."""
+    return np.where(empty_cells(answer)[..., None], 0.0, answer.values)
+
+
+def empty_cells(answer: StudentTable) -> KnownCells:
+    """Return a mask ``(rows, 4)`` of the empty cells."""
+    return np.array(
+        [[entry.verdict is Verdict.MISSING for entry in row.entries] for row in answer.rows]
+    )
+
+
+def _filled(
+    answer: StudentTable, cells: KnownCells, numbers: Table, filling: Entry = COMPUTED
+) -> StudentTable:
+    values = np.where(cells[..., None], numbers, answer.values)
+    rows = tuple(
+        StudentRow(
+            tuple(
+                filling if is_filled else entry
+                for entry, is_filled in zip(row.entries, cells[i].tolist(), strict=True)
+            ),
+            values[i],
+        )
+        for i, row in enumerate(answer.rows)
+    )
+    return replace(answer, rows=rows, values=values)
+
+
 # --- Limit the points of a wrong table, so that an empty row never earns more than a wrong row
 #
-# So a wrong table earns at least as much as the same table with one wrong row replaced by numbers
-# that are wrong in all frames, and as the table without the wrong rows after the rows of all joints
+# A wrong table earns at least as much as the same table with one wrong row replaced by numbers that
+# are wrong in all frames, and as the table without the wrong rows after the rows of all joints
 # (there, empty rows are left out). A table with empty cells earns at most as much as the same table
 # with such numbers in these cells.
 
@@ -804,12 +805,12 @@ AGAIN = 0.5
 class FairPoints:
     """Limits the points of a wrong table, so that empty rows never earn more than wrong rows.
 
-    ``judged_again`` judges similar tables, whose points are the limits.
+    ``judged_again`` judges similar tables, whose points are the limits. ``work`` is the work of
+    judging a table with messages.
     """
 
     part: DhTableSpec
     judged_again: Callable[[StudentTable], Judged]
-    # The work of judging a table with messages.
     work: float
     grading: Grading
 

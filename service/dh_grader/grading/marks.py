@@ -1,6 +1,7 @@
-"""The points of a part from the verdicts on its cells, and marks for what follows.
+"""Count the points of a part from the verdicts on its cells, and marks for what follows.
 
-Here points are rounded. What a message costs is not decided here.
+Here points are shared among rows and cells, and rounded. Which cells are wrong is decided in
+``judging.py`` and ``judging_table.py``; how a loss is told, in ``report.py``.
 """
 
 import math
@@ -61,14 +62,10 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import say
 
-# --- The points of a part, from the verdicts on its cells
+# --- The points that each cell of an answer is worth
 #
-# Points are counted in quarters or hundredths of a point. ``docs/marks.md`` explains the rules.
-
-
-# --- The points of each cell of an answer, in quarters or hundredths of a point
-#
-# Such a quarter or hundredth is called a step. ``docs/marks.md`` explains the rules.
+# Points are counted in steps: quarters or hundredths of a point. ``docs/marks.md`` explains the
+# rules.
 
 
 # The worth in units that a group of cells has besides its content cells, which count 1 each. For
@@ -89,14 +86,13 @@ _ROUNDING_ERROR: Final = 1e-9
 class CellWorth:
     """The points of the cells and rows of an answer, in steps of ``step`` points.
 
-    A step is a quarter or a hundredth of a point.
+    ``cells`` ``(rows, cells)`` is the worth of each cell, ``besides`` ``(rows,)`` that of each row
+    in addition to its cells; all of them sum to ``total``. A cell that needs no knowledge is worth
+    nothing, but costs ``unit`` if it is wrong. If ``is_fixed`` is true, every wrong cell costs
+    ``unit``. ``slip`` is the cost of a mistake that no cell shows. ``least_besides`` is the
+    smallest worth that a group of cells has besides its cells.
     """
 
-    # ``cells`` ``(rows, cells)`` is the worth of each cell, ``besides`` ``(rows,)`` that of each
-    # row in addition to its cells; all of them sum to ``total``. A cell that needs no knowledge is
-    # worth nothing, but costs ``unit`` if it is wrong. If ``is_fixed`` is true, every wrong cell
-    # costs ``unit``. ``slip`` is the cost of a mistake that no cell shows. ``least_besides`` is the
-    # smallest worth that a group of cells has besides its cells.
     step: float
     total: int
     content: Content
@@ -248,9 +244,11 @@ def evenly(total: int, count: int) -> list[int]:
 
 
 def apportioned(total: int, weights: list[int]) -> list[int]:
-    """Return whole numbers in proportion to ``weights`` that sum to ``total``."""
-    # The largest remainders are rounded up. If ``total`` is at most the sum of the weights, no
-    # number is larger than its weight.
+    """Return whole numbers in proportion to ``weights`` that sum to ``total``.
+
+    The largest remainders are rounded up. If ``total`` is at most the sum of the weights, no number
+    is larger than its weight.
+    """
     whole = sum(weights)
     if not whole:
         return [0] * len(weights)
@@ -274,15 +272,17 @@ def _counts(content: Content) -> dict[int, int]:
     return counts
 
 
+# --- The points that a judged answer has lost, and its report
+
+
 # The verdicts on the cells of each row.
 _Verdicts = Sequence[Sequence[Verdict]]
 
 
 @dataclass(frozen=True, slots=True)
 class _Loss:
-    """The points lost in one row, or in the whole answer if ``row`` is None."""
+    """The steps lost in one row, or in the whole answer if ``row`` is None."""
 
-    # ``steps`` are quarters or hundredths of a point.
     code: str
     steps: int
     row: int | None = None
@@ -290,7 +290,7 @@ class _Loss:
 
 @dataclass(frozen=True, slots=True)
 class _Marks:
-    """The loss of an answer, in quarters or hundredths of a point."""
+    """The loss of an answer, and of each of its rows, in steps."""
 
     worth: CellWorth
     lost: int
@@ -341,10 +341,9 @@ def _without_rows(part: str, kind: str, points: float, verdict: Verdict) -> Part
 def has_earned(part: PartSpec, judged: Judged, share: float) -> bool:
     """True if an answer has earned ``share`` (0 to 1) of its points.
 
-    Only cells that need knowledge count.
+    Only cells that need knowledge count. A rotation with a position must have earned more than
+    ``share``, because later parts that need only a correct rotation are easy.
     """
-    # A rotation with a position must have earned more than ``share``, because later parts that need
-    # only a correct rotation are easy.
     marks = _marks(judged, "content", part.points)
     earned, least = marks.worth.total - marks.lost, share * marks.worth.total
     return earned > least if judged.content.equal else earned >= least
@@ -543,12 +542,9 @@ def _without_points(verdict: Verdict, rows: Sequence[RowReport]) -> Verdict:
 
 # --- Marks for what follows from an earlier answer
 #
-# So if the answer to a part is wrong, it is also judged by the student's earlier answer instead of
-# the reference. The earlier answer must be good enough, so that a trivial table does not earn easy
+# If the answer to a part is wrong, it is also judged by the student's earlier answer instead of the
+# reference. The earlier answer must be good enough, so that a trivial table does not earn easy
 # points later.
-
-
-_Quantities = Sequence[Kind] | Sequence[Sequence[Kind]]
 
 
 # The step by which a joint is moved, in radians or in the exercise's typical length.
@@ -560,10 +556,10 @@ ToolAt = Callable[[Samples], Matrices]
 def can_carry(chain: StudentChain, grading: Grading) -> bool:
     """True if later answers may be judged by this answer instead of by the reference solution.
 
-    The answer must be an arm with the joints and the degrees of freedom of the robot.
+    The answer must be an arm with the joints and the degrees of freedom of the robot: a rigid
+    chain, each joint of which turns about, or slides along, one axis by its own variable. Other
+    arms may make later parts much easier.
     """
-    # It must be a rigid chain. Each joint must turn about, or slide along, one axis by its own
-    # variable. Other arms may make later parts much easier.
     robot = grading.exercise.reference
     if robot is None or not is_rigid(chain.frames, NOT_RIGID).all():
         return False
@@ -589,7 +585,7 @@ def _jacobian(tool_at: ToolAt, grading: Grading) -> Numbers | None:
 
 def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool) -> Numbers | None:
     # The axis (HALF, 6) of joint i in the base frame. None if a small motion of the joint does not
-    # move the tool about or along one axis. With later, the later joints have other values.
+    # move the tool about or along one axis. With ``later``, the later joints have other values.
     scale, joints = grading.exercise.length_scale, grading.exercise.joints
     values = {name: np.tile(numbers[:HALF], 2) for name, numbers in grading.samples.values.items()}
     for joint in joints[i + 1 :] if later else ():
@@ -606,10 +602,14 @@ def _axis(tool_at: ToolAt, i: int, step: float, grading: Grading, *, later: bool
     return axis if max(error, np.abs(length - 1).max()) < SAME_AXIS else None
 
 
-def stands_still(values: Numbers, quantities: _Quantities, grading: Grading) -> bool:
-    """True if no joint changes any entry ``(rows, columns, SAMPLES)`` of an answer."""
-    # quantities are the quantities of the columns, or the quantity of all entries. An answer with
-    # an unreadable entry (NaN) counts as moving.
+def stands_still(
+    values: Numbers, quantities: Sequence[Kind] | Sequence[Sequence[Kind]], grading: Grading
+) -> bool:
+    """True if no joint changes any entry ``(rows, columns, SAMPLES)`` of an answer.
+
+    ``quantities`` are the quantities of the columns, or of all entries. An answer with an
+    unreadable entry (NaN) counts as moving.
+    """
     scales = np.where(np.array(quantities) == "length", grading.exercise.length_scale, 1.0)
     motion = np.abs(changes(values)).max(axis=-1)
     return bool(np.isfinite(motion).all() and (motion < MOVES * scales).all())
@@ -625,9 +625,11 @@ STANDS_STILL = Finding(
 
 
 def follows_from(earlier: PartSpec, *, is_right: bool) -> Finding:
-    """Return the message that an answer was graded on the basis of an earlier answer."""
-    # The earlier answer is_right if it differs from the reference only by its choice of frames or
-    # by rounding.
+    """Return the message that an answer was graded on the basis of an earlier answer.
+
+    The earlier answer ``is_right`` if it differs from the reference only by its choice of frames or
+    by rounding.
+    """
     title = repr(earlier.title)
     if is_right:
         hint = say("This was graded by your answer to {part}, which is right.", part=title)

@@ -1,6 +1,6 @@
 """The list of all misconceptions, and the search for the one that explains a wrong answer.
 
-The misconceptions are in ``diagnosis``; they only say which numbers a slip would give.
+The misconceptions themselves are in ``diagnosis``; they only say which numbers a slip would give.
 
 A misconception is a function and its description (record). The function takes a wrong answer and
 yields hypotheses: numbers to compare with the answer, each with its message. ::
@@ -17,7 +17,8 @@ yields hypotheses: numbers to compare with the answer, each with its message. ::
     def reversed_position(case: WrongPosition) -> Hypotheses:
         yield Written(-case.expected, "Every coordinate has the wrong sign.")
 
-A check is a similar function, which returns a finding (a message) or None.
+A check is a similar function, which returns a finding (a message) or None. It is for a slip without
+numbers to compare, such as a formula without a value or a left-handed frame.
 """
 
 import math
@@ -55,15 +56,6 @@ from dh_grader.translations import Sentence, listed, say
 # --- Phrases that several kinds of messages contain
 
 
-__all__ = [
-    "AXES",
-    "SYMBOLS",
-    "UNIT_FACTORS",
-    "axes_of_row",
-    "change_every_sign",
-    "other_length_unit",
-    "wrong_throughout",
-]
 # The symbol of each table column, and the axis along or about which it is measured.
 SYMBOLS = ("a", "α", "d", "θ")
 AXES = ("x", "x", "z", "z")
@@ -72,12 +64,11 @@ UNIT_FACTORS: Final = (1000.0, 100.0, 10.0, 0.1, 0.01, 0.001)
 
 
 def axes_of_row(axis: str, label: str, last: int) -> str:
-    """Return the names of the two x or z axes that a row connects.
+    """Return the names of the two x or z axes that the row ``label`` connects.
 
-    ``axis`` is "x" or "z", and ``last`` is the number of the last joint.
+    ``axis`` is "x" or "z", and ``last`` is the number of the last joint. For some fixed rows the
+    axes have no numbers; then the result is "the two z axes".
     """
-    # label is the label of the row. For some fixed rows the axes have no numbers; then the result
-    # is "the two z axes".
     if label.isdecimal() and label != "0":
         return listed([f"{axis}{int(label) - 1}", f"{axis}{label}"])
     if label == "e":
@@ -128,9 +119,10 @@ def other_length_unit(times: float) -> Finding:
     )
 
 
-# A check is for a slip without numbers to compare, such as a formula without a value or a
-# left-handed frame. If several records explain an answer, the record of the lowest rank counts; the
-# order of imports has no effect. The pages of docs that list codes are generated from the records.
+# --- The records of all misconceptions and checks, and the search among them
+#
+# If several records explain an answer, the record of the lowest rank counts; the order of imports
+# has no effect. The pages of docs that list codes are generated from the records, and
 # tests/grading/diagnosis/test_diagnosis.py submits the examples.
 
 
@@ -180,8 +172,7 @@ class Record:
     def finding(
         self, hint: str, correction: str = "", severity: Severity = Severity.ERROR
     ) -> Finding:
-        """Return a finding with the code of this misconception."""
-        # For a record without a function.
+        """Return a finding with the code of this misconception, for a record without a function."""
         return Finding(self.code, hint, correction, severity, rule=self.rule)
 
     def hypotheses(self, source: object) -> Iterable["Hypothesis[Any]"]:
@@ -212,10 +203,9 @@ def register(
 ) -> Record:
     """Add a misconception or a check to the list of all records, and return its record.
 
-    ``known`` has values for more fields of the record.
+    ``known`` has values for more fields of the record. Without a function, the record only
+    documents a code; other functions make findings with this code.
     """
-    # Without a function, the record only documents a code; other functions make findings with this
-    # code.
     codes = (code,) if isinstance(code, str) else code
     record = Record(of=of, rank=rank, codes=codes, name=name or codes[0], **known)
     _RECORDS.append(record)
@@ -226,8 +216,10 @@ def register(
 def misconception(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Decorate a function that yields hypotheses, and register it as a misconception."""
-    # The arguments are the fields of its Record.
+    """Decorate a function that yields hypotheses, and register it as a misconception.
+
+    The arguments are the fields of its Record.
+    """
     add = partial(register, of=of, rank=rank, code=code, **known)
 
     def registered(function: AnyFunction) -> AnyFunction:
@@ -241,8 +233,10 @@ def misconception(
 def check(
     *, of: type, rank: int, code: str | tuple[str, ...] = (), **known: Any
 ) -> Callable[[AnyFunction], AnyFunction]:
-    """Decorate a function that returns a finding or None, and register it as a check."""
-    # The arguments are the fields of its Record.
+    """Decorate a function that returns a finding or None, and register it as a check.
+
+    The arguments are the fields of its Record.
+    """
     return misconception(of=of, rank=rank, code=code, is_check=True, **known)
 
 
@@ -259,8 +253,7 @@ def all_records() -> tuple[Record, ...]:
 
 
 def says(hint: str, correction: str = "") -> Finding:
-    """Return a finding with this hint."""
-    # The engine adds the code of the misconception.
+    """Return a finding with this hint; its code is that of the misconception that yields it."""
     return Finding("", hint, correction)
 
 
@@ -317,9 +310,11 @@ class WrongAnswer(Protocol):
     """A wrong answer, with the data for its diagnosis."""
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterable[AnyHypothesis]:
-        """Return the hypotheses (possible mistakes) that explain the answer."""
-        # A Written hypothesis that is equal to the correct answer explains nothing. Nor does a
-        # Repaired hypothesis that is equal to the student's answer.
+        """Return the hypotheses (possible mistakes) that explain the answer.
+
+        A Written hypothesis that is equal to the correct answer explains nothing. Nor does a
+        Repaired hypothesis that is equal to the student's answer.
+        """
         ...
 
 
@@ -341,10 +336,10 @@ def explanation(
 ) -> Explained | None:
     """Return the first hypothesis (possible mistake) that explains ``case``, or None.
 
-    The functions of misconceptions get ``source``, by default ``case``.
+    The functions of misconceptions get ``source``, by default ``case``: for example the links whose
+    product a matrix is. Only misconceptions about the class ``of`` are tried, by default the class
+    of ``source``.
     """
-    # For example, source are the links whose product a matrix is. Only misconceptions about the
-    # class of are tried, by default the class of source.
     start = case if source is None else source
     for record in records_of(of or type(start)):
         checkpoint()
@@ -434,8 +429,7 @@ def finding_on(
     *,
     otherwise: str = "",
 ) -> Finding:
-    """Return a finding with a hint and the correction of the value."""
-    # Without a correction, otherwise takes its place.
+    """Return a finding with a hint and the correction of the value, or else ``otherwise``."""
     return Finding("", hint, case.correction or otherwise, values=values)
 
 
@@ -492,8 +486,10 @@ class WrongCell(WrongValue):
         return self.actual - motion, self.expected - motion
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> Iterator[AnyHypothesis]:
-        """Return the misconceptions that explain the constant of the cell."""
-        # None of them does if the joint variables differ.
+        """Return the misconceptions that explain the constant of the cell.
+
+        None of them does if the joint variables differ.
+        """
         return super().explained_by(hypotheses if self.same_motion else ())
 
 
@@ -513,8 +509,10 @@ class WrongNumbers:
         return nearly_equal(one, other, scale, self.angle)
 
     def explained_by(self, hypotheses: Iterable[AnyHypothesis]) -> list[AnyHypothesis]:
-        """Return the misconceptions that explain the numbers."""
-        # All hypotheses must be about the same entries, because they are compared at once.
+        """Return the misconceptions that explain the numbers.
+
+        All hypotheses must be about the same entries, because they are compared at once.
+        """
         tried = list(hypotheses)
         if not tried:
             return []
@@ -618,9 +616,11 @@ def spelled(formula: Node, spelling: Spelling) -> Correction:
 def value_formula(
     values: Numbers, angle: bool, exercise: Exercise, samples: Samples, spelling: Spelling
 ) -> Correction | None:
-    """Return ``values`` ``(SAMPLES,)`` as a formula such as ``theta2 + pi/2``, or None."""
-    # The formula is a constant plus whole multiples of symbols, as in table cells. None if the
-    # values are not such a sum.
+    """Return ``values`` ``(SAMPLES,)`` as a formula such as ``theta2 + pi/2``.
+
+    The formula is a constant plus whole multiples of symbols, as in table cells. Return None if the
+    values are not such a sum.
+    """
     (counts,) = coefficients(values[None], exercise.joints, samples, np.array([angle]))
     return sum_formula(values, counts, angle, exercise, samples, spelling)
 
@@ -635,9 +635,8 @@ def sum_formula(
 ) -> Correction | None:
     """Return ``values`` as a formula with joint variables, or None if there is no such formula.
 
-    ``counts`` has the factor of each joint variable.
+    ``counts`` has the factor of each joint variable; without it, there is no formula.
     """
-    # None also if counts is None.
     if counts is None:
         return None
     moving = [joint.variable for joint in exercise.joints]
@@ -659,8 +658,10 @@ def sum_formula(
 def multiples(
     constant: Numbers, angle: bool, exercise: Exercise, samples: Samples
 ) -> tuple[list[tuple[int, str]], float] | None:
-    """Split a constant into whole multiples of letters and a remaining number."""
-    # constant is (HALF,). None if there is no such sum. Letters with the multiple 0 are left out.
+    """Split a constant ``(HALF,)`` into whole multiples of letters and a remaining number.
+
+    Letters with the multiple 0 are left out. Return None if there is no such sum.
+    """
     first = constant[0]
     if np.abs(difference(constant, np.full_like(constant, first), angle)).max() < CONSTANT:
         return [], float(first)

@@ -1,4 +1,8 @@
-"""Numbers at random joint values: the samples, tolerances, and how values are compared."""
+"""Compare numbers at random joint values: the samples, the tolerances, and the comparison.
+
+This file knows when two values are equal, exactly or except for rounding. What the values are, and
+what follows if they differ, is not known here.
+"""
 
 import hashlib
 import json
@@ -20,9 +24,7 @@ from dh_grader.kinematics import LARGEST_ANGLE, LARGEST_LENGTH, Numbers
 # --- All tolerances of grading, with their reasons
 #
 # Unless stated otherwise, lengths are in units of the exercise's typical length, and angles are in
-# radians.
-#
-# Tolerances of poses are in kinematics.
+# radians. Tolerances of poses are in ``kinematics``.
 
 
 # The difference of equal answers: far above the floating-point error of a formula with 200
@@ -94,10 +96,8 @@ NO_MOTION: Final = 1e-3
 
 # --- The random values of symbols at which the answers in a submission are compared
 #
-# The seed is a hash of the exercise and the answers, so that a regrade uses the same values.
-#
-# So students cannot predict the values, and a regrade uses them to the last bit, on every machine
-# and with every version of numpy.
+# The seed is a hash of the exercise and the answers. So students cannot predict the values, and a
+# regrade uses the same values to the last bit, on every machine and with every version of numpy.
 
 
 _ENCODER: Final = json.JSONEncoder(sort_keys=True, separators=(",", ":"))
@@ -112,12 +112,11 @@ _T = TypeVar("_T")
 class Samples:
     """Random values of every symbol, each of shape ``(SAMPLES,)``.
 
-    Both halves of the samples have the same link parameters, but different joint values.
+    Both halves of the samples have the same link parameters, but different joint values: changes
+    between the halves are due to the joints alone. ``in_degrees`` are the angles that are shown to
+    the student in degrees. ``bare_count`` is the number of samples if there are no symbols.
     """
 
-    # Changes between the halves are due to the joints alone. ``in_degrees`` are the angles that are
-    # shown to the student in degrees. ``bare_count`` is the number of samples if there are no
-    # symbols.
     values: Mapping[str, Numbers]
     in_degrees: Set[str] = frozenset()
     bare_count: int = SAMPLES
@@ -157,8 +156,10 @@ class Samples:
         )
 
     def with_names(self, names: Iterable[str]) -> "Samples":
-        """Return a copy of the samples with random values of more symbols."""
-        # The seed is the samples themselves, so that equal samples get equal values.
+        """Return a copy of the samples with random values of more symbols.
+
+        The seed is the samples themselves, so that equal samples get equal values.
+        """
         drawn = next((values.tobytes().hex() for values in self.values.values()), "")
         more = {name: 0.5 + _uniform(name + drawn, self.count) for name in sorted(names)}
         return Samples({**self.values, **more}, self.in_degrees)
@@ -180,8 +181,7 @@ class Samples:
 
     @staticmethod
     def subset_of(values: Numbers, count: int) -> Numbers:
-        """Return values ``(..., SAMPLES)`` at a subset of the samples."""
-        # The same subset as in ``subset``.
+        """Return values ``(..., SAMPLES)`` at the same samples as ``subset``."""
         return np.concatenate([values[..., :count], values[..., HALF : HALF + count]], axis=-1)
 
     def at(self, sample: int, names: Set[str]) -> dict[str, float]:
@@ -294,9 +294,10 @@ def changes(values: Numbers) -> Numbers:
 
 
 def moves_with(values: Numbers, motion: Numbers, angle: ArrayLike) -> NDArray[np.bool_]:
-    """Return a mask of the values that change by ``motion`` or −``motion`` if the joints move."""
-    # Values are ``(..., samples)``, ``motion`` is ``(..., samples / 2)``. The mask is false for
-    # NaN.
+    """Return a mask of the values that change by ``motion`` or −``motion`` if the joints move.
+
+    Values are ``(..., samples)``, ``motion`` is ``(..., samples / 2)``. The mask is false for NaN.
+    """
     either_sign = np.array([motion, -motion])
     shape = (2, *[1] * (values.ndim - motion.ndim), *motion.shape)
     error = np.abs(difference(changes(values), either_sign.reshape(shape), angle)).max(axis=-1)
@@ -308,10 +309,10 @@ def joint_counts(
 ) -> tuple[NDArray[np.int_], NDArray[np.bool_]]:
     """Return the factor of each joint variable in each cell, ``(cells, joints)``, and a mask.
 
-    The mask marks the cells that are a constant plus whole multiples of the joint variables.
+    The mask marks the cells that are a constant plus whole multiples of the joint variables. Angles
+    are compared up to whole turns. ``values`` is ``(cells, SAMPLES)``, ``angle`` and the mask are
+    ``(cells,)``.
     """
-    # Angles are compared up to whole turns. ``values`` is ``(cells, SAMPLES)``, ``angle`` and the
-    # mask are ``(cells,)``.
     if not joints:
         return np.zeros((len(values), 0), np.int_), np.asarray(np.isfinite(values).all(axis=-1))
 
@@ -351,39 +352,11 @@ def coefficients(
 
 # --- Compare values with the expected ones
 #
-# Values must be equal at all samples (random joint values). Decimals with at least three figures
-# may be rounded.
-#
-# Arrays are ``(..., samples)``. No tolerance depends on the drawn samples, so that every draw gives
-# the same result. A rounded decimal is right if it is the true number, rounded or cut off
-# (``expressions.evaluation.decimals``). So an entry is right if shifts of its decimals, each no
-# larger than rounding allows and the same at all samples, make it equal to the expected one.
+# Values must be equal at all samples (random joint values). Arrays are ``(..., samples)``. No
+# tolerance depends on the drawn samples, so that every draw gives the same result. Decimals with at
+# least three figures may be rounded.
 
 
-# If an entry has more decimals, they count as exact: the work grows with their number.
-MAX_DECIMALS = 16
-MAX_SHARED_DECIMALS = 32
-PROJECTIONS = 200
-# The number of projections after which a plane that separates the two sets is searched.
-SEPARATIONS = 8
-# The size of a component of the plane's normal that counts as 0, and the least distance between the
-# separated sets, in the largest unit.
-FLAT = 1e-9
-SEPARATED = 1e-3
-# Over-relaxed projections, which continue beyond the bounds, converge faster (Motzkin).
-RELAXATION = 1.9
-# The least effect of an unknown on the errors, relative to the largest effect, in each step of a
-# fit; unknowns with less are left unchanged. If two axes are parallel except for rounding, only the
-# sum of offsets along them has an effect; this shows better the smaller the remaining errors are.
-LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
-# Half the digits of a double, the best step for differences.
-LEAST_STEP = 1e-6
-# A fit ends if a shift is further out of bounds than this share of the first error.
-MISSED = 0.1
-# A fit ends if the error is larger than the effect of all shifts together by this factor.
-OUT_OF_REACH = 10.0
-# How far a shift may be out of bounds, relative to the tolerance of the errors.
-FLOATING_SHIFT = 1e-3
 # The largest relative error of a number that is cut off after three figures.
 LARGEST_SLACK = 0.01
 
@@ -414,10 +387,10 @@ def matches(
 ) -> NDArray[np.int_]:
     """Return the comparison result of each entry ``(...)``, from values ``(..., samples)``.
 
-    ``scale`` is the unit of the tolerance: 1 for angles, a typical length for lengths.
+    ``scale`` is the unit of the tolerance: 1 for angles, a typical length for lengths. It gives the
+    tolerance an absolute minimum, so that sin² + cos² − 1 always equals 0; the minimum is far too
+    small to hide a wrong constant in a large entry.
     """
-    # ``scale`` gives the tolerance an absolute minimum, so that sin² + cos² − 1 always equals 0.
-    # The minimum is far too small to hide a wrong constant in a large entry.
     with np.errstate(invalid="ignore", over="ignore"):
         plain = actual - expected
         # Most answers equal the expected one to the last bit; NaN does not equal 0.
@@ -457,6 +430,82 @@ def entry_matches(
     return found.reshape(shape)
 
 
+def nearly_equal(
+    one: Numbers,
+    other: Numbers,
+    scale: ArrayLike = 1.0,
+    angle: ArrayLike = False,
+    slack: float = 0.0,
+) -> NDArray[np.bool_]:
+    """Return a mask ``(...)`` of the values that are equal except for rounding.
+
+    Use this only for guesses, never for a verdict. ``slack`` is a known rounding error. The
+    tolerance is at least a thousandth of the size of the values; for values that are larger than
+    any number of the robot, at least a thousandth of the robot's largest numbers.
+    """
+    error = np.abs(difference(one, other, angle)).max(axis=-1)
+    size = np.sqrt(np.mean(other * other, axis=-1))
+    largest = np.where(np.any(angle, axis=-1), LARGEST_ANGLE, LARGEST_LENGTH) * scale
+    tolerance = np.maximum(ROUNDED_VALUE * np.minimum(size, largest), _tolerance(other, scale))
+    # NaN is not within any tolerance.
+    near = error <= np.maximum(tolerance, np.minimum(slack, LARGEST_SLACK * size))
+    return np.asarray(near & np.isfinite(size))
+
+
+def same(
+    one: Numbers, other: Numbers, scale: float = 1.0, angle: bool = False, slack: float = 0.0
+) -> bool:
+    """True if two single values ``(samples,)`` are nearly equal, at a fifth of that cost."""
+    error = one - other
+    if angle:
+        error -= 2 * np.pi * np.round(error / (2 * np.pi))
+    size = math.sqrt(float(other @ other) / other.size)
+    largest = (LARGEST_ANGLE if angle else LARGEST_LENGTH) * scale
+    exact = EXACT_VALUE * scale + FLOATING_POINT * size
+    tolerance = max(ROUNDED_VALUE * min(size, largest), exact, min(slack, LARGEST_SLACK * size))
+    # NaN is not within any tolerance.
+    return bool(np.abs(error).max() <= tolerance) and math.isfinite(size)
+
+
+def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
+    # ``np.mean`` takes as long as the rest of this function, so compute the mean directly.
+    size = np.sqrt((expected * expected).sum(axis=-1) / expected.shape[-1])
+    return np.asarray(EXACT_VALUE * np.asarray(scale) + FLOATING_POINT * size)
+
+
+# --- Find the shifts of rounded decimals that explain a difference
+#
+# A rounded decimal is right if it is the true number, rounded or cut off (``decimals_of``). So an
+# entry is right if shifts of its decimals, each no larger than rounding allows and the same at all
+# samples, make it equal to the expected one.
+
+
+# If an entry has more decimals, they count as exact: the work grows with their number.
+MAX_DECIMALS = 16
+MAX_SHARED_DECIMALS = 32
+PROJECTIONS = 200
+# The number of projections after which a plane that separates the two sets is searched.
+SEPARATIONS = 8
+# The size of a component of the plane's normal that counts as 0, and the least distance between the
+# separated sets, in the largest unit.
+FLAT = 1e-9
+SEPARATED = 1e-3
+# Over-relaxed projections, which continue beyond the bounds, converge faster (Motzkin).
+RELAXATION = 1.9
+# The least effect of an unknown on the errors, relative to the largest effect, in each step of a
+# fit; unknowns with less are left unchanged. If two axes are parallel except for rounding, only the
+# sum of offsets along them has an effect; this shows better the smaller the remaining errors are.
+LEAST_EFFECTS = (5e-2, 1e-2, 1e-3, 1e-4, 1e-6, 1e-8, 1e-9)
+# Half the digits of a double, the best step for differences.
+LEAST_STEP = 1e-6
+# A fit ends if a shift is further out of bounds than this share of the first error.
+MISSED = 0.1
+# A fit ends if the error is larger than the effect of all shifts together by this factor.
+OUT_OF_REACH = 10.0
+# How far a shift may be out of bounds, relative to the tolerance of the errors.
+FLOATING_SHIFT = 1e-3
+
+
 def is_rounded(
     expression: Expression,
     expected: Numbers,
@@ -465,8 +514,10 @@ def is_rounded(
     *,
     angle: bool = False,
 ) -> bool:
-    """True if rounding of an entry's decimals explains its difference from ``expected``."""
-    # ``expected`` is ``(samples,)``.
+    """True if rounding of an entry's decimals explains its difference from ``expected``.
+
+    ``expected`` is ``(samples,)``.
+    """
     if not expression.has_decimal or not 0 < len(decimals_of(expression).units) <= MAX_DECIMALS:
         return False
     # A table is compared several times, and most of its cells with the same numbers.
@@ -504,44 +555,6 @@ def _is_rounded_number(error: Numbers, unit: float, sign: int, tolerance: float)
     return bool(np.abs(error - mean).max() <= tolerance)
 
 
-def nearly_equal(
-    one: Numbers,
-    other: Numbers,
-    scale: ArrayLike = 1.0,
-    angle: ArrayLike = False,
-    slack: float = 0.0,
-) -> NDArray[np.bool_]:
-    """Return a mask ``(...)`` of the values that are equal except for rounding.
-
-    Use this only for guesses, never for a verdict. ``slack`` is a known rounding error.
-    """
-    # The tolerance is at least a thousandth of the size of the values. For values that are larger
-    # than any number of the robot, it is at least a thousandth of the robot's largest numbers.
-    error = np.abs(difference(one, other, angle)).max(axis=-1)
-    size = np.sqrt(np.mean(other * other, axis=-1))
-    largest = np.where(np.any(angle, axis=-1), LARGEST_ANGLE, LARGEST_LENGTH) * scale
-    tolerance = np.maximum(ROUNDED_VALUE * np.minimum(size, largest), _tolerance(other, scale))
-    # NaN is not within any tolerance.
-    near = error <= np.maximum(tolerance, np.minimum(slack, LARGEST_SLACK * size))
-    return np.asarray(near & np.isfinite(size))
-
-
-def same(
-    one: Numbers, other: Numbers, scale: float = 1.0, angle: bool = False, slack: float = 0.0
-) -> bool:
-    """True if two single values ``(samples,)`` are nearly equal."""
-    # ``nearly_equal`` for one value, at a fifth of its cost.
-    error = one - other
-    if angle:
-        error -= 2 * np.pi * np.round(error / (2 * np.pi))
-    size = math.sqrt(float(other @ other) / other.size)
-    largest = (LARGEST_ANGLE if angle else LARGEST_LENGTH) * scale
-    exact = EXACT_VALUE * scale + FLOATING_POINT * size
-    tolerance = max(ROUNDED_VALUE * min(size, largest), exact, min(slack, LARGEST_SLACK * size))
-    # NaN is not within any tolerance.
-    return bool(np.abs(error).max() <= tolerance) and math.isfinite(size)
-
-
 def rounding_slack(expression: Expression, samples: Samples) -> float:
     """Return an estimate of an entry's largest rounding error."""
     if not expression.has_decimal:
@@ -569,9 +582,9 @@ def fitted_shifts(
     """Find small shifts of m decimals after which no error is left, or return None.
 
     ``errors`` takes K sets of shifts, ``(K, m)``, and returns n errors for each set, ``(K, n)``.
+    ``units`` ``(m,)`` are the units of the decimals. Each shift is at most as large as rounding or
+    cutting off allows.
     """
-    # ``units`` ``(m,)`` are the units of the decimals. Each shift is at most as large as rounding
-    # or cutting off allows.
     count = len(units)
     steps = difference_steps(units)
     ways = np.concatenate([np.diag(steps), -np.diag(steps), np.zeros((1, count))])
@@ -583,13 +596,6 @@ def fitted_shifts(
     return fitted_unknowns(linearised, units, count, tolerance)
 
 
-def difference_steps(sizes: Numbers) -> Numbers:
-    """Return the step size of each unknown for computing derivatives by central differences."""
-    # ``sizes`` is the effect of each unknown.
-    # The steps are about as large as the unknowns, and large compared with floating-point errors.
-    return np.maximum(0.5, LEAST_STEP / sizes)
-
-
 def fitted_unknowns(
     linearised: Callable[[Numbers], tuple[Numbers, Numbers]],
     sizes: Numbers,
@@ -598,10 +604,10 @@ def fitted_unknowns(
 ) -> Numbers | None:
     """Find values of N unknowns that leave no error, or return None.
 
-    ``linearised`` returns n errors, and their derivatives ``(n, N)`` by the unknowns.
+    ``linearised`` returns n errors, and their derivatives ``(n, N)`` by the unknowns. The first
+    ``count`` unknowns are shifts. ``sizes`` ``(N,)`` is the direct effect of each unknown on an
+    error. All unknowns are small, so that the Gauss-Newton method needs few steps.
     """
-    # The first ``count`` unknowns are shifts. ``sizes`` ``(N,)`` is the direct effect of each
-    # unknown on an error. All unknowns are small, so that the Gauss-Newton method needs few steps.
     unknowns, first, beyond = np.zeros(len(sizes)), np.inf, 0.0
     for step, least_effect in enumerate(LEAST_EFFECTS):
         error, rates = linearised(unknowns)
@@ -630,13 +636,22 @@ def fitted_unknowns(
     return None
 
 
+def difference_steps(sizes: Numbers) -> Numbers:
+    """Return the step size of each unknown for computing derivatives by central differences.
+
+    ``sizes`` is the effect of each unknown. The steps are about as large as the unknowns, and large
+    compared with floating-point errors.
+    """
+    return np.maximum(0.5, LEAST_STEP / sizes)
+
+
 class SharedDecimals:
     """The rounded decimals of several entries, which must be tested together.
 
-    ``units`` ``(count,)`` is the last place of each decimal.
+    ``units`` ``(count,)`` is the last place of each decimal. ``count`` is 0 if there are no
+    decimals or too many.
     """
 
-    # ``count`` is 0 if there are no decimals or too many.
     def __init__(self, expressions: Sequence[Expression | None], samples: Samples) -> None:
         self._parts: list[tuple[int, Decimals, slice, Mapping[str, Numbers]]] = []
         self.count = 0
@@ -654,8 +669,10 @@ class SharedDecimals:
             self._parts, self.count, self.units = [], 0, np.zeros(0)
 
     def shifted(self, shifts: Numbers, values: Numbers) -> Numbers:
-        """Return ``values`` with shifted decimals, for each of K sets of shifts ``(K, count)``."""
-        # ``values`` is ``(entries, samples)``, the result ``(K, entries, ...)``.
+        """Return ``values`` with shifted decimals, for each of K sets of shifts ``(K, count)``.
+
+        ``values`` is ``(entries, samples)``, the result ``(K, entries, ...)``.
+        """
         moved = np.repeat(values[None], len(shifts), axis=0)
         for i, decimals, places, symbol_values in self._parts:
             moved[:, i] = decimals.shifted(shifts[:, places], symbol_values)
@@ -697,9 +714,3 @@ def _is_between(normal: Numbers, effect: Numbers, bounds: Numbers) -> bool:
         return False
     reached = np.maximum(normal[:count] * bounds[0], normal[:count] * bounds[1]).sum()
     return bool(normal @ effect - reached > SEPARATED * bounds[1].max() * size)
-
-
-def _tolerance(expected: Numbers, scale: ArrayLike) -> Numbers:
-    # ``np.mean`` takes as long as the rest of this function, so compute the mean directly.
-    size = np.sqrt((expected * expected).sum(axis=-1) / expected.shape[-1])
-    return np.asarray(EXACT_VALUE * np.asarray(scale) + FLOATING_POINT * size)

@@ -1,6 +1,7 @@
-"""The report, its findings and levels, the sentences on lost points, and the work budget.
+"""The report of a grading, in the shape that the HTTP contract names, and what goes into it.
 
-It is the result of a grading in the shape that the HTTP contract names.
+This file knows verdicts, findings, the messages of each feedback level, the sentences on lost
+points, and the work that a submission may cost. It judges nothing.
 """
 
 import math
@@ -20,167 +21,8 @@ from dh_grader.translations import Sentence, listed, say, say_count, template
 
 # --- The report: the result of a grading, in the shape that the HTTP contract names
 #
-# Plain frozen dataclasses. A field that is None is left out where a report is sent.
-
-
-# --- Limit the work for grading one submission
-#
-# Work is counted instead of timed, so that the same submission gives the same report.
-
-
-# The pose of a seven-joint arm, multiplied out without simplification and printed as LaTeX or
-# JavaScript, has up to 13,900 symbols, weighted by their cost.
-MAX_SYMBOLS = 14_000
-# For reading a table again with its columns in another order; an ordinary table has 300 symbols.
-MAX_SYMBOLS_AGAIN = 2_400
-# Searching for the repair of an unreadable text costs more than any other reading.
-MAX_REPAIRS = 24
-# For each of these numbers of symbols that a repair reads, it counts as one more repair.
-SYMBOLS_PER_REPAIR = 100
-
-# The characters of pasted texts that are cut into cells; the symbols in the cells are counted again
-# when they are read. The longest allowed text leaves half its length for the other parts.
-MAX_PASTED = 36_000
-# The brackets and quotation marks in these texts, for which partners are searched. The longest pose
-# has 4,100 of them.
-MAX_PASTED_SIGNS = 8_000
-
-# The unit is the least work of a grading: multiplying out six links at all samples.
-MAX_EXPLANATIONS = 145.0
-# Enough to judge a table with unread cells in either convention, and to search for their values.
-MAX_SEARCHES = 280.0
-# The limit for reading, searches and explanations together.
-MAX_WORK = 285.0
-# The work of reading a symbol, of cutting a pasted character into a cell, of finding the partner of
-# a pasted bracket, and of a repair.
-SYMBOL_WORK, PASTED_WORK, SIGN_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1 / 200, 1.5
-
-# The MathML of the pose of a seven-joint arm has 57,000 characters. Nobody reads longer formulas.
-MAX_PRINTED = 60_000
-
-# The limit for a drawing, as a number of symbols: the table, its figure, and the printed formulas.
-# Those of a seven-joint arm cost 13,700.
-MAX_SYMBOLS_DRAWN = 16_000
-SYMBOLS_PER_FIGURE = 2_200
-SYMBOLS_PER_PRINTED_NODE = 2.5
-
-
-_SIGN: Final = regex(r"""[][(){}'"]""")
-
-
-@dataclass(slots=True)
-class WorkBudget:
-    """The work that is still allowed for one submission."""
-
-    # All its parts, pasted texts and angle units share it.
-
-    # The names, numbers and signs that may still be read.
-    symbols: int = MAX_SYMBOLS
-    # The unreadable texts for which a repair may still be searched.
-    repairs: int = MAX_REPAIRS
-    # The characters that may still be cut into cells.
-    pasted: int = MAX_PASTED
-    # The brackets and quotation marks whose partners may still be searched.
-    pasted_signs: int = MAX_PASTED_SIGNS
-    # The work left for explaining mistakes, on which no verdict depends.
-    explanations: float = MAX_EXPLANATIONS
-    # The work left for finding the intended table: values of unread cells, other column orders.
-    searches: float = MAX_SEARCHES
-    # The characters of formulas that a preview may still print.
-    printed: int = MAX_PRINTED
-    # True if an explanation was too expensive.
-    has_left_out: bool = False
-    # The texts that could not be read.
-    unreadable: set[object] = field(default_factory=set)
-    # What was found in each pasted text, by the way of reading it; each text is charged once.
-    found: dict[tuple[object, ...], Any] = field(default_factory=dict)
-    # What was searched for in these texts and in their pieces.
-    searched: dict[tuple[object, str], Any] = field(default_factory=dict)
-    _charged: set[str] = field(default_factory=set)
-    # The whole submission; the work for reading its later parts is reserved.
-    answers: object = None
-    _expected: int = -1
-
-    @classmethod
-    def of_drawing(cls, *, with_figure: bool) -> Self:
-        """Return the budget for drawing the frames, formulas and figure of a table."""
-        return cls(MAX_SYMBOLS_DRAWN - (SYMBOLS_PER_FIGURE if with_figure else 0))
-
-    @property
-    def left(self) -> float:
-        """The work left for explanations."""
-        # The total work minus that of searches and of reading, including the later parts.
-        if self._expected < 0:
-            self._expected = _symbols_of(self.answers)
-        read = (
-            SYMBOL_WORK * max(MAX_SYMBOLS - max(self.symbols, 0), self._expected)
-            + PASTED_WORK * (MAX_PASTED - max(self.pasted, 0))
-            + SIGN_WORK * (MAX_PASTED_SIGNS - max(self.pasted_signs, 0))
-            + REPAIR_WORK * (MAX_REPAIRS - max(self.repairs, 0))
-        )
-        return MAX_WORK - read - (MAX_SEARCHES - self.searches)
-
-    def affords(self, work: float) -> bool:
-        """Charge ``work`` for an explanation; return True if enough work was left."""
-        # The work is also taken if too little is left.
-        checkpoint()
-        self.explanations -= work
-        left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))
-        self.has_left_out |= left < 0
-        return left >= 0
-
-    def affords_search(self, work: float) -> bool:
-        """Charge ``work`` for a search if enough is left; return True if it was charged."""
-        # The result does not depend on earlier explanations.
-        is_afforded = work <= min(self.searches, self.left)
-        if is_afforded:
-            self.charge_search(work)
-        return is_afforded
-
-    def charge_search(self, work: float) -> None:
-        """Charge the work of a necessary search, even if not enough is left."""
-        checkpoint()
-        self.searches -= work
-
-    def charge_reading(self, symbols: int) -> bool:
-        """Charge the reading of a text; return True if it may be read."""
-        self.symbols -= symbols
-        return self.symbols >= 0
-
-    def charge_pasted(self, text: str) -> bool:
-        """Charge the cutting of a pasted text, only once; return True if it may be cut."""
-        checkpoint()
-        if text not in self._charged:
-            self._charged.add(text)
-            self.pasted -= len(text)
-            self.pasted_signs -= len(_SIGN.findall(text))
-        return self.pasted >= 0 and self.pasted_signs >= 0
-
-    def charge_printing(self, nodes: int) -> bool:
-        """Charge the printing of a formula of ``nodes``; return True if it may be printed."""
-        return self.charge_reading(math.ceil(SYMBOLS_PER_PRINTED_NODE * nodes))
-
-    def charge_repair(self, text: object, tried: int) -> None:
-        """Charge the repair of an unreadable text, only once for each text."""
-        # tried symbols were read for the repair.
-        if text not in self.unreadable:
-            self.unreadable.add(text)
-            self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR
-
-
-def _symbols_of(answer: object) -> int:
-    found, waiting = 0, [answer]
-    # No recursion, because lists may be nested deeper than Python's call stack.
-    while waiting and found < MAX_SYMBOLS:
-        match waiting.pop():
-            # Longer texts are never read.
-            case str() as text if len(text) <= GRID_LIMITS.characters:
-                found += reading_cost(text)
-            case Mapping() as fields:
-                waiting.extend(fields.values())
-            case list() as items:
-                waiting.extend(items)
-    return min(found, MAX_SYMBOLS)
+# Plain frozen dataclasses, whose docstrings are part of the contract. A field that is None is left
+# out where a report is sent.
 
 
 # The rules that ``hints.py`` explains. ``of_column`` is the rule of the column of a DH table.
@@ -434,6 +276,240 @@ def row_report(
     return RowReport(label, combined([cell.verdict for cell in cells]), 0.0, 0.0, cells, feedback)
 
 
+# --- Findings: hints with corrections
+
+
+# In a counterexample, what the entry gives, and the right number, which only a tutor is told.
+YOURS = "yours"
+EXPECTED = "expected"
+
+
+@dataclass(frozen=True, slots=True)
+class Finding:
+    """A hint where to look, and the correction. The hint never contains the correct value."""
+
+    # Stable, so that mistakes can be counted by their codes.
+    code: str
+    hint: str
+    # A formula, an instruction in words, or empty.
+    correction: Correction | str = ""
+    severity: Severity = Severity.ERROR
+    span: tuple[int, int] | None = None
+    # A counterexample.
+    values: dict[str, float | str] | None = None
+    # True for a finding on how a text was read; it reveals nothing and is visible at every level.
+    reading: bool = False
+    # The repaired form of an unreadable text.
+    suggestion: str | None = None
+    # The rule that the hint explains.
+    rule: RuleName | None = None
+
+    def message(self, places: tuple[Place, ...] = (), *, corrects: bool) -> Feedback:
+        """Return the message, with the correction only if ``corrects`` is true."""
+        correction, values = self.correction or None, self.values
+        if not corrects:
+            correction = None
+            values = values and {name: values[name] for name in values if name != EXPECTED}
+        return Feedback(
+            code=self.code,
+            severity=self.severity,
+            message=self.hint,
+            places=places or None,
+            span=self.span,
+            suggestion=self.suggestion,
+            correction=Correction(correction) if isinstance(correction, str) else correction,
+            values=values,
+            reading=self.reading or None,
+            rule=self.rule,
+        )
+
+
+def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
+    """Return the finding that a text cannot be read."""
+    return Finding(code, message, span=span, reading=True)
+
+
+def reading_note(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
+    """Return a finding on how a text was read."""
+    return Finding(code, message, severity=Severity.INFO, span=span, reading=True)
+
+
+class UnreadableAnswerError(Exception):
+    """An answer is unreadable as a whole; ``finding`` says what is expected."""
+
+    def __init__(self, finding: Finding) -> None:
+        super().__init__(finding.hint)
+        self.finding = finding
+
+
+ROUNDED = Finding(
+    "rounded",
+    say("Accepted, but rounded. Write the exact number: a fraction, a root or a multiple of π."),
+    severity=Severity.INFO,
+)
+
+
+# --- The messages that each feedback level shows, equal ones once
+
+
+Messages = tuple[Feedback, ...]
+
+_LEVELS_WITH_HINTS: Final = (FeedbackLevel.FULL, FeedbackLevel.HINTS)
+# The note on the reading that is redundant beside the message on a slip, by the slip's code.
+_NOTES_ON: Final = {"swapped_atan2": "atan2_order", "degrees_as_radians": "bare_radians"}
+
+
+def parts_at_level(
+    parts: Iterable[PartReport], level: FeedbackLevel, left_out: Feedback | None
+) -> tuple[PartReport, ...]:
+    """Return the reports on all answers with the messages of this feedback level, each once.
+
+    ``left_out`` is the message that explanations are incomplete, or None.
+    """
+    # Corrections are not removed here: at lower levels, messages are made without corrections.
+    has_hints = level in _LEVELS_WITH_HINTS
+    visible = _with_hints if has_hints else _on_reading
+    shown = [with_shared_messages(_filtered(part, visible)) for part in parts]
+    if left_out is not None and has_hints:
+        shown = _with_left_out(shown, left_out)
+    if level is FeedbackLevel.SCORE:
+        shown = [_without_rows(part) for part in shown]
+    return tuple(shown)
+
+
+def _filtered(part: PartReport, visible: Callable[[Messages], Messages]) -> PartReport:
+    if not part.feedback and not any(map(_has_messages, part.rows)):
+        return part
+    rows = tuple(_filtered_row(row, visible) if _has_messages(row) else row for row in part.rows)
+    return replace(part, rows=rows, feedback=visible(part.feedback))
+
+
+def _has_messages(row: RowReport) -> bool:
+    # Not by `any`: most rows say nothing, and most time went into its generator.
+    return bool(row.feedback or [cell for cell in row.cells if cell.feedback])
+
+
+def _filtered_row(row: RowReport, visible: Callable[[Messages], Messages]) -> RowReport:
+    cells = tuple(
+        replace(cell, feedback=visible(cell.feedback)) if cell.feedback else cell
+        for cell in row.cells
+    )
+    return replace(row, cells=cells, feedback=visible(row.feedback))
+
+
+def _with_hints(messages: Messages) -> Messages:
+    needless = {_NOTES_ON[message.code] for message in messages if message.code in _NOTES_ON}
+    return tuple(_unmarked(each) for each in messages if each.code not in needless)
+
+
+def _on_reading(messages: Messages) -> Messages:
+    return tuple(_unmarked(each) for each in messages if each.reading)
+
+
+def _unmarked(message: Feedback) -> Feedback:
+    return replace(message, reading=None) if message.reading else message
+
+
+def _with_left_out(parts: list[PartReport], left_out: Feedback) -> list[PartReport]:
+    # The first part with an unexplained cell gets the message ``left_out``.
+    for i, part in enumerate(parts):
+        if _has_unexplained_cells(part):
+            told = replace(part, feedback=(*part.feedback, left_out))
+            return [*parts[:i], told, *parts[i + 1 :]]
+    return parts
+
+
+def _has_unexplained_cells(part: PartReport) -> bool:
+    messages = [each for each in part.feedback if each.severity is Severity.ERROR]
+    if any(message.places is None for message in messages):
+        return False
+    told = {(place.row, place.cell) for each in messages for place in each.places or ()}
+    return any(
+        cell.verdict is Verdict.INCORRECT and not cell.feedback and not row.feedback
+        for row in part.rows
+        for cell in row.cells
+        if (row.label, cell.label) not in told and (row.label, None) not in told
+    )
+
+
+def _without_rows(report: PartReport) -> PartReport:
+    # The messages on unreadable cells stay: they reveal nothing, and students need them. Instead of
+    # the points lost in each row, the report has their sum.
+    reading = tuple(
+        replace(message, places=(Place(row.label, cell.label),))
+        for row in report.rows
+        for cell in row.cells
+        for message in cell.feedback
+    )
+    lost = without_places(report.lost) if report.rows else report.lost
+    feedback = (*report.feedback, *reading)
+    return replace(report, rows=(), feedback=feedback, lost=lost, little_worth=None)
+
+
+# Notes that need no span: if several cells share one, it is shown once, without spans.
+_WORDS_ENOUGH = frozenset({"equation", "letter_case"})
+
+# The content of a message: its code, its sentence, the repaired text.
+_Said = tuple[str, str, str | None]
+
+
+def with_shared_messages(report: PartReport) -> PartReport:
+    """Replace equal messages on several cells by one message on the whole answer.
+
+    Messages are equal if they have the same code, sentence and repaired text. The first
+    counterexample is kept. Most messages on a piece of the text in a cell stay with their cell.
+    """
+    in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
+    for row in report.rows:
+        for cell in row.cells:
+            for message in cell.feedback:
+                if _is_shareable(message):
+                    place = Place(row.label, cell.label)
+                    in_cells.setdefault(_said(message), []).append((place, message))
+    shared = {said: told for said, told in in_cells.items() if len(told) > 1}
+    if not shared and len(report.feedback) < 2:
+        return report
+    rows = tuple(
+        replace(row, cells=tuple(_without(cell, shared.keys()) for cell in row.cells))
+        for row in report.rows
+    )
+    messages = (*report.feedback, *map(_together, shared.values()))
+    return replace(report, rows=rows, feedback=_joined(messages))
+
+
+def _is_shareable(message: Feedback) -> bool:
+    return message.span is None or message.code in _WORDS_ENOUGH
+
+
+def _said(message: Feedback) -> _Said:
+    return message.code, message.message, message.suggestion
+
+
+def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
+    # The result has the places of all these messages.
+    first = replace(told[0][1], span=None)
+    if len({message.correction for _, message in told}) == 1:
+        return replace(first, places=tuple(dict.fromkeys(place for place, _ in told)))
+    places = tuple(replace(place, correction=message.correction) for place, message in told)
+    return replace(first, places=places, correction=None)
+
+
+def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
+    own = tuple(m for m in cell.feedback if not _is_shareable(m) or _said(m) not in shared)
+    return cell if len(own) == len(cell.feedback) else replace(cell, feedback=own)
+
+
+def _joined(messages: Iterable[Feedback]) -> tuple[Feedback, ...]:
+    # Equal messages become one message with all their places.
+    found: dict[object, Feedback] = {}
+    for i, message in enumerate(messages):
+        is_placed = message.places is not None and message.span is None
+        key: object = (_said(message), message.correction) if is_placed else i
+        places = (*((key in found and found[key].places) or ()), *(message.places or ()))
+        found[key] = replace(found.get(key, message), places=tuple(dict.fromkeys(places)) or None)
+    return tuple(found.values())
+
+
 # --- The sentences that say where points were lost
 
 
@@ -512,9 +588,11 @@ def _cells_in_row(labels: Sequence[str], row: str) -> Sentence:
 
 
 def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
-    """Return why correct rows of zeros earned few points, or None if there are no such rows."""
-    # rows are the rows without a cell that needs knowledge. most is the number of points of the
-    # part.
+    """Return why correct rows of zeros earned few points, or None if there are no such rows.
+
+    ``rows`` are the rows without a cell that needs knowledge. ``most`` is the number of points of
+    the part.
+    """
     found = [
         row
         for row in rows
@@ -534,228 +612,166 @@ def little_worth(rows: Sequence[RowReport], most: float) -> LittleWorth | None:
     return LittleWorth(labels, rounded_points(sum(row.max_points for row in found)), message)
 
 
-# --- Findings (hints with corrections), and the messages that each feedback level shows
+# --- Limit the work for grading one submission
+#
+# Work is counted instead of timed, so that the same submission gives the same report.
 
 
-# In a counterexample, what the entry gives, and the right number, which only a tutor is told.
-YOURS = "yours"
-EXPECTED = "expected"
+# The pose of a seven-joint arm, multiplied out without simplification and printed as LaTeX or
+# JavaScript, has up to 13,900 symbols, weighted by their cost.
+MAX_SYMBOLS = 14_000
+# For reading a table again with its columns in another order; an ordinary table has 300 symbols.
+MAX_SYMBOLS_AGAIN = 2_400
+# Searching for the repair of an unreadable text costs more than any other reading.
+MAX_REPAIRS = 24
+# For each of these numbers of symbols that a repair reads, it counts as one more repair.
+SYMBOLS_PER_REPAIR = 100
+
+# The characters of pasted texts that are cut into cells; the symbols in the cells are counted again
+# when they are read. The longest allowed text leaves half its length for the other parts.
+MAX_PASTED = 36_000
+# The brackets and quotation marks in these texts, for which partners are searched. The longest pose
+# has 4,100 of them.
+MAX_PASTED_SIGNS = 8_000
+
+# The unit is the least work of a grading: multiplying out six links at all samples.
+MAX_EXPLANATIONS = 145.0
+# Enough to judge a table with unread cells in either convention, and to search for their values.
+MAX_SEARCHES = 280.0
+# The limit for reading, searches and explanations together.
+MAX_WORK = 285.0
+# The work of reading a symbol, of cutting a pasted character into a cell, of finding the partner of
+# a pasted bracket, and of a repair.
+SYMBOL_WORK, PASTED_WORK, SIGN_WORK, REPAIR_WORK = 1 / 100, 1 / 800, 1 / 200, 1.5
+
+# The MathML of the pose of a seven-joint arm has 57,000 characters. Nobody reads longer formulas.
+MAX_PRINTED = 60_000
+
+# The limit for a drawing, as a number of symbols: the table, its figure, and the printed formulas.
+# Those of a seven-joint arm cost 13,700.
+MAX_SYMBOLS_DRAWN = 16_000
+SYMBOLS_PER_FIGURE = 2_200
+SYMBOLS_PER_PRINTED_NODE = 2.5
+
+_SIGN: Final = regex(r"""[][(){}'"]""")
 
 
-@dataclass(frozen=True, slots=True)
-class Finding:
-    """A hint where to look, and the correction. The hint never contains the correct value."""
+@dataclass(slots=True)
+class WorkBudget:
+    """The work that is still allowed for one submission, with all its parts and pasted texts."""
 
-    # Stable, so that mistakes can be counted by their codes.
-    code: str
-    hint: str
-    # A formula, an instruction in words, or empty.
-    correction: Correction | str = ""
-    severity: Severity = Severity.ERROR
-    span: tuple[int, int] | None = None
-    # A counterexample.
-    values: dict[str, float | str] | None = None
-    # True for a finding on how a text was read; it reveals nothing and is visible at every level.
-    reading: bool = False
-    # The repaired form of an unreadable text.
-    suggestion: str | None = None
-    # The rule that the hint explains.
-    rule: RuleName | None = None
+    # The names, numbers and signs that may still be read.
+    symbols: int = MAX_SYMBOLS
+    # The unreadable texts for which a repair may still be searched.
+    repairs: int = MAX_REPAIRS
+    # The characters that may still be cut into cells.
+    pasted: int = MAX_PASTED
+    # The brackets and quotation marks whose partners may still be searched.
+    pasted_signs: int = MAX_PASTED_SIGNS
+    # The work left for explaining mistakes, on which no verdict depends.
+    explanations: float = MAX_EXPLANATIONS
+    # The work left for finding the intended table: values of unread cells, other column orders.
+    searches: float = MAX_SEARCHES
+    # The characters of formulas that a preview may still print.
+    printed: int = MAX_PRINTED
+    # True if an explanation was too expensive.
+    has_left_out: bool = False
+    # The texts that could not be read.
+    unreadable: set[object] = field(default_factory=set)
+    # What was found in each pasted text, by the way of reading it; each text is charged once.
+    found: dict[tuple[object, ...], Any] = field(default_factory=dict)
+    # What was searched for in these texts and in their pieces.
+    searched: dict[tuple[object, str], Any] = field(default_factory=dict)
+    _charged: set[str] = field(default_factory=set)
+    # The whole submission; the work for reading its later parts is reserved.
+    answers: object = None
+    _expected: int = -1
 
-    def message(self, places: tuple[Place, ...] = (), *, corrects: bool) -> Feedback:
-        """Return the message, with the correction only if ``corrects`` is true."""
-        correction, values = self.correction or None, self.values
-        if not corrects:
-            correction = None
-            values = values and {name: values[name] for name in values if name != EXPECTED}
-        return Feedback(
-            code=self.code,
-            severity=self.severity,
-            message=self.hint,
-            places=places or None,
-            span=self.span,
-            suggestion=self.suggestion,
-            correction=Correction(correction) if isinstance(correction, str) else correction,
-            values=values,
-            reading=self.reading or None,
-            rule=self.rule,
+    @classmethod
+    def of_drawing(cls, *, with_figure: bool) -> Self:
+        """Return the budget for drawing the frames, formulas and figure of a table."""
+        return cls(MAX_SYMBOLS_DRAWN - (SYMBOLS_PER_FIGURE if with_figure else 0))
+
+    @property
+    def left(self) -> float:
+        """The work left for explanations.
+
+        It is the total work minus that of searches and of reading, including the later parts.
+        """
+        if self._expected < 0:
+            self._expected = _symbols_of(self.answers)
+        read = (
+            SYMBOL_WORK * max(MAX_SYMBOLS - max(self.symbols, 0), self._expected)
+            + PASTED_WORK * (MAX_PASTED - max(self.pasted, 0))
+            + SIGN_WORK * (MAX_PASTED_SIGNS - max(self.pasted_signs, 0))
+            + REPAIR_WORK * (MAX_REPAIRS - max(self.repairs, 0))
         )
+        return MAX_WORK - read - (MAX_SEARCHES - self.searches)
+
+    def affords(self, work: float) -> bool:
+        """Charge ``work`` for an explanation; return True if enough work was left.
+
+        The work is also taken if too little is left.
+        """
+        checkpoint()
+        self.explanations -= work
+        left = min(self.explanations, self.left - (MAX_EXPLANATIONS - self.explanations))
+        self.has_left_out |= left < 0
+        return left >= 0
+
+    def affords_search(self, work: float) -> bool:
+        """Charge ``work`` for a search if enough is left; return True if it was charged.
+
+        The result does not depend on earlier explanations.
+        """
+        is_afforded = work <= min(self.searches, self.left)
+        if is_afforded:
+            self.charge_search(work)
+        return is_afforded
+
+    def charge_search(self, work: float) -> None:
+        """Charge the work of a necessary search, even if not enough is left."""
+        checkpoint()
+        self.searches -= work
+
+    def charge_reading(self, symbols: int) -> bool:
+        """Charge the reading of a text; return True if it may be read."""
+        self.symbols -= symbols
+        return self.symbols >= 0
+
+    def charge_pasted(self, text: str) -> bool:
+        """Charge the cutting of a pasted text, only once; return True if it may be cut."""
+        checkpoint()
+        if text not in self._charged:
+            self._charged.add(text)
+            self.pasted -= len(text)
+            self.pasted_signs -= len(_SIGN.findall(text))
+        return self.pasted >= 0 and self.pasted_signs >= 0
+
+    def charge_printing(self, nodes: int) -> bool:
+        """Charge the printing of a formula of ``nodes``; return True if it may be printed."""
+        return self.charge_reading(math.ceil(SYMBOLS_PER_PRINTED_NODE * nodes))
+
+    def charge_repair(self, text: object, tried: int) -> None:
+        """Charge the repair of an unreadable text, only once for each text.
+
+        ``tried`` is the number of symbols that were read for the repair.
+        """
+        if text not in self.unreadable:
+            self.unreadable.add(text)
+            self.repairs -= 1 + tried // SYMBOLS_PER_REPAIR
 
 
-def reading_error(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
-    """Return the finding that a text cannot be read."""
-    return Finding(code, message, span=span, reading=True)
-
-
-def reading_note(code: str, message: str, span: tuple[int, int] | None = None) -> Finding:
-    """Return a finding on how a text was read."""
-    return Finding(code, message, severity=Severity.INFO, span=span, reading=True)
-
-
-class UnreadableAnswerError(Exception):
-    """An answer is unreadable as a whole; ``finding`` says what is expected."""
-
-    def __init__(self, finding: Finding) -> None:
-        super().__init__(finding.hint)
-        self.finding = finding
-
-
-ROUNDED = Finding(
-    "rounded",
-    say("Accepted, but rounded. Write the exact number: a fraction, a root or a multiple of π."),
-    severity=Severity.INFO,
-)
-
-
-Messages = tuple[Feedback, ...]
-
-_LEVELS_WITH_HINTS: Final = (FeedbackLevel.FULL, FeedbackLevel.HINTS)
-# The note on the reading that is redundant beside the message on a slip, by the slip's code.
-_NOTES_ON: Final = {"swapped_atan2": "atan2_order", "degrees_as_radians": "bare_radians"}
-
-
-def parts_at_level(
-    parts: Iterable[PartReport], level: FeedbackLevel, left_out: Feedback | None
-) -> tuple[PartReport, ...]:
-    """Return the reports on all answers with the messages that this feedback level shows."""
-    # Without repetitions. left_out is the message that explanations are incomplete, or None.
-    # Corrections are not removed here: at lower levels, messages are made without corrections.
-    has_hints = level in _LEVELS_WITH_HINTS
-    visible = _with_hints if has_hints else _on_reading
-    shown = [with_shared_messages(_filtered(part, visible)) for part in parts]
-    if left_out is not None and has_hints:
-        shown = _with_left_out(shown, left_out)
-    if level is FeedbackLevel.SCORE:
-        shown = [_without_rows(part) for part in shown]
-    return tuple(shown)
-
-
-def _filtered(part: PartReport, visible: Callable[[Messages], Messages]) -> PartReport:
-    if not part.feedback and not any(map(_has_messages, part.rows)):
-        return part
-    rows = tuple(_filtered_row(row, visible) if _has_messages(row) else row for row in part.rows)
-    return replace(part, rows=rows, feedback=visible(part.feedback))
-
-
-def _has_messages(row: RowReport) -> bool:
-    # Not by `any`: most rows say nothing, and most time went into its generator.
-    return bool(row.feedback or [cell for cell in row.cells if cell.feedback])
-
-
-def _filtered_row(row: RowReport, visible: Callable[[Messages], Messages]) -> RowReport:
-    cells = tuple(
-        replace(cell, feedback=visible(cell.feedback)) if cell.feedback else cell
-        for cell in row.cells
-    )
-    return replace(row, cells=cells, feedback=visible(row.feedback))
-
-
-def _with_hints(messages: Messages) -> Messages:
-    needless = {_NOTES_ON[message.code] for message in messages if message.code in _NOTES_ON}
-    return tuple(_unmarked(each) for each in messages if each.code not in needless)
-
-
-def _on_reading(messages: Messages) -> Messages:
-    return tuple(_unmarked(each) for each in messages if each.reading)
-
-
-def _unmarked(message: Feedback) -> Feedback:
-    return replace(message, reading=None) if message.reading else message
-
-
-def _with_left_out(parts: list[PartReport], left_out: Feedback) -> list[PartReport]:
-    # The first part with an unexplained cell gets the message left_out.
-    for i, part in enumerate(parts):
-        if _has_unexplained_cells(part):
-            told = replace(part, feedback=(*part.feedback, left_out))
-            return [*parts[:i], told, *parts[i + 1 :]]
-    return parts
-
-
-def _has_unexplained_cells(part: PartReport) -> bool:
-    messages = [each for each in part.feedback if each.severity is Severity.ERROR]
-    if any(message.places is None for message in messages):
-        return False
-    told = {(place.row, place.cell) for each in messages for place in each.places or ()}
-    return any(
-        cell.verdict is Verdict.INCORRECT and not cell.feedback and not row.feedback
-        for row in part.rows
-        for cell in row.cells
-        if (row.label, cell.label) not in told and (row.label, None) not in told
-    )
-
-
-def _without_rows(report: PartReport) -> PartReport:
-    # The messages on unreadable cells stay: they reveal nothing, and students need them. Instead of
-    # the points lost in each row, the report has their sum.
-    reading = tuple(
-        replace(message, places=(Place(row.label, cell.label),))
-        for row in report.rows
-        for cell in row.cells
-        for message in cell.feedback
-    )
-    lost = without_places(report.lost) if report.rows else report.lost
-    feedback = (*report.feedback, *reading)
-    return replace(report, rows=(), feedback=feedback, lost=lost, little_worth=None)
-
-
-# Notes that need no span: if several cells share one, it is shown once, without spans.
-_WORDS_ENOUGH = frozenset({"equation", "letter_case"})
-
-# The content of a message: its code, its sentence, the repaired text.
-_Said = tuple[str, str, str | None]
-
-
-def with_shared_messages(report: PartReport) -> PartReport:
-    """Replace equal messages on several cells by one message on the whole answer."""
-    # Messages are equal if they have the same code, sentence and repaired text. The first
-    # counterexample is kept. Most messages on a piece of the text in a cell stay with their cell.
-    in_cells: dict[_Said, list[tuple[Place, Feedback]]] = {}
-    for row in report.rows:
-        for cell in row.cells:
-            for message in cell.feedback:
-                if _is_shareable(message):
-                    place = Place(row.label, cell.label)
-                    in_cells.setdefault(_said(message), []).append((place, message))
-    shared = {said: told for said, told in in_cells.items() if len(told) > 1}
-    if not shared and len(report.feedback) < 2:
-        return report
-    rows = tuple(
-        replace(row, cells=tuple(_without(cell, shared.keys()) for cell in row.cells))
-        for row in report.rows
-    )
-    messages = (*report.feedback, *map(_together, shared.values()))
-    return replace(report, rows=rows, feedback=_joined(messages))
-
-
-def _is_shareable(message: Feedback) -> bool:
-    return message.span is None or message.code in _WORDS_ENOUGH
-
-
-def _said(message: Feedback) -> _Said:
-    return message.code, message.message, message.suggestion
-
-
-def _together(told: Sequence[tuple[Place, Feedback]]) -> Feedback:
-    # The result has the places of all these messages.
-    first = replace(told[0][1], span=None)
-    if len({message.correction for _, message in told}) == 1:
-        return replace(first, places=tuple(dict.fromkeys(place for place, _ in told)))
-    places = tuple(replace(place, correction=message.correction) for place, message in told)
-    return replace(first, places=places, correction=None)
-
-
-def _without(cell: CellReport, shared: Set[_Said]) -> CellReport:
-    own = tuple(m for m in cell.feedback if not _is_shareable(m) or _said(m) not in shared)
-    return cell if len(own) == len(cell.feedback) else replace(cell, feedback=own)
-
-
-def _joined(messages: Iterable[Feedback]) -> tuple[Feedback, ...]:
-    # Equal messages become one message with all their places.
-    found: dict[object, Feedback] = {}
-    for i, message in enumerate(messages):
-        is_placed = message.places is not None and message.span is None
-        key: object = (_said(message), message.correction) if is_placed else i
-        places = (*((key in found and found[key].places) or ()), *(message.places or ()))
-        found[key] = replace(found.get(key, message), places=tuple(dict.fromkeys(places)) or None)
-    return tuple(found.values())
+def _symbols_of(answer: object) -> int:
+    found, waiting = 0, [answer]
+    # No recursion, because lists may be nested deeper than Python's call stack.
+    while waiting and found < MAX_SYMBOLS:
+        match waiting.pop():
+            # Longer texts are never read.
+            case str() as text if len(text) <= GRID_LIMITS.characters:
+                found += reading_cost(text)
+            case Mapping() as fields:
+                waiting.extend(fields.values())
+            case list() as items:
+                waiting.extend(items)
+    return min(found, MAX_SYMBOLS)

@@ -1,6 +1,7 @@
 """The misconceptions that explain wrong answers.
 
-Importing this package registers all misconceptions: its modules register their own.
+Importing this package registers all misconceptions: each file registers its own. The engine that
+tries them is ``misconception.py``; tables are in the files with "table" in their names.
 """
 
 import dh_grader.grading.diagnosis.formulas

@@ -1,4 +1,8 @@
-"""Find a wrong formula's quantity, and a small change that makes it right."""
+"""Find a wrong formula's quantity, and a small change that makes it right.
+
+This file rewrites the trees of formulas. Which rewriting stands for which mistake of a student is
+in ``matrices.py``.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -185,10 +189,8 @@ class WrongEntry(WrongValue):
 
 # --- Functions that correct one possible mistake in a student's formula
 #
-# The functions return a new tree and never change the old one.
-#
-# The new tree shares all unchanged parts with the old one. If there is nothing to rewrite, the old
-# tree itself is returned.
+# The functions return a new tree, which shares all unchanged parts with the old one, and never
+# change the old one. If there is nothing to rewrite, the old tree itself is returned.
 
 
 Rewriting = Callable[[Node], Node]
@@ -352,8 +354,10 @@ class _Term(NamedTuple):
 
 
 def sums_merged(node: Node) -> Node:
-    """Return the node with cos a + cos b replaced by cos(a + b), and likewise for sines."""
-    # Only terms with equal other factors are merged.
+    """Return the node with cos a + cos b replaced by cos(a + b), and likewise for sines.
+
+    Only terms with equal other factors are merged.
+    """
     if not _is_sum(node):
         return mapped(node, sums_merged)
     terms = [_split(sign, sums_merged(term)) for sign, term in terms_of(node)]
@@ -420,8 +424,10 @@ def _merged_factors(
 
 
 def joints_multiplied(tree: Node, turning: Sequence[int]) -> list[frozenset[int]]:
-    """Return sets of joints whose sines (or cosines) are multiplied: {1, 2} for c1 c2."""
-    # Each set has two or more consecutive joints of turning.
+    """Return sets of joints whose sines (or cosines) are multiplied: {1, 2} for c1 c2.
+
+    Each set has two or more consecutive joints of ``turning``.
+    """
     found: dict[frozenset[int], None] = {}
     for factors in _products(tree):
         for function in EXCHANGED:
@@ -494,8 +500,10 @@ def _with_sign(sign: int, node: Node) -> Node:
 
 
 def negated(node: Node) -> Node:
-    """Return the node with the opposite sign."""
-    # In a product the first factor gets the minus.
+    """Return the node with the opposite sign.
+
+    In a product the first factor gets the minus.
+    """
     if isinstance(node, Negation):
         return node.operand
     if isinstance(node, Binary) and node.operator in ("*", "/"):

@@ -1,4 +1,8 @@
-"""Slips in a list of values: coordinates, sums of angles, single angles, Euler angles."""
+"""Slips in a list of values: coordinates, sums of angles, single angles, Euler angles.
+
+This file knows slips of numbers in a list. Slips in the table that lead to wrong coordinates are
+searched in ``upstream.py``, slips in the formula of a value in ``matrices.py``.
+"""
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -84,9 +88,11 @@ def slips_of(
     grading: Grading,
     answers: SlippedAnswers | None = None,
 ) -> dict[tuple[int, int], Finding]:
-    """Return the findings on the wrong values of a list; the keys are ``(index, 0)``."""
-    # The work budget limits the findings. answers tells on which symbols each correct value
-    # depends.
+    """Return the findings on the wrong values of a list; the keys are ``(index, 0)``.
+
+    The work budget limits the findings. ``answers`` tells on which symbols each correct value
+    depends.
+    """
     student, scales = compared.student, compared.scales(grading)
     requirements = answers and Requirements(
         answers, grading.exercise, grading.samples, compared.expected, scales
@@ -158,8 +164,10 @@ def exchanged_coordinates(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=20)
 def slip(case: WrongPosition) -> Explained | None:
-    """A likely mistake in the table explains the position."""
-    # It is likelier than a reversed position.
+    """A likely mistake in the table explains the position.
+
+    It is likelier than a reversed position.
+    """
     found = case.slip
     return None if found is None or found.findings[0].code in AFTER_SIGNS else found
 
@@ -183,8 +191,10 @@ def reversed_position(case: WrongPosition) -> Hypotheses:
 
 @check(of=WrongPosition, rank=40)
 def slip_after_signs(case: WrongPosition) -> Explained | None:
-    """A less likely mistake in the table explains the position."""
-    # It is less likely than a reversed position.
+    """A less likely mistake in the table explains the position.
+
+    It is less likely than a reversed position.
+    """
     return case.slip
 
 
@@ -205,8 +215,10 @@ def length_unit(case: WrongPosition) -> Hypotheses:
 
 @misconception(of=WrongPosition, rank=50)
 def other_pose(case: WrongPosition) -> Hypotheses:
-    """The position is that of a wrong pose, such as the pose of a wrong frame."""
-    # A constant position, such as the origin itself, does not show which pose it belongs to.
+    """The position is that of a wrong pose, such as the pose of a wrong frame.
+
+    A constant position, such as the origin itself, does not show which pose it belongs to.
+    """
     for pose in other_poses(case.chains):
         position = np.moveaxis(pose.answer, 0, -1)[list(case.axes), 3]
         if np.ptp(position, axis=-1).max() > EXACT_VALUE:
@@ -444,6 +456,13 @@ class WrongAngle(WrongValue):
     """A wrong angle; misconceptions about angles are registered under this class."""
 
 
+def diagnose_angle(case: WrongValue) -> Finding:
+    """Return the finding on a wrong angle."""
+    finding = diagnosed(case, of=WrongAngle)
+    assert finding is not None
+    return finding
+
+
 @misconception(
     of=WrongAngle,
     rank=100,
@@ -582,8 +601,10 @@ def half_turn(case: WrongValue) -> Hypotheses:
     unlike={"3/1": "theta6/2"},
 )
 def swapped_atan2(case: WrongValue) -> Hypotheses:
-    """The arguments of atan2 were exchanged."""
-    # If the angle is a constant and no arctangent, a wrong quarter turn is more likely.
+    """The arguments of atan2 were exchanged.
+
+    If the angle is a constant and no arctangent, a wrong quarter turn is more likely.
+    """
     if np.ptp(case.expected) > ROUNDED_VALUE or is_arctangent(case.expression.tree):
         yield Written(np.pi / 2 - case.expected, finding_on(case, ARGUMENTS_SWAPPED))
 
@@ -633,13 +654,6 @@ def unexplained(case: WrongValue) -> Finding:
     return differs(case, NOT_RIGHT)
 
 
-def diagnose_angle(case: WrongValue) -> Finding:
-    """Return the finding on a wrong angle."""
-    finding = diagnosed(case, of=WrongAngle)
-    assert finding is not None
-    return finding
-
-
 # --- Slips in the three Euler angles of a rotation
 
 
@@ -670,6 +684,14 @@ class WrongTriple:
 
 
 RepairedTriple = Repaired[WrongTriple]
+
+
+def explain_triple(case: WrongTriple) -> Explained | None:
+    """Return the misconception that explains the three angles, or None.
+
+    The entries of the result are the angles that have the slip.
+    """
+    return None if case.is_right else explanation(case)
 
 
 @misconception(
@@ -798,9 +820,3 @@ def _asked_for(sequence: str, *, fixed: bool) -> Sentence:
     if fixed:
         return say("Asked for are those of {sequence} about fixed axes.", sequence=sequence)
     return say("Asked for are those of {sequence} about moving axes.", sequence=sequence)
-
-
-def explain_triple(case: WrongTriple) -> Explained | None:
-    """Return the misconception that explains the three angles, or None."""
-    # The entries of the result are the angles that have the slip.
-    return None if case.is_right else explanation(case)

@@ -1,4 +1,8 @@
-"""Slips in a matrix: one entry, a column or row, the whole, or a wrong inverse."""
+"""Slips in a matrix: one entry, a column or row, the whole, or a wrong inverse.
+
+This file knows slips of any matrix or transform. Slips in a product of links are in ``motions.py``
+and ``products.py``, slips in the table that lead to a wrong matrix in ``upstream.py``.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -9,7 +13,7 @@ import numpy as np
 from dh_grader.expressions import Symbol
 from dh_grader.expressions.parser import in_degrees
 from dh_grader.expressions.vocabulary import Node, Number, Unit, children
-from dh_grader.grading.diagnosis import formulas as rewriting
+from dh_grader.grading.diagnosis import formulas
 from dh_grader.grading.diagnosis.formulas import Rewritten, WrongEntry
 from dh_grader.grading.diagnosis.motions import (
     BOTTOM_ROW,
@@ -64,6 +68,42 @@ COST_IF_EXPLAINED = 0.25
 ENTRY_WORK, NODE_WORK = 1.0, 0.2
 
 Formulas = Iterator[Rewritten]
+
+
+def diagnose(case: WrongEntry, required: Required | None = None) -> Finding:
+    """Return the finding on a wrong entry.
+
+    ``required`` are the symbols that the correct entry depends on, or None if they are unknown.
+    """
+    return diagnosed(case) or _by_dependence(case, required)
+
+
+def diagnose_entries(
+    wrong: Mapping[tuple[int, int], WrongEntry],
+    affords: Callable[[float], bool],
+    work_budget: float = WORK_BUDGET,
+    requirements: Requirements | None = None,
+) -> dict[tuple[int, int], Finding]:
+    """Return the findings on the wrong entries of a matrix.
+
+    ``affords`` takes work from the budget of the submission; ``work_budget`` is the budget of the
+    matrix. When it is used up, formulas are no longer rewritten.
+    """
+    findings: dict[tuple[int, int], Finding] = {}
+    for place, entry in wrong.items():
+        if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):
+            continue
+        explained = diagnosed(entry if work_budget > 0 else replace(entry, only_compared=True))
+        work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
+        required = requirements.of(*place) if requirements and not explained else None
+        findings[place] = explained or _by_dependence(entry, required)
+    return findings
+
+
+def _by_dependence(case: WrongEntry, required: Required | None) -> Finding:
+    finding = diagnosed(case, Dependence(case, required))
+    assert finding is not None
+    return finding
 
 
 @misconception(
@@ -134,7 +174,7 @@ def radians_as_degrees(case: WrongEntry) -> Formulas:
             "unit behind it (rad)."
         ),
     )
-    yield Rewritten(rewriting.everywhere(case.tree, rewriting.without_degrees), finding)
+    yield Rewritten(formulas.everywhere(case.tree, formulas.without_degrees), finding)
 
 
 @misconception(
@@ -152,10 +192,10 @@ def sine_for_cosine(case: WrongEntry) -> Formulas:
     count = len(case.sines_and_cosines)
     if count > 0:
         finding = says(say("Sine and cosine are exchanged."))
-        yield Rewritten(rewriting.at_sines_and_cosines(case.tree, rewriting.exchanged), finding)
+        yield Rewritten(formulas.at_sines_and_cosines(case.tree, formulas.exchanged), finding)
     if count > 1:
         in_one_place = says(say("Sine and cosine are exchanged in one place."))
-        for tree, _ in rewriting.one_place(case.tree, rewriting.exchanged):
+        for tree, _ in formulas.one_place(case.tree, formulas.exchanged):
             yield Rewritten(tree, in_one_place)
 
 
@@ -178,7 +218,7 @@ def sum_of_cosines(case: WrongEntry) -> Formulas:
         ),
     )
     if len(case.sines_and_cosines) > 1:
-        yield Rewritten(rewriting.sums_merged(case.tree), finding)
+        yield Rewritten(formulas.sums_merged(case.tree), finding)
 
 
 @misconception(
@@ -200,9 +240,9 @@ def product_for_sum_angle(case: WrongEntry) -> Formulas:
         ),
     )
     if len(case.sines_and_cosines) > 1:
-        yield Rewritten(rewriting.products_merged(case.tree), finding)
-        for joints in rewriting.joints_multiplied(case.tree, sorted(case.turning))[:MAX_RUNS]:
-            yield Rewritten(rewriting.products_merged(case.tree, joints), finding)
+        yield Rewritten(formulas.products_merged(case.tree), finding)
+        for joints in formulas.joints_multiplied(case.tree, sorted(case.turning))[:MAX_RUNS]:
+            yield Rewritten(formulas.products_merged(case.tree, joints), finding)
 
 
 @misconception(
@@ -224,8 +264,8 @@ def relative_angle(case: WrongEntry) -> Formulas:
         ),
     )
     for first in sorted(case.turning)[:-1] if case.sines_and_cosines else ():
-        summed = rewriting.summed_from(first, case.turning)
-        yield Rewritten(rewriting.at_sines_and_cosines(case.tree, summed), finding)
+        summed = formulas.summed_from(first, case.turning)
+        yield Rewritten(formulas.at_sines_and_cosines(case.tree, summed), finding)
 
 
 @misconception(
@@ -248,7 +288,7 @@ def angle_left_out(case: WrongEntry) -> Formulas:
                 angle=case.spelling.name(symbol),
             ),
         )
-        yield from _with_angles_changed(case, rewriting.with_angle(symbol), finding)
+        yield from _with_angles_changed(case, formulas.with_angle(symbol), finding)
 
 
 @misconception(
@@ -271,7 +311,7 @@ def angle_too_many(case: WrongEntry) -> Formulas:
                 angle=case.spelling.name(symbol),
             ),
         )
-        yield from _with_angles_changed(case, rewriting.without_angle(symbol), finding)
+        yield from _with_angles_changed(case, formulas.without_angle(symbol), finding)
 
 
 def _joint_angles(case: WrongEntry) -> list[Symbol]:
@@ -279,12 +319,12 @@ def _joint_angles(case: WrongEntry) -> list[Symbol]:
 
 
 def _with_angles_changed(
-    case: WrongEntry, change: rewriting.Rewriting, finding: Finding
+    case: WrongEntry, change: formulas.Rewriting, finding: Finding
 ) -> Formulas:
     # If the formula is short, each single sine or cosine is also changed alone.
-    yield Rewritten(rewriting.at_sines_and_cosines(case.tree, change), finding, signed=True)
+    yield Rewritten(formulas.at_sines_and_cosines(case.tree, change), finding, signed=True)
     if 1 < len(case.sines_and_cosines) <= MAX_PLACES:
-        for tree, _ in rewriting.one_place(case.tree, change):
+        for tree, _ in formulas.one_place(case.tree, change):
             yield Rewritten(tree, finding, signed=True)
 
 
@@ -301,43 +341,9 @@ def _with_angles_changed(
 def term_sign(case: WrongEntry) -> Formulas:
     """One term of a sum has the wrong sign."""
     finding = says(say("One term has the wrong sign."))
-    for change in (rewriting.other_operator, rewriting.first_term_negated):
-        for tree, _ in rewriting.one_place(case.tree, change):
+    for change in (formulas.other_operator, formulas.first_term_negated):
+        for tree, _ in formulas.one_place(case.tree, change):
             yield Rewritten(tree, finding, signed=True)
-
-
-def diagnose(case: WrongEntry, required: Required | None = None) -> Finding:
-    """Return the finding on a wrong entry.
-
-    ``required`` are the symbols that the correct entry depends on, or None if they are unknown.
-    """
-    return diagnosed(case) or _unexplained(case, required)
-
-
-def diagnose_entries(
-    wrong: Mapping[tuple[int, int], WrongEntry],
-    affords: Callable[[float], bool],
-    work_budget: float = WORK_BUDGET,
-    requirements: Requirements | None = None,
-) -> dict[tuple[int, int], Finding]:
-    """Return the findings on the wrong entries of a matrix."""
-    # affords takes work from the budget of the submission; work_budget is the budget of the matrix.
-    # When it is used up, formulas are no longer rewritten.
-    findings: dict[tuple[int, int], Finding] = {}
-    for place, entry in wrong.items():
-        if not affords(ENTRY_WORK + (NODE_WORK * entry.size if work_budget > 0 else 0.0)):
-            continue
-        explained = diagnosed(entry if work_budget > 0 else replace(entry, only_compared=True))
-        work_budget -= entry.size * (COST_IF_EXPLAINED if explained else 1.0)
-        required = requirements.of(*place) if requirements and not explained else None
-        findings[place] = explained or _unexplained(entry, required)
-    return findings
-
-
-def _unexplained(case: WrongEntry, required: Required | None) -> Finding:
-    finding = diagnosed(case, Dependence(case, required))
-    assert finding is not None
-    return finding
 
 
 # --- Columns and rows of a matrix whose signs are all wrong
@@ -360,8 +366,10 @@ class Lines:
     unlike={"1/4": "1"},
 )
 def line_sign(case: MatrixCase) -> Hypotheses:
-    """A whole column or row has the wrong sign."""
-    # A column or row with a single wrong entry is not reported here.
+    """A whole column or row has the wrong sign.
+
+    A column or row with a single wrong entry is not reported here.
+    """
     opposite = case.agree(case.actual, -case.expected)
     wrong = case.wrong & case.mask(UPPER_ROWS)
     columns = [j for j in range(wrong.shape[1]) if opposite[:3, j].all() and wrong[:, j].sum() > 1]
@@ -383,7 +391,7 @@ def _column_sign(columns: list[int]) -> Finding:
         "frame should point.",
         count=len(columns),
         columns=_numbers(columns),
-        parts=_line_signs_parts(columns),
+        parts=_axes_named(columns),
     )
     return Finding("column_sign", hint, say("Change the sign of each entry there."))
 
@@ -397,7 +405,7 @@ def _row_sign(rows: list[int]) -> Finding:
         "frame should point.",
         count=len(rows),
         rows=_numbers(rows),
-        parts=_line_signs_parts(rows),
+        parts=_axes_named(rows),
     )
     return Finding("row_sign", hint, say("Change the sign of each entry there."))
 
@@ -406,7 +414,7 @@ def _numbers(indices: list[int]) -> str:
     return listed([str(i + 1) for i in indices])
 
 
-def _line_signs_parts(indices: list[int]) -> str:
+def _axes_named(indices: list[int]) -> str:
     names = [*(say("{letter} axis", letter=letter) for letter in "xyz"), say("position vector")]
     return listed([names[i] for i in indices])
 
@@ -418,6 +426,43 @@ def _line_signs_parts(indices: list[int]) -> str:
 
 class BottomRow:
     """The bottom row of a wrong matrix."""
+
+
+def explain(case: MatrixCase) -> list[Explanation]:
+    """Return explanations of the whole matrix, its rotation or its position."""
+    whole = explanation(case)
+    if whole is not None or not case.rigid:
+        return as_explanations(case, whole)
+    explained = as_explanations(case, explanation(case, of=BottomRow))
+    if case.wrong[UPPER_ROWS].any():
+        explained += as_explanations(case, explanation(case, of=UpperRows)) or _of_blocks(case)
+    return explained
+
+
+def _of_blocks(case: MatrixCase) -> list[Explanation]:
+    explained: list[Explanation] = []
+    for block, kind in ((ROTATION_BLOCK, RotationBlock), (POSITION_BLOCK, PositionBlock)):
+        if case.wrong[block].any():
+            explained += as_explanations(case, explanation(case, of=kind))
+    rest = replace(case, wrong=unexplained(case, explained))
+    return explained + as_explanations(rest, explanation(rest, of=Lines))
+
+
+def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
+    """Return a mask of the wrong entries that no explanation covers."""
+    return np.asarray(case.wrong & ~np.any([each.entries for each in explained], axis=0))
+
+
+def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:
+    """Return a finding if the student's rotation is left-handed or not orthonormal, else None.
+
+    ``slips`` are the findings on the single entries.
+    """
+    rotation = np.moveaxis(case.actual[ROTATION_BLOCK], -1, 0)
+    codes = [finding.code for (i, j), finding in slips.items() if i < 3 and j < 3]
+    if not (case.rigid and codes and np.isfinite(rotation).all()):
+        return None
+    return diagnosed(case, WrongAxes(rotation, codes))
 
 
 @misconception(
@@ -714,56 +759,18 @@ def _fault(rotation: Numbers) -> Sentence | None:
     return None
 
 
-def explain(case: MatrixCase) -> list[Explanation]:
-    """Return explanations of the whole matrix, its rotation or its position."""
-    whole = explanation(case)
-    if whole is not None or not case.rigid:
-        return as_explanations(case, whole)
-    explained = as_explanations(case, explanation(case, of=BottomRow))
-    if case.wrong[UPPER_ROWS].any():
-        explained += as_explanations(case, explanation(case, of=UpperRows)) or _of_blocks(case)
-    return explained
-
-
-def _of_blocks(case: MatrixCase) -> list[Explanation]:
-    explained: list[Explanation] = []
-    for block, kind in ((ROTATION_BLOCK, RotationBlock), (POSITION_BLOCK, PositionBlock)):
-        if case.wrong[block].any():
-            explained += as_explanations(case, explanation(case, of=kind))
-    rest = replace(case, wrong=unexplained(case, explained))
-    return explained + as_explanations(rest, explanation(rest, of=Lines))
-
-
-def unexplained(case: MatrixCase, explained: Sequence[Explanation]) -> Mask:
-    """Return a mask of the wrong entries that no explanation covers."""
-    return np.asarray(case.wrong & ~np.any([each.entries for each in explained], axis=0))
-
-
-def check_yourself(case: MatrixCase, slips: Mapping[tuple[int, int], Finding]) -> Finding | None:
-    """Return a finding if the student's rotation is left-handed or not orthonormal, else None.
-
-    ``slips`` are the findings on the single entries.
-    """
-    rotation = np.moveaxis(case.actual[ROTATION_BLOCK], -1, 0)
-    codes = [finding.code for (i, j), finding in slips.items() if i < 3 and j < 3]
-    if not (case.rigid and codes and np.isfinite(rotation).all()):
-        return None
-    return diagnosed(case, WrongAxes(rotation, codes))
-
-
 # --- Slips in the inverse of a homogeneous transform
 #
-# If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp.
-#
-# The same wrong numbers also occur in transforms that are not inverses. They then mean a vector in
-# the wrong frame or in the opposite direction.
+# If R and p are the rotation and position of a transform, its inverse has Rᵀ and −Rᵀp. The same
+# wrong numbers also occur in transforms that are not inverses. They then mean a vector in the wrong
+# frame or in the opposite direction.
 
 
 def _with_rule(sentence: Sentence) -> Finding:
     return says(say("{sentence} The inverse of (R, p) is (Rᵀ, −Rᵀp).", sentence=sentence))
 
 
-def _inverse_slips_parts(case: MatrixCase) -> tuple[Numbers, Numbers]:
+def _parts_of_inverse(case: MatrixCase) -> tuple[Numbers, Numbers]:
     # The rotation (3, 3, samples) and the position (3, samples) of the inverse.
     rotation = np.swapaxes(case.expected[ROTATION_BLOCK], 0, 1)
     return rotation, -_turned(rotation, case.expected[:3, 3])
@@ -796,7 +803,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
         )
     )
     if case.is_transform:
-        rotation, position = _inverse_slips_parts(case)
+        rotation, position = _parts_of_inverse(case)
         written = np.swapaxes(case.expected, 0, 1).copy()
         written[:3, :3] = np.swapaxes(rotation, 0, 1)
         written[3, :3], written[:3, 3] = position, 0.0
@@ -820,7 +827,7 @@ def transposed_for_inverse(case: MatrixCase) -> Hypotheses:
 def negated_for_inverse(case: MatrixCase) -> Hypotheses:
     """The student changed signs to invert a transform."""
     if case.is_transform:
-        rotation, position = _inverse_slips_parts(case)
+        rotation, position = _parts_of_inverse(case)
         for sign in (1, -1):
             written = np.concatenate([sign * rotation, -position[:, None]], axis=1)
             yield Written(written, NEGATED, UPPER_ROWS)
@@ -865,7 +872,7 @@ def position_not_turned(case: MatrixCase) -> Hypotheses:
         )
     )
     if case.is_transform:
-        _, position = _inverse_slips_parts(case)
+        _, position = _parts_of_inverse(case)
         yield _position(-position, finding)
 
 
@@ -885,7 +892,7 @@ def position_not_inverted(case: MatrixCase) -> Hypotheses:
         say("The position is still that of the transform that was to be inverted.")
     )
     if case.is_transform:
-        _, position = _inverse_slips_parts(case)
+        _, position = _parts_of_inverse(case)
         yield _position(position, finding)
 
 
@@ -924,7 +931,7 @@ def position_turned_back(case: MatrixCase) -> Hypotheses:
     """The student wrote −R p instead of −Rᵀp for the position of the inverse."""
     finding = _with_rule(say("The position was turned by R, not by its transpose."))
     if case.is_transform:
-        rotation, position = _inverse_slips_parts(case)
+        rotation, position = _parts_of_inverse(case)
         for sign in (-1, 1):
             yield _position(sign * _turned(rotation, position), finding)
 

@@ -1,4 +1,8 @@
-"""Slips in a product of link transforms or in a given motion, and the case of a wrong matrix."""
+"""The case of a wrong matrix, slips in a product of link transforms, and the turns of a motion.
+
+This file has what ``matrices.py`` and ``products.py`` both need: a wrong matrix with its blocks,
+the links that it is a product of, and the motion that an exercise gives in formulas.
+"""
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -29,11 +33,9 @@ from dh_grader.translations import Sentence, say
 # --- Slips in a product of link transforms
 #
 # Each misconception yields a wrong pose ``(SAMPLES, 4, 4)`` and a phrase for that pose, such as
-# "the pose of frame {2}".
-#
-# The student may have submitted the pose, or only its rotation or its position. Therefore named()
-# puts the phrase into a sentence that fits the answer: "This matrix is …", or "The position comes
-# from …".
+# "the pose of frame {2}". The student may have submitted the pose, or only its rotation or its
+# position. Therefore ``named`` puts the phrase into a sentence that fits the answer: "This matrix
+# is …", or "The position comes from …".
 
 
 LinkPose = Written[Matrices]
@@ -237,8 +239,10 @@ def missing_link(chain: Chain) -> Iterator[LinkPose]:
     unlike={"1/4": "-(a1*c1 + a2*c12)", "3/3": "-1/2"},
 )
 def premultiplied(chain: Chain) -> Iterator[LinkPose]:
-    """One or more transforms were multiplied from the left instead of from the right."""
-    # That is correct for motions about fixed axes, but the axes of the links move.
+    """One or more transforms were multiplied from the left instead of from the right.
+
+    That is correct for motions about fixed axes, but the axes of the links move.
+    """
     order = list(range(len(chain.links)))
     advice = say("Check on which side a motion about a moving axis is multiplied.")
     correction = say("Multiply from the right throughout: {product}.", product=chain.product(order))
@@ -273,8 +277,10 @@ def premultiplied(chain: Chain) -> Iterator[LinkPose]:
     unlike={"2/2": "2*c123"},
 )
 def row_order(chain: Chain) -> Iterator[LinkPose]:
-    """One link transform is at the wrong place in the product."""
-    # Exchanges of two neighbours, and link transforms moved to the front, are not tried here.
+    """One link transform is at the wrong place in the product.
+
+    Exchanges of two neighbours, and link transforms moved to the front, are not tried here.
+    """
     count = len(chain.links)
     orders = [
         [*rest[:place], row, *rest[place:]]
@@ -306,7 +312,7 @@ def named(pose: Explained, told: str, *others: Finding) -> Callable[[], tuple[Fi
     ``told`` is the template of the hint, such as "This matrix is {pose}. {advice}".
     """
 
-    # The findings others come first.
+    # The findings ``others`` come first.
     def findings() -> Iterator[Finding]:
         yield from others
         for each in pose.findings:
@@ -403,8 +409,10 @@ class GivenMotion:
 
     @cached_property
     def displacements(self) -> list[Displacement]:
-        """The displacements that sum to the position, or an empty list."""
-        # Displacements with few turns before them come first.
+        """The displacements that sum to the position, or an empty list.
+
+        Displacements with few turns before them come first.
+        """
         by_angles: dict[tuple[str, ...], list[str]] = {}
         for name in self.lengths:
             by_angles.setdefault(self._turning(Displacement((name,), ())), []).append(name)
@@ -443,8 +451,10 @@ class GivenMotion:
 
     @cached_property
     def steps(self) -> list[Matrices] | None:
-        """The motions ``(samples, 4, 4)`` whose product is the whole motion, or None."""
-        # Each of them is a displacement and then a turn.
+        """The motions ``(samples, 4, 4)`` whose product is the whole motion, or None.
+
+        Each of them is a displacement and then a turn.
+        """
         if self.order is None or len(self.displacements) > len(self.order) + 1:
             return None
         places = {frozenset(self.order[:i]): i for i in range(len(self.order) + 1)}
@@ -503,8 +513,10 @@ class MatrixCase(WrongNumbers):
 
     @cached_property
     def other_poses(self) -> tuple[list[Explained], Numbers]:
-        """The wrong poses that mistakes in the product of links lead to, with their entries."""
-        # The entries are (poses, rows, columns, SAMPLES), cut to the size of the expected matrix.
+        """The wrong poses that mistakes in the product of links lead to, with their entries.
+
+        The entries are ``(poses, rows, columns, SAMPLES)``, cut to the size of the expected matrix.
+        """
         poses = other_poses(self.chains)
         rows, columns = self.expected.shape[:2]
         if not poses:

@@ -1,4 +1,8 @@
-"""Slips in composite motions, rotations, single links, home positions and exponentials."""
+"""Slips in composite motions, rotations, single links, home positions and exponentials.
+
+This file knows slips in how turns, displacements and links are put together. Slips that change the
+numbers of any matrix are in ``matrices.py``, slips in the table in ``upstream.py``.
+"""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -100,7 +104,7 @@ def displacement_not_turned(motion: GivenMotion) -> Hypotheses:
     found = motion.displacements
     if prod(2 ** len(each.angles) for each in found) > MAX_WAYS:
         return
-    ways = cartesian(*(list(_motion_slips_subsets(each.angles)) for each in found))
+    ways = cartesian(*(list(_subsets_of_names(each.angles)) for each in found))
     for straight in sorted(ways, key=lambda each: sum(map(len, each))):
         if any(straight):
             pairs = zip(found, straight, strict=True)
@@ -166,15 +170,17 @@ def missing_displacement(motion: GivenMotion) -> Hypotheses:
     unlike="[0, 0, 0]",
 )
 def lone_displacement(motion: GivenMotion) -> Hypotheses:
-    """The answer is a single displacement instead of the sum."""
-    # It may be described in any of the frames.
+    """The answer is a single displacement instead of the sum.
+
+    It may be described in any of the frames.
+    """
     found = motion.displacements
     for i, each in enumerate(found) if len(found) > 1 else ():
         if _are_numbered(found):
             alone = say("This is the displacement of motion {motion} alone.", motion=i + 1)
         else:
             alone = say("This is the displacement of one motion alone.")
-        for straight in _motion_slips_subsets(each.angles):
+        for straight in _subsets_of_names(each.angles):
             yield Written(motion.part(each, straight), _with_sum(alone))
 
 
@@ -198,7 +204,7 @@ def _are_numbered(found: Sequence[Displacement]) -> bool:
 )
 def turn_left_out(motion: GivenMotion) -> Hypotheses:
     """A turn is missing in the rotation."""
-    for some in _motion_slips_subsets(motion.angles):
+    for some in _subsets_of_names(motion.angles):
         if 0 < len(some) < len(motion.angles):
             hint = say("The turn by {angles} is missing from this rotation.", angles=listed(some))
             yield Written(motion.rotation(some), says(hint))
@@ -280,7 +286,7 @@ def steps_in_reverse(motion: GivenMotion) -> Hypotheses:
             yield Written(np.moveaxis(product(factors), 0, -1)[:3], OTHER_ORDER)
 
 
-def _motion_slips_subsets(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
+def _subsets_of_names(names: Sequence[str]) -> Iterator[tuple[str, ...]]:
     return chain.from_iterable(combinations(names, count) for count in range(len(names) + 1))
 
 
@@ -326,6 +332,13 @@ class Step:
     rotation: Matrices
     # True for a fixed axis, False for a moving axis.
     fixed: bool
+
+
+def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
+    """Return explanations of a wrong rotation that should be the product of these turns."""
+    count = case.actual.shape[-1] // 2
+    subset = [replace(step, rotation=Samples.subset_of(step.rotation.T, count).T) for step in steps]
+    return as_explanations(case, explanation(case, subset, Step)) if steps else []
 
 
 def _with_rule(sentence: Sentence) -> Finding:
@@ -382,7 +395,7 @@ def fixed_for_moving(steps: Sequence[Step]) -> Hypotheses:
 def turned_back(steps: Sequence[Step]) -> Hypotheses:
     """One or more turns have the opposite sense."""
     back = [replace(step, rotation=np.swapaxes(step.rotation, 1, 2)) for step in steps]
-    for some in _rotation_steps_subsets(steps):
+    for some in _subsets_of_steps(steps):
         axes = listed(sorted({steps[i].axis.lower() for i in some}))
         finding = says(
             say_count(
@@ -483,7 +496,7 @@ def by_another_angle(steps: Sequence[Step]) -> Hypotheses:
 )
 def left_out(steps: Sequence[Step]) -> Hypotheses:
     """One or more turns are missing in the product."""
-    for some in _rotation_steps_subsets(steps):
+    for some in _subsets_of_steps(steps):
         if len(some) < len(steps):
             hint = say_count(
                 "Turn {turns} is missing from this rotation.",
@@ -524,7 +537,7 @@ def _about(axis: str, step: Step) -> Matrices:
     return np.roll(step.rotation, (shift, shift), axis=(1, 2))
 
 
-def _rotation_steps_subsets(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
+def _subsets_of_steps(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
     # If there are many turns, only sets of one turn are tried.
     most = len(steps) if len(steps) <= MAX_STEPS else 1
     return chain.from_iterable(combinations(range(len(steps)), k) for k in range(1, most + 1))
@@ -532,13 +545,6 @@ def _rotation_steps_subsets(steps: Sequence[Step]) -> Iterator[tuple[int, ...]]:
 
 def _numbers(places: Sequence[int]) -> str:
     return listed([str(i + 1) for i in places])
-
-
-def explain_steps(case: MatrixCase, steps: Sequence[Step]) -> list[Explanation]:
-    """Return explanations of a wrong rotation that should be the product of these turns."""
-    count = case.actual.shape[-1] // 2
-    subset = [replace(step, rotation=Samples.subset_of(step.rotation.T, count).T) for step in steps]
-    return as_explanations(case, explanation(case, subset, Step)) if steps else []
 
 
 # --- Slips in a single link transform
@@ -568,6 +574,19 @@ class LinkAmongOthers:
         values = samples.subset(count).values
         subset = Samples.subset_of(np.moveaxis(links, 1, -1), count)
         return cls(np.moveaxis(subset, -1, 1), [values[name] for name in turning], convention)
+
+
+def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:
+    """Return explanations of a wrong link transform."""
+    return as_explanations(case, explanation(case, link)) or [
+        found
+        for block, kind in (
+            (ROTATION_BLOCK, RotationAmongOthers),
+            (POSITION_BLOCK, PositionAmongOthers),
+        )
+        if case.wrong[block].any()
+        for found in as_explanations(case, explanation(case, link, kind))
+    ]
 
 
 @misconception(
@@ -686,19 +705,6 @@ def _in_block(link: LinkAmongOthers, block: Block) -> Hypotheses:
             yield replace(hypothesis, answer=hypothesis.answer[block], entries=block)
 
 
-def explain_link(link: LinkAmongOthers, case: MatrixCase) -> list[Explanation]:
-    """Return explanations of a wrong link transform."""
-    return as_explanations(case, explanation(case, link)) or [
-        found
-        for block, kind in (
-            (ROTATION_BLOCK, RotationAmongOthers),
-            (POSITION_BLOCK, PositionAmongOthers),
-        )
-        if case.wrong[block].any()
-        for found in as_explanations(case, explanation(case, link, kind))
-    ]
-
-
 # --- Find joint variables in answers for the home position, where these variables are 0
 
 
@@ -761,6 +767,15 @@ class Exponentials:
         space = robot.screws(values, count)
         amounts = np.array([values[joint.variable] for joint in robot.joints])
         return cls(space, moved(inverse(home), space), amounts, home)
+
+
+def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> list[Explanation]:
+    """Return explanations of a wrong pose that should be a product of exponentials."""
+    if not isinstance(exercise.reference, ScrewRobot):
+        return []
+    subset = samples.subset(case.actual.shape[-1] // 2)
+    product = Exponentials.of(exercise.reference, subset)
+    return as_explanations(case, explanation(case, product))
 
 
 def _pose(pose: Matrices, finding: Finding) -> Written[Numbers]:
@@ -879,12 +894,3 @@ def moment_sign(product: Exponentials) -> Hypotheses:
         turns = np.abs(axes[..., :3]).max(axis=-1, keepdims=True) > 0.5
         signs = np.where(turns, [1, 1, 1, -1, -1, -1], 1)
         yield _pose(multiply(axes * signs, product.amounts, product.home), finding)
-
-
-def explain_product(case: MatrixCase, exercise: Exercise, samples: Samples) -> list[Explanation]:
-    """Return explanations of a wrong pose that should be a product of exponentials."""
-    if not isinstance(exercise.reference, ScrewRobot):
-        return []
-    subset = samples.subset(case.actual.shape[-1] // 2)
-    product = Exponentials.of(exercise.reference, subset)
-    return as_explanations(case, explanation(case, product))

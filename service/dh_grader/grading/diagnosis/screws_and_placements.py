@@ -1,4 +1,8 @@
-"""Slips in screw axes, and the rule that a wrongly placed frame breaks."""
+"""Slips in screw axes, and the rule that a wrongly placed frame breaks.
+
+This file compares with the right axes and places; it does not know how points are counted, which
+``kinds/motions.py`` and ``kinds/frames.py`` decide.
+"""
 
 from collections.abc import Iterable
 from dataclasses import dataclass
@@ -63,6 +67,11 @@ class WrongScrew(WrongNumbers):
     def with_velocity(self, velocity: Numbers) -> Numbers:
         """Return the screw axis with the expected ω and the given v."""
         return np.concatenate([self.direction, velocity])
+
+
+def explain_screw(case: WrongScrew) -> Finding | None:
+    """Return the finding that explains a wrong screw axis, or None."""
+    return diagnosed(case) if np.isfinite(case.actual).all() else None
 
 
 EXCHANGED_HALVES = says(
@@ -315,11 +324,6 @@ def other_direction(case: WrongScrew) -> Hypotheses:
         yield Written(case.actual, finding)
 
 
-def explain_screw(case: WrongScrew) -> Finding | None:
-    """Return the finding that explains a wrong screw axis, or None."""
-    return diagnosed(case) if np.isfinite(case.actual).all() else None
-
-
 # --- Slips in the screw axes of all joints
 
 
@@ -348,6 +352,16 @@ class WrongScrews(WrongNumbers):
         """Return the ``WrongScrew`` of axis ``i``."""
         elsewhere = None if self.elsewhere is None else self.elsewhere[i]
         return WrongScrew(self.actual[i], self.expected[i], self.scale, elsewhere, self.frame)
+
+
+def explain_screws(case: WrongScrews) -> Finding | None:
+    """Return the finding that explains all wrong axes, or None.
+
+    If only one axis is wrong, only the order of ω and v is checked.
+    """
+    if not np.isfinite(case.actual).all():
+        return None
+    return diagnosed(case)
 
 
 @misconception(
@@ -421,14 +435,6 @@ def all_screws_other_frame(case: WrongScrews) -> Hypotheses:
         yield Written(case.elsewhere, seen_from_elsewhere(case.frame))
 
 
-def explain_screws(case: WrongScrews) -> Finding | None:
-    """Return the finding that explains all wrong axes, or None."""
-    # If only one axis is wrong, only the order of ω and v is checked.
-    if not np.isfinite(case.actual).all():
-        return None
-    return diagnosed(case)
-
-
 # --- Find which rule for placing frames a wrong frame breaks
 
 
@@ -447,9 +453,11 @@ class WrongPlacement:
 
     @property
     def is_standard(self) -> bool:
-        """True for the standard DH convention."""
-        # There, x must cross the z axis of the previous frame; in the modified convention that of
-        # the next frame.
+        """True for the standard DH convention.
+
+        There, x must cross the z axis of the previous frame; in the modified convention that of the
+        next frame.
+        """
         return self.convention is Convention.STANDARD
 
 

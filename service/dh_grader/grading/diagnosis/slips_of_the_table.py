@@ -1,7 +1,7 @@
 """A slip: a mistake in the robot's table, joints or lengths, which leads to a wrong answer.
 
-Here are the kinds of slips, and those of lengths and joints; ``whole_tables.py`` has those of
-cells, rows and columns. ``upstream.py`` searches among them for the one that explains an answer.
+This file has the kinds of slips, and the slips of lengths and joints; ``whole_tables.py`` has those
+of cells, rows and columns. ``upstream.py`` searches among them for the one that explains an answer.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -13,14 +13,8 @@ import numpy as np
 
 from dh_grader.catalogue import Exercise, Joint
 from dh_grader.expressions.evaluate import SymbolValues
-from dh_grader.grading.misconception import (
-    Record,
-    register,
-)
-from dh_grader.grading.numbers import (
-    SAME_MOTION,
-    Samples,
-)
+from dh_grader.grading.misconception import Record, register
+from dh_grader.grading.numbers import SAME_MOTION, Samples
 from dh_grader.kinematics import Numbers, Table
 from dh_grader.translations import Sentence, paragraph, say
 
@@ -132,10 +126,10 @@ def change_cells(
 ) -> None:
     """Apply each of K changes to its own table in ``tables``, in place.
 
-    ``tables`` is ``(rows, 4, K, count)`` for ``count`` samples.
+    ``tables`` is ``(rows, 4, K, count)`` for ``count`` samples. ``right`` ``(rows, 4, count)`` is
+    the correct table, ``constants`` the same table with all joint variables 0. All three arrays
+    begin with row ``first_row`` of the whole table.
     """
-    # right (rows, 4, count) is the correct table, constants the same table with all joint variables
-    # 0. All three arrays begin with row first_row of the whole table.
     cells = [(k, cell) for k, change in enumerate(changes) for cell in change.cells]
     if not cells:
         return
@@ -316,7 +310,8 @@ ROW_ORDER = register(
     example=("turret", "position", "[a3 c1 c3, a3 s1 c3, a3 s3]"),
     unlike="[a3 c1 c2, a3 s1 c2, a3 s2]",
 )
-# Listed only together with exchanged rows. Otherwise ``link_products`` names the missing link.
+# Listed only together with exchanged rows. Otherwise the slips in products of links
+# (``motions.py``) name the missing link.
 MISSING_LINK = register(of=Slip, rank=170, name="missing_link")
 
 
@@ -328,8 +323,11 @@ MAX_LENGTHS = 12
 
 
 def length_slips(lengths: Sequence[str], alone: Iterable[str] = ()) -> Iterator[Slip]:
-    """Yield the slips in these lengths: wrong signs, missing lengths and exchanged lengths."""
-    # For the lengths alone, each of which is a whole cell of the table, only exchanges are yielded.
+    """Yield the slips in these lengths: wrong signs, missing lengths and exchanged lengths.
+
+    For the lengths ``alone``, each of which is a whole cell of the table, only exchanges are
+    yielded.
+    """
     in_cells = set(alone)
     for length in lengths:
         if length not in in_cells:
@@ -445,7 +443,10 @@ def joint_slips(moved: Sequence[Joint], joints: Sequence[Joint], axis: Axis) -> 
             yield _joint_variable_index(joint, other)
         yield _joint_variable_doubled(joint)
         if not joint.prismatic:
-            yield from _zero_position(joint)
+            # The joint's angle is measured from another zero position.
+            yield _turned_joint(joint, QUARTER_TURN, np.pi / 2)
+            yield _turned_joint(joint, QUARTER_TURN, -np.pi / 2)
+            yield _turned_joint(joint, HALF_TURN, np.pi)
 
 
 def joint_variable_sign(joint: Joint, axis: Axis, *cells: CellChange) -> Slip:
@@ -529,13 +530,6 @@ def _joint_variable_doubled(joint: Joint) -> Slip:
 
     symbols = (SymbolChange(joint.variable, joint.variable, 2.0),)
     return Slip(JOINT_VARIABLE_DOUBLED, words, symbols=symbols)
-
-
-def _zero_position(joint: Joint) -> Iterator[Slip]:
-    # The joint's angle is measured from another zero position.
-    yield _turned_joint(joint, QUARTER_TURN, np.pi / 2)
-    yield _turned_joint(joint, QUARTER_TURN, -np.pi / 2)
-    yield _turned_joint(joint, HALF_TURN, np.pi)
 
 
 def _turned_joint(joint: Joint, kind: Record, turn: float) -> Slip:

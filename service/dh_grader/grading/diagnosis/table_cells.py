@@ -1,4 +1,8 @@
-"""Slips in single cells of a table: the constant, the joint variable, or a whole DH row."""
+"""Slips in single cells of a table: the constant, the joint variable, or a whole DH row.
+
+This file knows what is wrong in a cell that was judged wrong. What is wrong with a table as a whole
+is in ``whole_tables.py`` and ``table_readings.py``.
+"""
 
 import re
 from collections.abc import Callable, Mapping
@@ -49,17 +53,112 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import Sentence, listed, paragraph, say, template
 
-# --- Slips in a single table cell
+# --- The wrong cells of a table, and the finding on each
 
 
 SUM_COUNTS = say(
     "A neighbouring joint has a parallel axis, so only the sum of the offsets along both counts."
 )
 
+# The codes of a joint variable in the column that is constant for its joint.
+MISPLACED = ("joint_variable_absent", "joint_variable_column")
+# The work of one wrong cell, as the budget counts it.
+CELL_WORK = 1.2
+
+
+def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, WrongCell]:
+    """Return the wrong readable cells by row and column; the work budget limits their number."""
+    if not judgement.wrong:
+        return {}
+    written = [
+        (i, column, judged, row.handed_in[column], expression)
+        for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist()
+        if (row := (judged := judgement.rows[i]).row) is not None
+        and (expression := row.entries[column].expression) is not None
+        and grading.affords(CELL_WORK)
+    ]
+    if not written:
+        return {}
+    joints, samples = grading.exercise.robot.joints, grading.samples
+    wanted = [judged.expected[column] for _, column, judged, *_ in written]
+    angles = [bool(IS_ANGLE[column]) for _, column, *_ in written]
+    values = np.array([actual for *_, actual, _ in written] + wanted)
+    counts = coefficients(values, joints, samples, np.array(angles * 2))
+    scales = column_scales(grading).tolist()
+    spelling = PLAIN
+    # Below the level ``full``, only the joint variables in the cell are named.
+    if grading.corrects or any(map(any, filter(None, counts[: len(written)]))):
+        rows = [judged.row for judged in judgement.rows if judged.row is not None]
+        spelling = grading.spelling(entry for row in rows for entry in row.entries)
+    cases: dict[CellIndex, WrongCell] = {}
+    for k, (i, column, judged, actual, expression) in enumerate(written):
+        contained, required = counts[k], counts[len(written) + k]
+        own, correction = spelling, None
+        if spelling is not PLAIN:
+            own = spelling_for(expression.typed, spelling, grading.exercise.vocabulary)
+        if grading.corrects:
+            exercise = grading.exercise
+            correction = sum_formula(wanted[k], required, angles[k], exercise, samples, own)
+        cases[i, column] = WrongCell(
+            expression=expression,
+            actual=actual,
+            expected=wanted[k],
+            correction=correction,
+            corrects=grading.corrects,
+            spelling=own,
+            samples=samples,
+            scale=scales[column],
+            angle=angles[k],
+            column=column,
+            joint=judged.joint,
+            contained=_by_joint(contained, joints),
+            required=_by_joint(required, joints) or {},
+            shared=judged.shared,
+            joints=joints,
+            label=judged.label,
+        )
+    return cases
+
+
+def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:
+    if counts is None:
+        return None
+    return {joint: count for joint, count in zip(joints, counts, strict=True) if count}
+
+
+def diagnose_cells(
+    cases: Mapping[CellIndex, WrongCell], judgement: Judgement
+) -> dict[CellIndex, Finding]:
+    """Return the finding on each wrong cell.
+
+    A variable that is in the wrong column, and missing in its own, has one finding for both cells.
+    """
+    slips = {cell: diagnose(case) for cell, case in cases.items()}
+    told = dict(slips)
+    for (i, column), finding in slips.items():
+        joint = judgement.rows[i].joint
+        if finding.code != "joint_variable_missing" or joint is None:
+            continue
+        other = slips.get((i, THETA if column == D else D))
+        if other is not None and other.code in MISPLACED:
+            told[i, column] = replace(other, correction=finding.correction)
+    return told
+
+
+def diagnose(case: WrongCell) -> Finding:
+    """Return the finding on a wrong cell."""
+    finding = diagnosed(case)
+    assert finding is not None
+    if case.column == D and case.shared and case.same_motion:
+        return replace(finding, hint=paragraph(finding.hint, SUM_COUNTS))
+    return finding
+
+
+# --- Slips in the constant of a cell, if its joint variables are right
+
+
 # The numbers of an angle with a wrong turn may be rounded, too.
 ROUNDED_TURN = ROUNDED_VALUE * np.pi
-
-# --- misconceptions about the constant, if the joint variables are right
 
 
 @misconception(
@@ -246,12 +345,6 @@ def half_turn(case: WrongCell) -> Hypotheses:
     yield Written(case.constants[1] + np.pi, finding, tolerance=ROUNDED_TURN)
 
 
-# The codes of a joint variable in the column that is constant for its joint.
-MISPLACED = ("joint_variable_absent", "joint_variable_column")
-# The work of one wrong cell, as the budget counts it.
-CELL_WORK = 1.2
-
-
 @check(
     of=WrongCell,
     rank=300,
@@ -277,15 +370,6 @@ def unexplained(case: WrongCell) -> Finding:
     return differs(case, paragraph(hint, _too_large(case), _in_symbols(case)))
 
 
-def diagnose(case: WrongCell) -> Finding:
-    """Return the finding on a wrong cell."""
-    finding = diagnosed(case)
-    assert finding is not None
-    if case.column == D and case.shared and case.same_motion:
-        return replace(finding, hint=paragraph(finding.hint, SUM_COUNTS))
-    return finding
-
-
 def _too_large(case: WrongCell) -> str:
     if not case.angle or not case.same_motion or np.abs(case.constants[0]).max() < 3 * np.pi:
         return ""
@@ -299,253 +383,6 @@ def _in_symbols(case: WrongCell) -> str:
     if case.equal(expected, np.full_like(expected, expected[0])):
         return ""
     return say("Give it in the exercise's symbols.")
-
-
-def _by_joint(counts: tuple[int, ...] | None, joints: tuple[Joint, ...]) -> dict[Joint, int] | None:
-    if counts is None:
-        return None
-    return {joint: count for joint, count in zip(joints, counts, strict=True) if count}
-
-
-def wrong_cells(judgement: Judgement, grading: Grading) -> dict[CellIndex, WrongCell]:
-    """Return the wrong readable cells by row and column."""
-    # The work budget limits their number.
-    if not judgement.wrong:
-        return {}
-    written = [
-        (i, column, judged, row.handed_in[column], expression)
-        for i, column in np.argwhere(judgement.matches < Match.ROUNDED).tolist()
-        if (row := (judged := judgement.rows[i]).row) is not None
-        and (expression := row.entries[column].expression) is not None
-        and grading.affords(CELL_WORK)
-    ]
-    if not written:
-        return {}
-    joints, samples = grading.exercise.robot.joints, grading.samples
-    wanted = [judged.expected[column] for _, column, judged, *_ in written]
-    angles = [bool(IS_ANGLE[column]) for _, column, *_ in written]
-    values = np.array([actual for *_, actual, _ in written] + wanted)
-    counts = coefficients(values, joints, samples, np.array(angles * 2))
-    scales = column_scales(grading).tolist()
-    spelling = PLAIN
-    # Below the level ``full``, only the joint variables in the cell are named.
-    if grading.corrects or any(map(any, filter(None, counts[: len(written)]))):
-        rows = [judged.row for judged in judgement.rows if judged.row is not None]
-        spelling = grading.spelling(entry for row in rows for entry in row.entries)
-    cases: dict[CellIndex, WrongCell] = {}
-    for k, (i, column, judged, actual, expression) in enumerate(written):
-        contained, required = counts[k], counts[len(written) + k]
-        own, correction = spelling, None
-        if spelling is not PLAIN:
-            own = spelling_for(expression.typed, spelling, grading.exercise.vocabulary)
-        if grading.corrects:
-            exercise = grading.exercise
-            correction = sum_formula(wanted[k], required, angles[k], exercise, samples, own)
-        cases[i, column] = WrongCell(
-            expression=expression,
-            actual=actual,
-            expected=wanted[k],
-            correction=correction,
-            corrects=grading.corrects,
-            spelling=own,
-            samples=samples,
-            scale=scales[column],
-            angle=angles[k],
-            column=column,
-            joint=judged.joint,
-            contained=_by_joint(contained, joints),
-            required=_by_joint(required, joints) or {},
-            shared=judged.shared,
-            joints=joints,
-            label=judged.label,
-        )
-    return cases
-
-
-def diagnose_cells(
-    cases: Mapping[CellIndex, WrongCell], judgement: Judgement
-) -> dict[CellIndex, Finding]:
-    """Return the finding on each wrong cell."""
-    slips = {cell: diagnose(case) for cell, case in cases.items()}
-    return _of_misplaced_variables(slips, judgement)
-
-
-def _of_misplaced_variables(
-    slips: dict[CellIndex, Finding], judgement: Judgement
-) -> dict[CellIndex, Finding]:
-    # For example, the variable of a sliding joint is in θ and missing in d: one finding for both
-    # cells.
-    told = dict(slips)
-    for (i, column), finding in slips.items():
-        joint = judgement.rows[i].joint
-        if finding.code != "joint_variable_missing" or joint is None:
-            continue
-        other = slips.get((i, THETA if column == D else D))
-        if other is not None and other.code in MISPLACED:
-            told[i, column] = replace(other, correction=finding.correction)
-    return told
-
-
-# --- Slips in the DH row of a transform, or in the answer that a transform has no DH row
-
-
-@dataclass(frozen=True)
-class WrongRow(WrongNumbers):
-    """A wrong DH row ``(4, SAMPLES)`` of a transform ``(SAMPLES, 4, 4)``."""
-
-    transform: Matrices
-    convention: Convention
-    angle: ClassVar[ArrayLike] = IS_ANGLE[:, None]
-
-    def row_of(self, transform: Matrices, convention: Convention) -> Numbers | None:
-        """Return the DH row ``(4, SAMPLES)`` of a transform, or None if it has no DH row."""
-        length_scale = float(np.asarray(self.scale)[A])
-        if violated(transform, convention, length_scale):
-            return None
-        return row(transform, convention)
-
-
-@misconception(
-    of=WrongRow,
-    rank=10,
-    code="exchanged_parameters",
-    rule="convention",
-    means="a and d, or α and θ, are exchanged",
-    example=("dh-conditions", "fourth", {"a": "2", "alpha": "0", "d": "3", "theta": "pi/2"}),
-    unlike={"a": "pi/2", "alpha": "0", "d": "2", "theta": "3"},
-)
-def exchanged_parameters(case: WrongRow) -> Hypotheses:
-    """The student exchanged a and d, or α and θ."""
-    for first, last, order in (("a", "d", [2, 1, 0, 3]), ("α", "θ", [0, 3, 2, 1])):
-        hint = say(
-            "{first} and {last} are exchanged: a and α are measured along and about x, d and θ "
-            "along and about z.",
-            first=first,
-            last=last,
-        )
-        yield Written(case.expected[order], says(hint))
-    both = say(
-        "a and d, and α and θ are exchanged: a and α are measured along and about x, d and θ along "
-        "and about z."
-    )
-    yield Written(case.expected[[2, 3, 0, 1]], says(both))
-
-
-@misconception(
-    of=WrongRow,
-    rank=20,
-    code="other_convention",
-    rule="convention",
-    means="the row follows the other convention",
-    example=("several-kinds", "turned-row", "l, 0, a, pi"),
-    unlike="l, 0, 2*a, pi",
-)
-def other_convention(case: WrongRow) -> Hypotheses:
-    """The row describes the transform in the other DH convention."""
-    other = case.convention.other
-    hint = say("This is the row of the modified convention; the standard one is asked for.")
-    if other is Convention.STANDARD:
-        hint = say("This is the row of the standard convention; the modified one is asked for.")
-    found = case.row_of(case.transform, other)
-    if found is not None:
-        yield Written(found, says(hint))
-
-
-@misconception(
-    of=WrongRow,
-    rank=30,
-    code="inverse_transform",
-    rule="rows",
-    means="the row describes the inverse transform",
-    example=("several-kinds", "turn-row", "0, 0, -a, -phi"),
-    unlike="0, 0, -a, phi",
-)
-def inverse_row(case: WrongRow) -> Hypotheses:
-    """The row describes the inverse transform."""
-    finding = says(
-        say(
-            "This is the row of the inverse: the transform describes the second frame in the first."
-        ),
-    )
-    found = case.row_of(inverse(case.transform), case.convention)
-    if found is not None:
-        yield Written(found, finding)
-
-
-# --- the conditions for a transform to have a row
-_NOT_PERPENDICULAR = register(
-    of=WrongRow,
-    code="dh_not_perpendicular",
-    rule="convention",
-    means="a row is given, but the transform has none: x is not perpendicular to z",
-    example=("dh-conditions", "second", {"a": "l", "alpha": "0", "d": "h", "theta": "phi"}),
-    unlike="l, 0, h",
-)
-_NOT_INTERSECTING = register(
-    of=WrongRow,
-    code="dh_not_intersecting",
-    rule="convention",
-    means="a row is given, but the transform has none: the lines of x and z do not meet",
-    example=("dh-conditions", "third", {"a": "l", "alpha": "phi", "d": "h", "theta": "0"}),
-    unlike="l, 0, h",
-)
-_ROW_EXISTS = register(
-    of=WrongRow,
-    code="dh_row_exists",
-    rule="convention",
-    means='the answer is "none", but the transform has a row',
-    example=("dh-conditions", "fourth", {"none": True}),
-    unlike={"a": "3", "alpha": "0", "d": "2", "theta": "0"},
-)
-
-
-def axes_named(convention: Convention) -> tuple[str, str]:
-    """Return the names of the x axis and the z axis in the two DH conditions."""
-    return ("x1", "z0") if convention is Convention.STANDARD else ("x0", "z1")
-
-
-def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
-    """Return findings on the DH conditions that the transform violates."""
-    x, z = axes_named(convention)
-    row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
-    perpendicular = _NOT_PERPENDICULAR.finding(
-        say(
-            "Check the first DH condition: is {x} perpendicular to {z}? Check the entry in row "
-            "{row}, column {column}.",
-            x=x,
-            z=z,
-            row=row_of_entry,
-            column=column,
-        ),
-        say("It is not 0, so that {x} is not perpendicular to {z} and there is no row.", x=x, z=z),
-    )
-    intersecting = _NOT_INTERSECTING.finding(
-        say("Check the second DH condition: does the line of {x} meet the line of {z}?", x=x, z=z),
-        say("It passes {z} at a distance, so that there is no row.", z=z),
-    )
-    conditions = (
-        (perpendicular, dh1_residual, EXACT_VALUE),
-        (intersecting, dh2_residual, EXACT_VALUE * length_scale),
-    )
-    return [
-        finding
-        for finding, residual, tolerance in conditions
-        if np.abs(residual(transform, convention)).max() >= tolerance
-    ]
-
-
-def has_a_row(convention: Convention) -> Finding:
-    """Return the finding on the wrong answer that a transform has no DH row."""
-    x, z = axes_named(convention)
-    return _ROW_EXISTS.finding(
-        say(
-            "Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet "
-            "the line of {z}?",
-            x=x,
-            z=z,
-        ),
-        say("Both hold, so that there is a row."),
-    )
 
 
 # --- Slips in the joint variables or the quantity (length or angle) of a table cell
@@ -840,3 +677,165 @@ def wrong_quantity(case: WrongCell) -> Finding | None:
     if case.angle:
         hint = say("{symbol} is an angle, but a length is written here.", symbol=case.symbol)
     return finding_on(case, hint)
+
+
+# --- Slips in the DH row of a transform, or in the answer that a transform has no DH row
+
+
+@dataclass(frozen=True)
+class WrongRow(WrongNumbers):
+    """A wrong DH row ``(4, SAMPLES)`` of a transform ``(SAMPLES, 4, 4)``."""
+
+    transform: Matrices
+    convention: Convention
+    angle: ClassVar[ArrayLike] = IS_ANGLE[:, None]
+
+    def row_of(self, transform: Matrices, convention: Convention) -> Numbers | None:
+        """Return the DH row ``(4, SAMPLES)`` of a transform, or None if it has no DH row."""
+        length_scale = float(np.asarray(self.scale)[A])
+        if violated(transform, convention, length_scale):
+            return None
+        return row(transform, convention)
+
+
+@misconception(
+    of=WrongRow,
+    rank=10,
+    code="exchanged_parameters",
+    rule="convention",
+    means="a and d, or α and θ, are exchanged",
+    example=("dh-conditions", "fourth", {"a": "2", "alpha": "0", "d": "3", "theta": "pi/2"}),
+    unlike={"a": "pi/2", "alpha": "0", "d": "2", "theta": "3"},
+)
+def exchanged_parameters(case: WrongRow) -> Hypotheses:
+    """The student exchanged a and d, or α and θ."""
+    for first, last, order in (("a", "d", [2, 1, 0, 3]), ("α", "θ", [0, 3, 2, 1])):
+        hint = say(
+            "{first} and {last} are exchanged: a and α are measured along and about x, d and θ "
+            "along and about z.",
+            first=first,
+            last=last,
+        )
+        yield Written(case.expected[order], says(hint))
+    both = say(
+        "a and d, and α and θ are exchanged: a and α are measured along and about x, d and θ along "
+        "and about z."
+    )
+    yield Written(case.expected[[2, 3, 0, 1]], says(both))
+
+
+@misconception(
+    of=WrongRow,
+    rank=20,
+    code="other_convention",
+    rule="convention",
+    means="the row follows the other convention",
+    example=("several-kinds", "turned-row", "l, 0, a, pi"),
+    unlike="l, 0, 2*a, pi",
+)
+def other_convention(case: WrongRow) -> Hypotheses:
+    """The row describes the transform in the other DH convention."""
+    other = case.convention.other
+    hint = say("This is the row of the modified convention; the standard one is asked for.")
+    if other is Convention.STANDARD:
+        hint = say("This is the row of the standard convention; the modified one is asked for.")
+    found = case.row_of(case.transform, other)
+    if found is not None:
+        yield Written(found, says(hint))
+
+
+@misconception(
+    of=WrongRow,
+    rank=30,
+    code="inverse_transform",
+    rule="rows",
+    means="the row describes the inverse transform",
+    example=("several-kinds", "turn-row", "0, 0, -a, -phi"),
+    unlike="0, 0, -a, phi",
+)
+def inverse_row(case: WrongRow) -> Hypotheses:
+    """The row describes the inverse transform."""
+    finding = says(
+        say(
+            "This is the row of the inverse: the transform describes the second frame in the first."
+        ),
+    )
+    found = case.row_of(inverse(case.transform), case.convention)
+    if found is not None:
+        yield Written(found, finding)
+
+
+# The conditions for a transform to have a row.
+_NOT_PERPENDICULAR = register(
+    of=WrongRow,
+    code="dh_not_perpendicular",
+    rule="convention",
+    means="a row is given, but the transform has none: x is not perpendicular to z",
+    example=("dh-conditions", "second", {"a": "l", "alpha": "0", "d": "h", "theta": "phi"}),
+    unlike="l, 0, h",
+)
+_NOT_INTERSECTING = register(
+    of=WrongRow,
+    code="dh_not_intersecting",
+    rule="convention",
+    means="a row is given, but the transform has none: the lines of x and z do not meet",
+    example=("dh-conditions", "third", {"a": "l", "alpha": "phi", "d": "h", "theta": "0"}),
+    unlike="l, 0, h",
+)
+_ROW_EXISTS = register(
+    of=WrongRow,
+    code="dh_row_exists",
+    rule="convention",
+    means='the answer is "none", but the transform has a row',
+    example=("dh-conditions", "fourth", {"none": True}),
+    unlike={"a": "3", "alpha": "0", "d": "2", "theta": "0"},
+)
+
+
+def axes_named(convention: Convention) -> tuple[str, str]:
+    """Return the names of the x axis and the z axis in the two DH conditions."""
+    return ("x1", "z0") if convention is Convention.STANDARD else ("x0", "z1")
+
+
+def violated(transform: Matrices, convention: Convention, length_scale: float) -> list[Finding]:
+    """Return findings on the DH conditions that the transform violates."""
+    x, z = axes_named(convention)
+    row_of_entry, column = (3, 1) if convention is Convention.STANDARD else (1, 3)
+    perpendicular = _NOT_PERPENDICULAR.finding(
+        say(
+            "Check the first DH condition: is {x} perpendicular to {z}? Check the entry in row "
+            "{row}, column {column}.",
+            x=x,
+            z=z,
+            row=row_of_entry,
+            column=column,
+        ),
+        say("It is not 0, so that {x} is not perpendicular to {z} and there is no row.", x=x, z=z),
+    )
+    intersecting = _NOT_INTERSECTING.finding(
+        say("Check the second DH condition: does the line of {x} meet the line of {z}?", x=x, z=z),
+        say("It passes {z} at a distance, so that there is no row.", z=z),
+    )
+    conditions = (
+        (perpendicular, dh1_residual, EXACT_VALUE),
+        (intersecting, dh2_residual, EXACT_VALUE * length_scale),
+    )
+    return [
+        finding
+        for finding, residual, tolerance in conditions
+        if np.abs(residual(transform, convention)).max() >= tolerance
+    ]
+
+
+def has_a_row(convention: Convention) -> Finding:
+    """Return the finding on the wrong answer that a transform has no DH row."""
+    x, z = axes_named(convention)
+    return _ROW_EXISTS.finding(
+        say(
+            "Check both DH conditions: is {x} perpendicular to {z}, and does the line of {x} meet "
+            "the line of {z}?",
+            x=x,
+            z=z,
+        ),
+        say("Both hold, so that there is a row."),
+    )

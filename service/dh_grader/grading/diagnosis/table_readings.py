@@ -1,6 +1,8 @@
 """Read a wrong table in several ways (readings), and take the best one.
 
-A reading corrects one mistake of the whole table: columns, units, numbers of joints.
+A reading corrects one mistake of the whole table: columns, units, numbers of joints. It is judged
+like the table as written. Mistakes that leave the table as it is read, such as a column with wrong
+signs, are in ``whole_tables.py``.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -75,247 +77,23 @@ from dh_grader.kinematics import (
 )
 from dh_grader.translations import Sentence, listed, paragraph, say, template
 
-# --- Interpret a wrong table in several ways, called readings, and take the best one
+# --- The readings of a wrong table, and the best of them
 #
-# For example, one reading assumes that the columns are in a different order.
-
-
-# --- Tables whose joints have fewer degrees of freedom than the robot
+# The first reading is the table as written. Others are the table with other joint numbers, with its
+# columns in another order, with its lengths in another unit, or with a and d of one row exchanged.
+# All readings are judged in the same way. A reading counts if it explains enough wrong cells.
 #
-# Two joints that turn about one line, or slide along one direction, move the arm like a single
-# joint. More generally, the arm loses a degree of freedom if joint screws are linearly dependent,
-# but independent in the reference.
-
-
-# The samples of each half at which the rank is computed.
-POSTURES = 2
-# Lengths over this multiple of the typical length make a numerical rank meaningless.
-TOO_LONG = 300.0
-_LOST = register(
-    of=StudentTable,
-    code="lost_freedom",
-    rule="joint_variable",
-    means="some joints share an axis or depend on each other, so the arm has fewer degrees of "
-    "freedom than the robot; the message itself costs no points",
-    example=("planar-rrr-drawn", "table", {"2/a": "0"}),
-    unlike={"1/theta": "q2"},
-)
-
-
-@dataclass(frozen=True, slots=True)
-class _Arm:
-    joints: tuple[Joint, ...]
-    # (samples, 6, joints), in units of the typical length.
-    screws: Screws
-
-    def directions(self, i: int) -> NDArray[np.float64]:
-        return self.screws[:, 3:, i] if self.joints[i].prismatic else self.screws[:, :3, i]
-
-
-def freedom_lost(
-    roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> tuple[Finding, ...]:
-    """Return findings on joints that share an axis or whose motions depend on each other."""
-    present = [role for role in roles if role.row is not None]
-    joints = grading.exercise.robot.joints
-    where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]
-    if None in where:
-        return ()
-    values = values_of([role.row for role in present if role.row])
-    return lost_freedom(values, where, convention, grading.exercise, grading.samples)
-
-
-def lost_freedom(
-    values: Table,
-    joint_rows: Sequence[int | None],
-    convention: Convention,
-    exercise: Exercise,
-    samples: Samples,
-) -> tuple[Finding, ...]:
-    """Return findings on joints that share an axis or whose motions depend on each other.
-
-    ``values`` is the student's table ``(rows, 4, SAMPLES)``. ``joint_rows`` is the row of each
-    joint of the robot.
-    """
-    # NaN is an unreadable cell; joints with the row None are left out. The result is empty if a
-    # cell is unreadable or extremely large, or if a joint variable is missing.
-    table = samples.subset_of(values, POSTURES)
-    if not np.isfinite(table).all():
-        return ()
-    present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
-    own = [D if joint.prismatic else THETA for joint in exercise.robot.joints]
-    if any(np.abs(changes(table[row, own[j]])).max() < SAME_SCREW for j, row in present):
-        # This joint has no variable; that alone may be why other joints depend on each other.
-        return ()
-    written = _arm(table, convention, present, exercise)
-    if rank(written.screws) == len(present) or np.abs(written.screws).max() > TOO_LONG:
-        return ()
-    subset = samples.subset(POSTURES)
-    reference = exercise.robot.tables[exercise.robot.convention]
-    right = reference.values(subset.values, subset.count)
-    intended = _arm(right, reference.convention, [(j, j) for j, _ in present], exercise)
-    return _shared_axes(written, intended, convention) or _lost_rank(written, intended, convention)
-
-
-def _arm(
-    table: Table, convention: Convention, rows: Sequence[tuple[int, int]], exercise: Exercise
-) -> _Arm:
-    joints = tuple(exercise.robot.joints[j] for j, _ in rows)
-    prismatic = [joint.prismatic for joint in joints]
-    screws = space_jacobian(table, convention, tuple(row for _, row in rows), prismatic)
-    screws[:, 3:] /= np.where(prismatic, 1.0, exercise.length_scale)
-    return _Arm(joints, screws)
-
-
-def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
-    findings, done = [], set[int]()
-    for i, others in enumerate(joined):
-        together = [i, *np.flatnonzero(others).tolist()]
-        if len(together) > 1 and not done.intersection(together):
-            done.update(together)
-            findings.append(_one_axis(together, written, intended, convention))
-    return tuple(findings)
-
-
-def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
-    if rank(written.screws) >= rank(intended.screws):
-        return ()
-    involved = dependent(written.screws)
-    if involved.sum() < 2:
-        # A single joint cannot be dependent: the samples disagree, so all joints are named.
-        involved = np.ones_like(involved)
-    names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
-    first, *_, last = np.flatnonzero(involved).tolist()
-    finding = _LOST.finding(
-        say(
-            "The axes of joints {joints} leave the arm fewer degrees of freedom than the robot "
-            "has: check a and α of {rows}.",
-            joints=listed(names),
-            rows=_rows_between(first, last, written, convention),
-        ),
-    )
-    return (finding,)
-
-
-def _one_axis(
-    together: list[int], written: _Arm, intended: _Arm, convention: Convention
-) -> Finding:
-    first, last = together[0], together[-1]
-    slide = written.joints[first].prismatic
-    named = listed([str(written.joints[k].index) for k in together])
-    rows = _rows_between(first, last, written, convention)
-    if len(together) > 2:
-        return _LOST.finding(_lost_degrees(named, rows, slide=slide))
-    parallel, right = _lie(intended.directions(first), intended.directions(last))
-    return _LOST.finding(_lost_degree(named, "a" if parallel else "α", rows, slide=slide), right)
-
-
-def _lost_degree(joints: str, column: str, rows: str, *, slide: bool) -> Sentence:
-    if slide:
-        return say(
-            "Joints {joints} slide along one and the same direction, so the arm has lost a degree "
-            "of freedom: check {column} of {rows}.",
-            joints=joints,
-            column=column,
-            rows=rows,
-        )
-    return say(
-        "Joints {joints} turn about one and the same line, so the arm has lost a degree of "
-        "freedom: check {column} of {rows}.",
-        joints=joints,
-        column=column,
-        rows=rows,
-    )
-
-
-def _lost_degrees(joints: str, rows: str, *, slide: bool) -> Sentence:
-    if slide:
-        return say(
-            "Joints {joints} slide along one and the same direction, so the arm has lost degrees "
-            "of freedom: check a and α of {rows}.",
-            joints=joints,
-            rows=rows,
-        )
-    return say(
-        "Joints {joints} turn about one and the same line, so the arm has lost degrees of "
-        "freedom: check a and α of {rows}.",
-        joints=joints,
-        rows=rows,
-    )
-
-
-def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, Sentence]:
-    # True if two axes (samples, 3) are parallel, and a sentence on their directions.
-    if np.abs(np.cross(one, other)).max() < SAME_SCREW:
-        return True, say("The axes of these joints are parallel, but apart.")
-    cosines = np.abs(np.sum(one * other, axis=-1))
-    if np.ptp(cosines) > SAME_SCREW:
-        return False, say("The axes of these joints are not parallel.")
-    if cosines[0] < SAME_SCREW:
-        return False, say("The axes of these joints are at right angles.")
-    angle = np.degrees(np.arccos(min(cosines[0], 1.0)))
-    return False, say("The axes of these joints are at an angle of {angle}°.", angle=f"{angle:.4g}")
-
-
-def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
-    # The rows whose a and α lead from the axis of joint i to that of joint j.
-    # In a standard row, a and α come after its joint; in a modified one, before it.
-    shift = int(convention is Convention.MODIFIED)
-    labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
-    if len(labels) == 1:
-        return say("row {row}", row=labels[0])
-    return say("rows {rows}", rows=listed(labels))
-
-
-# --- A student's table with one systematic mistake corrected
-
-
-_EXCHANGED = [D, 1, A, 3]
+# Three more readings only limit the points: the table without its extra rows; the table with each
+# unread cell replaced by its joint variable or 0; and the table with one row given up
+# (``FairPoints``).
 
 
 class IntendedTable(NamedTuple):
-    """A student's table with one systematic mistake corrected."""
+    """A student's table with one mistake corrected; ``cells`` are those that have the mistake."""
 
     table: StudentTable
-    # Describes the mistake.
     finding: Finding
-    # The cells that have the mistake.
     cells: frozenset[CellIndex]
-
-
-def with_exchanged_row(
-    table: StudentTable, convention: Convention | None, grading: Grading
-) -> IntendedTable | None:
-    """Return the table with a and d exchanged in one row, if that corrects both cells."""
-    # None unless there is exactly one such row.
-    robot = grading.exercise.robot
-    reference = robot.tables.get(convention or robot.convention)
-    if reference is None or len(reference.rows) != len(table.rows):
-        return None
-    expected = reference_values(reference, grading.samples)[:, [A, D]]
-    written, scale = table.values[:, [A, D]], column_scales(grading)[A]
-    as_read = nearly_equal(written, expected, scale, False)
-    exchanged = nearly_equal(written[:, ::-1], expected, scale, False)
-    found = np.flatnonzero(exchanged.all(axis=-1) & ~as_read.any(axis=-1)).tolist()
-    if len(found) != 1:
-        return None
-    [i] = found
-    rows = list(table.rows)
-    rows[i] = StudentRow(
-        tuple(rows[i].entries[column] for column in _EXCHANGED), rows[i].values[_EXCHANGED]
-    )
-    intended = replace(table, rows=tuple(rows), values=values_of(rows))
-    return IntendedTable(intended, exchanged_columns(A, D), frozenset({(i, A), (i, D)}))
-
-
-# The first reading is the table as written.
-
-# Others are the table with other joint numbers, with its columns in another order, with its lengths
-# in another unit, or with a and d of one row exchanged. All readings are judged in the same way. A
-# reading counts if it explains enough wrong cells. Three more readings only limit the points: the
-# table without its extra rows; the table with each unread cell replaced by its joint variable or 0;
-# and the table with one row given up (``fair_points``).
 
 
 # The share of the points that a slip of the whole table costs, regardless of the number of cells.
@@ -337,9 +115,11 @@ Judge: TypeAlias = Callable[[DhTableSpec, StudentTable, Grading], JudgedTable]
 
 
 class _Reading(NamedTuple):
-    # The reading counts if at most ``most_wrong`` of its cells are wrong; if ``most_wrong`` is
-    # None, it always counts. With ``has_links``, a later part follows from this reading instead of
-    # from the table as written.
+    """One reading; it counts if at most ``most_wrong`` of its cells are wrong, always if None.
+
+    With ``has_links``, a later part follows from this reading instead of from the table as written.
+    """
+
     intended: IntendedTable
     most_wrong: int | None
     has_links: bool = False
@@ -348,11 +128,10 @@ class _Reading(NamedTuple):
 def best_reading(
     part: DhTableSpec, table: StudentTable, first: JudgedTable, judge: Judge, grading: Grading
 ) -> Judged:
-    """Return the judgement of a wrong table in its best interpretation.
+    """Return the judgement of a wrong table in its best reading, with limits on its points.
 
     ``first`` is the judgement of the table as written.
     """
-    # The points are limited.
     work = search_work(part, table, grading)
     readings = _Readings(part, judge, work, grading)
     written = readings.limited(table, first)
@@ -412,7 +191,8 @@ def search_work(part: DhTableSpec, table: StudentTable, grading: Grading) -> flo
 
 @dataclass(frozen=True, slots=True)
 class _Readings:
-    # ``work`` is the work of judging one table.
+    """The readings of a table; ``work`` is the work of judging one of them."""
+
     part: DhTableSpec
     judge: Judge
     work: float
@@ -587,6 +367,39 @@ def _explained_without(
     )
 
 
+# --- A table with a and d exchanged in one row
+
+
+_EXCHANGED = [D, 1, A, 3]
+
+
+def with_exchanged_row(
+    table: StudentTable, convention: Convention | None, grading: Grading
+) -> IntendedTable | None:
+    """Return the table with a and d exchanged in one row, if that corrects both cells.
+
+    Return None unless there is exactly one such row.
+    """
+    robot = grading.exercise.robot
+    reference = robot.tables.get(convention or robot.convention)
+    if reference is None or len(reference.rows) != len(table.rows):
+        return None
+    expected = reference_values(reference, grading.samples)[:, [A, D]]
+    written, scale = table.values[:, [A, D]], column_scales(grading)[A]
+    as_read = nearly_equal(written, expected, scale, False)
+    exchanged = nearly_equal(written[:, ::-1], expected, scale, False)
+    found = np.flatnonzero(exchanged.all(axis=-1) & ~as_read.any(axis=-1)).tolist()
+    if len(found) != 1:
+        return None
+    [i] = found
+    rows = list(table.rows)
+    rows[i] = StudentRow(
+        tuple(rows[i].entries[column] for column in _EXCHANGED), rows[i].values[_EXCHANGED]
+    )
+    intended = replace(table, rows=tuple(rows), values=values_of(rows))
+    return IntendedTable(intended, exchanged_columns(A, D), frozenset({(i, A), (i, D)}))
+
+
 # --- Tables whose lengths are in a wrong unit, such as millimetres instead of metres
 
 
@@ -614,9 +427,11 @@ _OTHER_UNIT = register(
 def in_other_length_unit(
     table: StudentTable, convention: Convention | None, grading: Grading
 ) -> IntendedTable | None:
-    """Return the table with its lengths in the unit of the exercise, or None."""
-    # The size of the lengths shows in which unit they were written. Joint variables are not
-    # converted.
+    """Return the table with its lengths in the unit of the exercise, or None.
+
+    The size of the lengths shows in which unit they were written. Joint variables are not
+    converted.
+    """
     robot = grading.exercise.robot
     reference = robot.tables.get(convention or robot.convention)
     if reference is None or not np.isfinite(table.values).all():
@@ -684,8 +499,10 @@ _NUMBERED_BY_KIND = register(
 
 
 def by_other_numbering(table: StudentTable, grading: Grading) -> IntendedTable | None:
-    """Return the table with its joint variables renumbered, or None."""
-    # None if no other numbering gives each row the variable of its own joint.
+    """Return the table with its joint variables renumbered.
+
+    Return None if no other numbering gives each row the variable of its own joint.
+    """
     joints = grading.exercise.joints
     vocabulary = with_absent_variables(grading.exercise.vocabulary)
     used = [_joint_variables(row, vocabulary) for row in table.rows]
@@ -724,7 +541,7 @@ def _joint_variables(row: StudentRow, vocabulary: Vocabulary) -> set[str]:
 
 
 def _explains(used: Sequence[set[str]], meanings: Meanings, joints: Sequence[Joint]) -> bool:
-    # used are the joint variables in each row; meanings is the numbering.
+    # ``used`` are the joint variables in each row.
     if len(used) < len(joints):
         return False
     own = [joint.variable for joint in joints]
@@ -745,7 +562,8 @@ def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[F
             {
                 name: joint.variable
                 for joint in joints
-                for name in _names(joint.index - first + start, by_index)
+                for slides in (False, True)
+                for name in [_name(joint.index - first + start, by_index, slides)]
             },
         )
     for slides_too in (False, True):
@@ -760,10 +578,6 @@ def _numberings(joints: Sequence[Joint], spelling: Spelling) -> Iterator[tuple[F
         moved = [joint for joint in joints if joint.variable in renamed]
         if moved:
             yield _numbered_by_kind(moved[0], spelling), meanings
-
-
-def _names(index: int, joints: Mapping[int, Joint]) -> tuple[str, str]:
-    return _name(index, joints, False), _name(index, joints, True)
 
 
 def _name(index: int, joints: Mapping[int, Joint], slides: bool) -> str:
@@ -829,9 +643,11 @@ _PERMUTED = register(
 
 
 def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedTable]:
-    """Yield the table in each order of columns that fits the cells better than the written one."""
-    # For example, a column with joint variables must be d or θ, and a column with lengths a or d.
-    # Only the orders that suit the cells best are tried, the likeliest first.
+    """Yield the table in each order of columns that fits the cells better than the written one.
+
+    For example, a column with joint variables must be d or θ, and a column with lengths a or d.
+    Only the orders that suit the cells best are tried, the likeliest first.
+    """
     if table.reread is None or _suits(table, grading):
         return
     other = table.reread([COLUMNS[column] for column in _OTHER_QUANTITY])
@@ -847,7 +663,8 @@ def in_other_orders(table: StudentTable, grading: Grading) -> Iterator[IntendedT
         order for order, misfit in zip(orders, found, strict=True) if misfit == min(found)
     ):
         intended = _reordered(order, table, other)
-        if any(_is_same(intended, one) for one in tried):
+        changes_to = (np.nan_to_num(np.abs(intended.values - one.values)) for one in tried)
+        if any(change.max() < INTENDED_CELL for change in changes_to):
             continue
         if len(tried) > _MAX_ORDERS:
             return
@@ -888,8 +705,8 @@ def _sliding(joints: Sequence[Joint]) -> dict[str, bool]:
 
 
 def _misfits(table: StudentTable, other: StudentTable, joints: Sequence[Joint]) -> NDArray[np.int_]:
-    # Counts the cells of each written column that cannot be a, α, d or θ: (4, 4). The table other
-    # has lengths read as angles and angles read as lengths.
+    # The number of cells of each written column that cannot be a, α, d or θ: (4, 4). ``other`` is
+    # the table with lengths read as angles, and angles read as lengths.
     sliding = _sliding(joints)
     count = np.zeros((len(COLUMNS), len(COLUMNS)), np.int_)
     for one, two in zip(table.rows, other.rows, strict=True):
@@ -927,11 +744,7 @@ def _reordered_row(order: Order, one: StudentRow, two: StudentRow) -> StudentRow
     return StudentRow(entries, np.array(values))
 
 
-def _is_same(one: StudentTable, other: StudentTable) -> bool:
-    return bool(np.nan_to_num(np.abs(one.values - other.values)).max() < INTENDED_CELL)
-
-
-def _moved(intended: StudentTable, table: StudentTable) -> frozenset[tuple[int, int]]:
+def _moved(intended: StudentTable, table: StudentTable) -> frozenset[CellIndex]:
     error = np.abs(difference(intended.values, table.values, IS_ANGLE[:, None])).max(axis=-1)
     return frozenset((i, column) for i, column in np.argwhere(error > INTENDED_CELL).tolist())
 
@@ -948,3 +761,190 @@ def _finding(order: Order, *, named: bool) -> Finding:
         paragraph(say("The columns stand in the order {order}.", order=written), advice),
         say("Write the columns in the order a, α, d, θ."),
     )
+
+
+# --- Tables whose joints have fewer degrees of freedom than the robot
+#
+# Two joints that turn about one line, or slide along one direction, move the arm like a single
+# joint. More generally, the arm loses a degree of freedom if joint screws are linearly dependent,
+# but independent in the reference.
+
+
+# The samples of each half at which the rank is computed.
+POSTURES = 2
+# Lengths over this multiple of the typical length make a numerical rank meaningless.
+TOO_LONG = 300.0
+_LOST = register(
+    of=StudentTable,
+    code="lost_freedom",
+    rule="joint_variable",
+    means="some joints share an axis or depend on each other, so the arm has fewer degrees of "
+    "freedom than the robot; the message itself costs no points",
+    example=("planar-rrr-drawn", "table", {"2/a": "0"}),
+    unlike={"1/theta": "q2"},
+)
+
+
+@dataclass(frozen=True, slots=True)
+class _Arm:
+    joints: tuple[Joint, ...]
+    # (samples, 6, joints), in units of the typical length.
+    screws: Screws
+
+    def directions(self, i: int) -> NDArray[np.float64]:
+        return self.screws[:, 3:, i] if self.joints[i].prismatic else self.screws[:, :3, i]
+
+
+def freedom_lost(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> tuple[Finding, ...]:
+    """Return findings on joints that share an axis or whose motions depend on each other."""
+    present = [role for role in roles if role.row is not None]
+    joints = grading.exercise.robot.joints
+    where = [next((i for i, role in enumerate(present) if role.joint is j), None) for j in joints]
+    if None in where:
+        return ()
+    values = values_of([role.row for role in present if role.row])
+    return lost_freedom(values, where, convention, grading.exercise, grading.samples)
+
+
+def lost_freedom(
+    values: Table,
+    joint_rows: Sequence[int | None],
+    convention: Convention,
+    exercise: Exercise,
+    samples: Samples,
+) -> tuple[Finding, ...]:
+    """Return findings on joints that share an axis or whose motions depend on each other.
+
+    ``values`` is the student's table ``(rows, 4, SAMPLES)``, NaN for an unreadable cell.
+    ``joint_rows`` is the row of each joint of the robot; joints with the row None are left out. The
+    result is empty if a cell is unreadable or extremely large, or if a joint variable is missing.
+    """
+    table = samples.subset_of(values, POSTURES)
+    if not np.isfinite(table).all():
+        return ()
+    present = [(j, row) for j, row in enumerate(joint_rows) if row is not None]
+    own = [D if joint.prismatic else THETA for joint in exercise.robot.joints]
+    if any(np.abs(changes(table[row, own[j]])).max() < SAME_SCREW for j, row in present):
+        # This joint has no variable; that alone may be why other joints depend on each other.
+        return ()
+    written = _arm(table, convention, present, exercise)
+    if rank(written.screws) == len(present) or np.abs(written.screws).max() > TOO_LONG:
+        return ()
+    subset = samples.subset(POSTURES)
+    reference = exercise.robot.tables[exercise.robot.convention]
+    right = reference.values(subset.values, subset.count)
+    intended = _arm(right, reference.convention, [(j, j) for j, _ in present], exercise)
+    return _shared_axes(written, intended, convention) or _lost_rank(written, intended, convention)
+
+
+def _arm(
+    table: Table, convention: Convention, rows: Sequence[tuple[int, int]], exercise: Exercise
+) -> _Arm:
+    joints = tuple(exercise.robot.joints[j] for j, _ in rows)
+    prismatic = [joint.prismatic for joint in joints]
+    screws = space_jacobian(table, convention, tuple(row for _, row in rows), prismatic)
+    screws[:, 3:] /= np.where(prismatic, 1.0, exercise.length_scale)
+    return _Arm(joints, screws)
+
+
+def _shared_axes(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
+    joined = np.triu(coincident(written.screws) & ~coincident(intended.screws))
+    findings, done = [], set[int]()
+    for i, others in enumerate(joined):
+        together = [i, *np.flatnonzero(others).tolist()]
+        if len(together) > 1 and not done.intersection(together):
+            done.update(together)
+            findings.append(_one_axis(together, written, intended, convention))
+    return tuple(findings)
+
+
+def _lost_rank(written: _Arm, intended: _Arm, convention: Convention) -> tuple[Finding, ...]:
+    if rank(written.screws) >= rank(intended.screws):
+        return ()
+    involved = dependent(written.screws)
+    if involved.sum() < 2:
+        # A single joint cannot be dependent: the samples disagree, so all joints are named.
+        involved = np.ones_like(involved)
+    names = [str(joint.index) for joint, yes in zip(written.joints, involved, strict=True) if yes]
+    first, *_, last = np.flatnonzero(involved).tolist()
+    finding = _LOST.finding(
+        say(
+            "The axes of joints {joints} leave the arm fewer degrees of freedom than the robot "
+            "has: check a and α of {rows}.",
+            joints=listed(names),
+            rows=_rows_between(first, last, written, convention),
+        ),
+    )
+    return (finding,)
+
+
+def _one_axis(
+    together: list[int], written: _Arm, intended: _Arm, convention: Convention
+) -> Finding:
+    first, last = together[0], together[-1]
+    slide = written.joints[first].prismatic
+    named = listed([str(written.joints[k].index) for k in together])
+    rows = _rows_between(first, last, written, convention)
+    if len(together) > 2:
+        return _LOST.finding(_lost_degrees(named, rows, slide=slide))
+    parallel, right = _lie(intended.directions(first), intended.directions(last))
+    return _LOST.finding(_lost_degree(named, "a" if parallel else "α", rows, slide=slide), right)
+
+
+def _lost_degree(joints: str, column: str, rows: str, *, slide: bool) -> Sentence:
+    if slide:
+        return say(
+            "Joints {joints} slide along one and the same direction, so the arm has lost a degree "
+            "of freedom: check {column} of {rows}.",
+            joints=joints,
+            column=column,
+            rows=rows,
+        )
+    return say(
+        "Joints {joints} turn about one and the same line, so the arm has lost a degree of "
+        "freedom: check {column} of {rows}.",
+        joints=joints,
+        column=column,
+        rows=rows,
+    )
+
+
+def _lost_degrees(joints: str, rows: str, *, slide: bool) -> Sentence:
+    if slide:
+        return say(
+            "Joints {joints} slide along one and the same direction, so the arm has lost degrees "
+            "of freedom: check a and α of {rows}.",
+            joints=joints,
+            rows=rows,
+        )
+    return say(
+        "Joints {joints} turn about one and the same line, so the arm has lost degrees of "
+        "freedom: check a and α of {rows}.",
+        joints=joints,
+        rows=rows,
+    )
+
+
+def _lie(one: NDArray[np.float64], other: NDArray[np.float64]) -> tuple[bool, Sentence]:
+    # True if two axes (samples, 3) are parallel, and a sentence on their directions.
+    if np.abs(np.cross(one, other)).max() < SAME_SCREW:
+        return True, say("The axes of these joints are parallel, but apart.")
+    cosines = np.abs(np.sum(one * other, axis=-1))
+    if np.ptp(cosines) > SAME_SCREW:
+        return False, say("The axes of these joints are not parallel.")
+    if cosines[0] < SAME_SCREW:
+        return False, say("The axes of these joints are at right angles.")
+    angle = np.degrees(np.arccos(min(cosines[0], 1.0)))
+    return False, say("The axes of these joints are at an angle of {angle}°.", angle=f"{angle:.4g}")
+
+
+def _rows_between(i: int, j: int, written: _Arm, convention: Convention) -> str:
+    # The rows whose a and α lead from the axis of joint i to that of joint j. In a standard row,
+    # a and α come after its joint; in a modified one, before it.
+    shift = int(convention is Convention.MODIFIED)
+    labels = [str(joint.index) for joint in written.joints[i + shift : j + shift]]
+    if len(labels) == 1:
+        return say("row {row}", row=labels[0])
+    return say("rows {rows}", rows=listed(labels))

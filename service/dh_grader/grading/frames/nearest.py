@@ -1,6 +1,8 @@
-"""The valid table nearest to a submitted one: one wrong cell, few cells, or one row.
+"""Find the valid table nearest to a submitted one: one wrong cell, few cells, or one row.
 
-Of several mistakes that explain a wrong table, the likeliest is taken.
+A table is valid if it describes the robot. Of several mistakes that explain a wrong table, the
+likeliest is taken. The search for the cheapest frames, row by row, is ``kinematics.frame_choice``;
+what the mistakes are called is not known here.
 """
 
 from collections.abc import Container, Iterable, Iterator, Sequence, Set
@@ -79,11 +81,11 @@ from dh_grader.kinematics.frame_choice import (
     departure,
     match_as_written,
     match_tables,
+    nearest_table,
     reversed_cells,
     reversed_rows,
     reversed_targets,
 )
-from dh_grader.kinematics.frame_choice import nearest_table as search_nearest_table
 from dh_grader.kinematics.frame_choice_repairs import (
     CellRepair,
     one_factor_repairs,
@@ -95,50 +97,428 @@ from dh_grader.kinematics.frame_choice_repairs import (
     two_factor_repairs,
 )
 
-# --- Replace the only wrong row of a table by numbers that are wrong in every cell
+# --- Find the valid table nearest to a submitted table
+
+
+@dataclass(frozen=True, slots=True)
+class NearestTable:
+    """The table that describes the robot and is nearest to the submitted table.
+
+    ``frames`` ``(joints, samples, 4, 4)`` are the valid table's frames on the joint axes, as seen
+    from the reference's frames. ``frame_choice`` explains ``cost``: the submitted table is valid if
+    it is below 1. ``lost`` is the loss for the wrong cells: a single wrong cell loses one unit. It
+    is computed for the valid table with the smallest loss (not always this table), and infinite if
+    unknown.
+    """
+
+    roles: tuple[Role, ...]
+    expected: Table
+    frames: Matrices
+    cost: float
+    lost: float = np.inf
+
+
+def nearest_for_roles(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable:
+    """Return the valid table nearest to rows whose joints are known."""
+    if freedom == FrameFreedom() and all(role.row is not None for role in roles):
+        nearest = nearest_by_few_cells(roles, convention, grading)
+        nearest = nearest or _as_intended(roles, convention, freedom, grading)
+        if nearest is not None and 2 * WRONG_CELL < nearest.lost < np.inf:
+            # Frames in which cells of several rows are wrong may lose less than a whole row.
+            searched = _link_by_link(roles, convention, freedom, grading)
+            nearest = replace(nearest, lost=min(nearest.lost, searched.lost))
+        if nearest is not None:
+            return nearest
+    return _link_by_link(roles, convention, freedom, grading)
+
+
+def _as_intended(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable | None:
+    values = handed_in_values(roles)
+    if not np.isfinite(values).all():
+        return None
+    exercise, samples = grading.exercise, grading.samples
+    handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
+    for repaired in hypotheses_of(handed_in, Rereadable):
+        table = repaired.answer
+        [valid] = valid_tables(
+            table.values[None], roles, table.convention, freedom, exercise, samples, INTENDED_POSE
+        )
+        intended = in_convention(table, convention) if valid else None
+        if intended is not None:
+            frames = frames_from_reference(intended, roles, convention, grading)
+            changed = np.abs(intended - values).max(axis=-1) > UNCHANGED_CELL
+            cost = WRONG_CELL * max(1, int(np.count_nonzero(changed)))
+            return NearestTable(roles, intended, frames, cost)
+    return None
+
+
+def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
+    """Convert a table to a convention; return None if the table would get more or fewer rows."""
+    links = regrouped(table.values, table.convention)
+    left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
+    return None if left_out.any() else as_table(links, convention)
+
+
+def _link_by_link(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable:
+    # Try the table as written, then tables that differ in one cell, then a search along the links.
+    exercise, samples = grading.exercise, grading.samples
+    scale = exercise.length_scale
+    mechanism = mechanism_at(exercise, samples)
+    targets = targets_of(roles, convention, mechanism, freedom)
+    rows = row_constants(roles, exercise.robot.joints, convention, samples)
+    match = _as_written(rows, targets, roles, mechanism, freedom, scale)
+    if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
+        match = one_cell_match(rows, targets, roles, convention, freedom, grading)
+    # The cell may be the only wrong one in these frames, and its row may lose less in other frames.
+    if match is None or match.cost > WRONG_CELL:
+        searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
+        lost = searched.lost if match is None else min(match.lost, searched.lost)
+        match = replace(match or searched, lost=lost)
+    # Each cell should be its constant plus its joint variable.
+    expected = np.tile(as_table(match.rows, convention), 2)
+    for (i, column), joint in joint_cells(roles).items():
+        sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
+        expected[i, column] += sign * samples.values[joint.variable]
+    frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
+    lost = match.lost
+    if lost > WRONG_CELL and freedom != FrameFreedom():
+        spoiled = with_spoiled_row(roles, expected, scale)
+        if spoiled is not None:
+            rows = row_constants(spoiled, exercise.robot.joints, convention, samples)
+            searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
+            lost = min(lost, searched.lost)
+    return NearestTable(roles, expected, frames, match.cost, lost)
+
+
+def _as_written(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch | None:
+    written = np.array([row.written for row in rows])
+    signs = np.array([row.joint_sign for row in rows])
+    for base in possible_bases(written, signs, roles, mechanism, freedom):
+        match = match_as_written(
+            rows, targets, scale, directions_given=not freedom.directions, start=base
+        )
+        if match is not None:
+            return match
+    return None
+
+
+def _searched(
+    rows: list[RowConstants],
+    targets: list[Target],
+    roles: tuple[Role, ...],
+    convention: Convention,
+    mechanism: Mechanism,
+    freedom: FrameFreedom,
+    scale: float,
+) -> ChainMatch:
+    # Seen from the tool, the two halves of a row are in the opposite order.
+    is_seen_from_tool = freedom.base and not freedom.tool
+    search = partial(
+        nearest_table,
+        length_scale=scale,
+        directions_given=not freedom.directions,
+        z_ends_rows=(convention is Convention.MODIFIED) != is_seen_from_tool,
+    )
+    if not freedom.base:
+        return search(rows, targets)
+    if freedom.tool:
+        match = search(rows, targets, base_given=False)
+        if match.cost >= WRONG_CELL:
+            return match
+    else:
+        seen_from_tool = reversed_targets(targets, mechanism.offsets)
+        match = search(reversed_rows(rows), seen_from_tool)
+        match = replace(match, rows=-reversed_cells(match.rows))
+    signs = np.array([row.joint_sign for row in rows])
+    bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
+    if freedom.tool:
+        return min((search(rows, targets, start=base) for base in bases), key=lambda m: m.cost)
+    [base] = bases
+    _, poses = match_tables(match.rows[None], 0 * signs[None], targets, scale, start=base)
+    return replace(match, relative_poses=poses[:, 0])
+
+
+def parallel_neighbours(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> NDArray[np.bool_]:
+    """Return a mask ``(rows,)`` of the rows whose axis is parallel to a neighbouring axis.
+
+    Offsets along parallel axes add up.
+    """
+    reference = reference_frames(grading.exercise, convention, grading.samples)
+    axes = reference[:, :2, :3, 2]
+    parallel = np.abs(cross(axes[:-1], axes[1:])).max(axis=(1, 2)) < PARALLEL
+    # The tool's axis counts only if the d of some row lies along it.
+    parallel[-1] &= roles[-1].joint is None
+    of_joints = iter((parallel | np.append(False, parallel[:-1])).tolist())
+    return np.array([role.joint is not None and next(of_joints) for role in roles])
+
+
+# --- Find the valid table that differs from a submitted one in at most two cells or one row
 #
-# A wrong row can mislead the search for the student's frames, so that correct rows look wrong.
+# Base, tool and directions are given here, so the right value of a cell follows from all others: a
+# table is valid if its tool pose equals that of the reference at all joint values, and every cell
+# changes only as its own joint variable does.
 
 
-# The fractional parts of its multiples are not angles or lengths of any robot.
-OUT_OF_PLACE: Final = 0.3819660112501051
+# The number of samples at which repairs are searched; their values are then computed at all
+# samples.
+FEW_CELLS_SUBSET = 3
+SUBSET_SAMPLES = np.r_[:FEW_CELLS_SUBSET, HALF : HALF + FEW_CELLS_SUBSET]
+MAX_CELLS = 2
+# The discount of two wrong cells in one row against two in several rows, if the frames are the
+# reference's.
+IN_ONE_ROW = 0.3
+# The cost of a repair that changes unread cells only: the table may be right.
+UNREAD = WRONG_CELL / 10
 
 
-def out_of_place(rows: int, length_scale: float) -> Table:
-    """Return numbers ``(rows, 4, 1)`` that are wrong in every cell of a table."""
-    count = rows * len(IS_ANGLE)
-    numbers = (OUT_OF_PLACE * np.arange(1, count + 1)) % 1 + OUT_OF_PLACE
-    scales = np.where(IS_ANGLE, 1.0, length_scale)
-    return np.asarray(numbers.reshape(rows, -1, 1) * scales[:, None])
+@dataclass(frozen=True, slots=True)
+class _FewCellsCase:
+    """A table ``(rows, 4, samples)`` to be repaired.
+
+    ``variables`` has the joint variable that belongs in each cell, or 0. ``wrong`` has the indices
+    of the cells that change with the joints in another way.
+    """
+
+    roles: tuple[Role, ...]
+    table: Table
+    variables: Table
+    wrong: frozenset[CellIndex]
+    convention: Convention
+    grading: Grading
+
+    @property
+    def unit(self) -> float:
+        # The unit of length for comparing poses.
+        return self.grading.exercise.length_scale
+
+    @property
+    def reference(self) -> Matrices:
+        return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
+
+    def from_reference(self, reached: Matrices) -> Matrices:
+        return _from_reference(reached, self.roles, self.convention, self.grading)
 
 
-def with_spoiled_row(
-    roles: tuple[Role, ...], expected: Table, length_scale: float
-) -> tuple[Role, ...] | None:
-    """Replace the only row that differs from ``expected`` by wrong numbers, or return None."""
-    # None if several rows differ, if the row is missing, or if it was replaced before.
-    handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
-    right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)
-    wrong = np.flatnonzero(~right).tolist()
-    if len(wrong) != 1:
+def nearest_by_few_cells(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> NearestTable | None:
+    """Return the valid table that differs from the submitted one in at most two cells or one row.
+
+    Of several such tables, the one with the likeliest mistake is taken. No row may be missing.
+    """
+    case = _few_cells_case(roles, convention, grading)
+    if len(case.wrong) > MAX_CELLS and len({row for row, _ in case.wrong}) > 1:
         return None
-    [i] = wrong
-    row = roles[i].row
-    if row is None or row.is_given_up:
+    if not case.wrong:
+        reached = frames(case.table, convention)
+        if np.abs(_in_unit(reached[-1] - case.reference[-1], case.unit)).max() < SAME_POSE:
+            on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
+            return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
+    repairs = _few_cells_repairs(case)
+    nearest = _few_cells_likeliest(repairs, case) if repairs else None
+    if nearest is None:
         return None
-    numbers = np.broadcast_to(out_of_place(len(roles), length_scale), handed_in.shape)
-    spoiled = Role(computed_row(numbers[i], GIVEN_UP), roles[i].joint)
-    return (*roles[:i], spoiled, *roles[i + 1 :])
+    return replace(nearest, lost=min(_units_lost_by(repair, case) for repair in repairs))
+
+
+def single_repairs(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> frozenset[CellIndex]:
+    """Return the cells of which each, if corrected alone, makes the table describe the robot.
+
+    Every row and every cell must have a value.
+    """
+    case = _few_cells_case(roles, convention, grading)
+    factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
+    pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
+    repairs = _admissible(one_factor_repairs(factors, pose), [1], case)
+    return frozenset(cell for repair in repairs for cell in repair.cells)
+
+
+def frames_from_reference(
+    table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Matrices:
+    """Return a table's frames on the joint axes, relative to the reference frames.
+
+    The shape is ``(joints, samples, 4, 4)``, at a subset of the samples.
+    """
+    reached = frames(table[..., SUBSET_SAMPLES], convention)[:, None]
+    return _from_reference(reached, roles, convention, grading)[:, 0]
+
+
+def _from_reference(
+    reached: Matrices, roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> Matrices:
+    # ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables; the result is
+    # ``(joints, T, subset, 4, 4)``.
+    of_joints = [role.joint is not None for role in roles]
+    on_axes = joint_frames(reached, convention)[of_joints]
+    reference = reference_frames(grading.exercise, convention, grading.samples)
+    return np.asarray(inverse(reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
+
+
+def _few_cells_case(
+    roles: tuple[Role, ...], convention: Convention, grading: Grading
+) -> _FewCellsCase:
+    table = handed_in_values(roles)
+    finite = np.isfinite(table).all(axis=-1)
+    table[~finite] = 0.0
+    variables = variables_of(roles, grading.samples)
+    right = finite & moves_with(table, changes(variables), IS_ANGLE[:, None])
+    places = [] if right.all() else np.argwhere(~right).tolist()
+    wrong = frozenset((i, column) for i, column in places)
+    return _FewCellsCase(roles, table, variables, wrong, convention, grading)
+
+
+def _few_cells_repairs(case: _FewCellsCase) -> list[CellRepair]:
+    factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
+    pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
+    by_factor = one_factor_repairs(factors, pose)
+    if by_one_cell := _admissible(by_factor, [1], case):
+        return by_one_cell
+    by_two_cells = chain(by_factor, two_factor_repairs(factors, pose))
+    by_row = one_row_repairs(factors, pose, case.wrong)
+    return [*_admissible(by_two_cells, [2], case), *_admissible(by_row, [3, 4], case)]
+
+
+def _admissible(
+    repairs: Iterable[CellRepair], counts: Container[int], case: _FewCellsCase
+) -> list[CellRepair]:
+    # The number of cells of a repair must be in ``counts``; lengths are returned in the table's
+    # unit.
+    of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) in counts)
+    return [
+        repair
+        for repair in of_count
+        if case.wrong <= set(repair.cells) and _moves_rightly(repair, case, slice(FEW_CELLS_SUBSET))
+    ]
+
+
+def _few_cells_likeliest(repairs: Sequence[CellRepair], case: _FewCellsCase) -> NearestTable | None:
+    # A repair is likely if it has few cells, if these are in one row, if it leads to frames near
+    # the reference's frames, and if students often make the mistake that it repairs.
+    tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
+    for k, repair in enumerate(repairs):
+        _fill(tables[:, :, k], repair)
+    on_axes = case.from_reference(frames(tables, case.convention))
+    departures = departure(on_axes.reshape(-1, *on_axes.shape[2:]), case.unit)
+    costs = departures.reshape(on_axes.shape[:2]).sum(axis=0)
+    costs += [_base_cost(*each, case) for each in zip(repairs, costs.tolist(), strict=True)]
+    factors = factors_of(case.table, case.convention, case.unit)
+    best = None
+    for k in np.argsort(costs, kind="stable").tolist():
+        cells, cost = repairs[k].cells, float(costs[k])
+        if best is not None and cost >= best.cost:
+            break
+        table = _few_cells_repaired(cells, factors, case)
+        if table is None:
+            continue
+        if len(repairs) > 1:
+            cost += sum(_penalty(cell, table, case) for cell in cells)
+        if best is None or cost < best.cost:
+            best = NearestTable(case.roles, table, on_axes[:, k], cost)
+    return best
+
+
+def _units_lost_by(repair: CellRepair, case: _FewCellsCase) -> float:
+    if len(repair.cells) == 1:
+        return WRONG_CELL
+    repaired = case.table[..., SUBSET_SAMPLES].copy()
+    _fill(repaired, repair)
+    wrong = np.zeros(repaired.shape[:2], np.bool_)
+    wrong[tuple(np.array(repair.cells).T)] = True
+    return units_lost(repaired, case.variables[..., SUBSET_SAMPLES], wrong, case.unit)
+
+
+def _base_cost(repair: CellRepair, departures: float, case: _FewCellsCase) -> float:
+    # ``departures`` is the cost of the frames.
+    rows = [role.row for role in case.roles]
+    if all((row := rows[i]) and not row.entries[c].readable for i, c in repair.cells):
+        return UNREAD
+    if len(repair.cells) == 1:
+        return WRONG_CELL
+    is_preferred = not departures and len({row for row, _ in repair.cells}) == 1
+    return WRONG_CELL * len(repair.cells) - IN_ONE_ROW * is_preferred
+
+
+def _penalty(cell: CellIndex, repaired: Table, case: _FewCellsCase) -> float:
+    right = _constant(repaired[cell], cell, case)
+    written = None if cell in case.wrong else _constant(case.table[cell], cell, case)
+    return slip_penalty(written, right, bool(IS_ANGLE[cell[1]]), case.grading)
+
+
+def _constant(values: Numbers, cell: CellIndex, case: _FewCellsCase) -> Numbers:
+    # The values must be a constant, plus or minus the joint variable that belongs in the cell.
+    variable: Numbers = case.variables[cell]
+    error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
+    return values - variable if error.max() < SAME_MOTION else values + variable
+
+
+def _few_cells_repaired(
+    cells: Sequence[CellIndex], factors: Factors, case: _FewCellsCase
+) -> Table | None:
+    pose = _in_unit(case.reference[-1], case.unit)
+    if len(cells) <= MAX_CELLS:
+        values = repaired_values(factors, pose, cells)
+    else:
+        values = repaired_row(factors, pose, cells[0][0])
+        values = None if values is None else values[[column for _, column in cells]]
+    if values is None:
+        return None
+    repair = _in_table_unit(CellRepair(tuple(cells), values), case)
+    if not _moves_rightly(repair, case, slice(None)):
+        return None
+    table = case.table.copy()
+    _fill(table, repair)
+    return table
+
+
+def _moves_rightly(repair: CellRepair, case: _FewCellsCase, samples: slice) -> bool:
+    return all(
+        moves_with(value, changes(case.variables[cell])[samples], IS_ANGLE[cell[1]])
+        for cell, value in zip(repair.cells, repair.values, strict=True)
+    )
+
+
+def _fill(table: Table, repair: CellRepair) -> None:
+    for cell, value in zip(repair.cells, repair.values, strict=True):
+        table[cell] = value
+
+
+def _in_table_unit(repair: CellRepair, case: _FewCellsCase) -> CellRepair:
+    units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in repair.cells]
+    return CellRepair(repair.cells, repair.values * np.array(units))
+
+
+def _in_unit(pose: Matrices, unit: float) -> Matrices:
+    measured = pose.copy()
+    measured[..., :3, 3] /= unit
+    return measured
 
 
 # --- Find the valid table that differs from a submitted one in one cell, if frames may be chosen
 #
-# A table is valid if it describes the robot. The joint axes of a valid table, with all joints at 0,
-# must lie on those of the reference table.
+# The joint axes of a valid table, with all joints at 0, must lie on those of the reference table.
+# The axes give the value that each cell would need if no other cell were wrong
+# (``repairs_by_axes``). All repaired tables are then tested at once.
 #
-# ``few_cells`` compares poses at all joint values, which is impossible if the student chooses base,
-# tool or directions. The axes give the value that each cell would need if no other cell were wrong
-# (``kinematics.axis_repairs``). All repaired tables are then tested at once.
+# ``nearest_by_few_cells`` compares poses at all joint values, which is impossible if the student
+# chooses base, tool or directions.
 
 
 # The number of samples at which repairs are searched; their values are then computed at all
@@ -148,12 +528,12 @@ ONE_CELL_SUBSET = 2
 
 @dataclass(frozen=True, slots=True)
 class _Repair:
-    """A repair of one cell by a new constant."""
+    """A repair of one cell by a new constant, with the pose of one end of the chain after it.
 
-    # With the pose of one end of the chain after this repair.
-    # The end is the last frame if ``is_last`` is true, else frame 0. Its pose ``(L, 4, 4)`` is in
-    # the reference's frame 0. ``attempt`` is the index of the assumption on which the repair is
-    # based.
+    The end is the last frame if ``is_last`` is true, else frame 0. Its pose ``(L, 4, 4)`` is in the
+    reference's frame 0. ``attempt`` is the index of the assumption on which the repair is based.
+    """
+
     cell: CellIndex
     value: Numbers
     end: Matrices
@@ -163,10 +543,13 @@ class _Repair:
 
 @dataclass(frozen=True, slots=True)
 class _Body:
-    # A table as a product of factors, and the reference's axes in the same order.
-    # ``joints`` ``(n,)`` are the indices of the factors that a joint moves. ``axes`` ``(n, L, 4,
-    # 4)`` are the correct poses of the joint axes in the reference's frame 0. ``is_reversed`` is
-    # true if the factors start from the last frame instead of frame 0.
+    """A table as a product of factors, and the reference's axes in the same order.
+
+    ``joints`` ``(n,)`` are the indices of the factors that a joint moves. ``axes`` ``(n, L, 4, 4)``
+    are the correct poses of the joint axes in the reference's frame 0. ``is_reversed`` is true if
+    the factors start from the last frame instead of frame 0.
+    """
+
     factors: Factors
     joints: Integers
     axes: Matrices
@@ -194,10 +577,12 @@ class _Body:
 
 @dataclass(frozen=True, slots=True)
 class _OneCellCase:
-    """A table to be repaired, and the robot of the reference table."""
+    """A table ``(rows, 4, L)`` of constants to be repaired, and the robot of the reference table.
 
-    # The constants are ``(rows, 4, L)``. ``wrong`` are the cells that are wrong whatever frames are
-    # chosen. ``joint_signs`` ``(rows + 1,)`` are the signs of the joint variables, 0 if irrelevant.
+    ``wrong`` are the cells that are wrong whatever frames are chosen. ``joint_signs`` ``(rows +
+    1,)`` are the signs of the joint variables, 0 if irrelevant.
+    """
+
     table: Table
     wrong: frozenset[CellIndex]
     joint_signs: Integers
@@ -224,10 +609,12 @@ class _OneCellCase:
 
 @dataclass(frozen=True, slots=True)
 class _Repaired:
-    """Repairs after which the table describes the robot, and the repaired tables."""
+    """T repairs after which the table describes the robot, and the repaired tables.
 
-    # There are T repairs. ``links`` is ``(T, rows + 1, 4, L)``; ``poses`` ``(rows + 1, T, L, 4,
-    # 4)`` are the relative poses of the repaired tables.
+    ``links`` is ``(T, rows + 1, 4, L)``; ``poses`` ``(rows + 1, T, L, 4, 4)`` are the relative
+    poses of the repaired tables.
+    """
+
     repairs: Sequence[_Repair]
     links: Numbers
     poses: Matrices
@@ -385,420 +772,42 @@ def _ends_by_axes(body: _Body) -> Iterator[Matrices]:
         yield aligned[np.maximum(before, 1) - 1, i * samples : (i + 1) * samples]
 
 
-# --- Find the valid table that differs from a submitted one in at most two cells or one row
+# --- Replace the only wrong row of a table by numbers that are wrong in every cell
 #
-# A table is valid if it describes the robot. Base, tool and directions are given here, so the right
-# value of a cell follows from all other cells.
-#
-# A table is valid if its tool pose equals that of the reference at all joint values, and every cell
-# changes only as its own joint variable does.
+# A wrong row can mislead the search for the student's frames, so that correct rows look wrong.
 
 
-# The number of samples at which repairs are searched; their values are then computed at all
-# samples.
-FEW_CELLS_SUBSET = 3
-SUBSET_SAMPLES = np.r_[:FEW_CELLS_SUBSET, HALF : HALF + FEW_CELLS_SUBSET]
-MAX_CELLS = 2
-# The discount of two wrong cells in one row against two in several rows, if the frames are the
-# reference's.
-IN_ONE_ROW = 0.3
-# The cost of a repair that changes unread cells only: the table may be right.
-UNREAD = WRONG_CELL / 10
+# The fractional parts of its multiples are not angles or lengths of any robot.
+OUT_OF_PLACE: Final = 0.3819660112501051
 
 
-@dataclass(frozen=True, slots=True)
-class NearestTable:
-    """The table that describes the robot and is nearest to the submitted table.
+def out_of_place(rows: int, length_scale: float) -> Table:
+    """Return numbers ``(rows, 4, 1)`` that are wrong in every cell of a table."""
+    count = rows * len(IS_ANGLE)
+    numbers = (OUT_OF_PLACE * np.arange(1, count + 1)) % 1 + OUT_OF_PLACE
+    scales = np.where(IS_ANGLE, 1.0, length_scale)
+    return np.asarray(numbers.reshape(rows, -1, 1) * scales[:, None])
 
-    The submitted table is valid if ``cost`` is below 1.
+
+def with_spoiled_row(
+    roles: tuple[Role, ...], expected: Table, length_scale: float
+) -> tuple[Role, ...] | None:
+    """Replace the only row that differs from ``expected`` by wrong numbers.
+
+    Return None if several rows differ, if the row is missing, or if it was replaced before.
     """
-
-    # ``frames`` are the valid table's frames on the joint axes, as seen from the reference's
-    # frames.
-    # ``frames`` is ``(joints, samples, 4, 4)``; ``frame_choice`` explains ``cost``. ``lost`` is the
-    # loss for the wrong cells: a single wrong cell loses one unit. It is computed for the valid
-    # table with the smallest loss (not always this table), and infinite if unknown.
-    roles: tuple[Role, ...]
-    expected: Table
-    frames: Matrices
-    cost: float
-    lost: float = np.inf
-
-
-@dataclass(frozen=True, slots=True)
-class _FewCellsCase:
-    """A table to be repaired."""
-
-    # ``table`` is ``(rows, 4, samples)``. ``variables`` has the joint variable that belongs in each
-    # cell, or 0. ``wrong`` has the indices of the cells that change with the joints in another way.
-    roles: tuple[Role, ...]
-    table: Table
-    variables: Table
-    wrong: frozenset[CellIndex]
-    convention: Convention
-    grading: Grading
-
-    @property
-    def unit(self) -> float:
-        # The unit of length for comparing poses.
-        return self.grading.exercise.length_scale
-
-    @property
-    def reference(self) -> Matrices:
-        return reference_frames(self.grading.exercise, self.convention, self.grading.samples)
-
-    def from_reference(self, reached: Matrices) -> Matrices:
-        # ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables; the result is
-        # ``(joints, T, subset, 4, 4)``.
-        return _from_reference(reached, self.roles, self.convention, self.grading)
-
-
-def nearest_by_few_cells(
-    roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> NearestTable | None:
-    """Return the valid table that differs from the submitted one in at most two cells or one row.
-
-    Of several such tables, the one with the likeliest mistake is taken. No row may be missing.
-    """
-    case = _case(roles, convention, grading)
-    if len(case.wrong) > MAX_CELLS and len({row for row, _ in case.wrong}) > 1:
+    handed_in, scales = handed_in_values(roles), np.where(IS_ANGLE, 1.0, length_scale)
+    right = nearly_equal(handed_in, expected, scales, IS_ANGLE[:, None]).all(axis=1)
+    wrong = np.flatnonzero(~right).tolist()
+    if len(wrong) != 1:
         return None
-    if not case.wrong:
-        reached = frames(case.table, convention)
-        if np.abs(_in_unit(reached[-1] - case.reference[-1], case.unit)).max() < SAME_POSE:
-            on_axes = case.from_reference(reached[:, None, SUBSET_SAMPLES])
-            return NearestTable(roles, case.table, on_axes[:, 0], 0.0)
-    repairs = _few_cells_repairs(case)
-    nearest = _few_cells_likeliest(repairs, case) if repairs else None
-    if nearest is None:
+    [i] = wrong
+    row = roles[i].row
+    if row is None or row.is_given_up:
         return None
-    return replace(nearest, lost=min(_lost(repair, case) for repair in repairs))
-
-
-def single_repairs(
-    roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> frozenset[CellIndex]:
-    """Return the cells of which each, if corrected alone, makes the table describe the robot.
-
-    Every row and every cell must have a value.
-    """
-    case = _case(roles, convention, grading)
-    factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
-    pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
-    repairs = _admissible(one_factor_repairs(factors, pose), [1], case)
-    return frozenset(cell for repair in repairs for cell in repair.cells)
-
-
-def frames_from_reference(
-    table: Table, roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> Matrices:
-    """Return a table's frames on the joint axes, relative to the reference frames.
-
-    The shape is ``(joints, samples, 4, 4)``.
-    """
-    # At a subset of the samples.
-    reached = frames(table[..., SUBSET_SAMPLES], convention)[:, None]
-    return _from_reference(reached, roles, convention, grading)[:, 0]
-
-
-def _from_reference(
-    reached: Matrices, roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> Matrices:
-    # ``reached`` ``(rows + 1, T, subset, 4, 4)`` has all frames of T tables; the result is
-    # ``(joints, T, subset, 4, 4)``.
-    of_joints = [role.joint is not None for role in roles]
-    on_axes = joint_frames(reached, convention)[of_joints]
-    reference = reference_frames(grading.exercise, convention, grading.samples)
-    return np.asarray(inverse(reference[:-1, SUBSET_SAMPLES])[:, None] @ on_axes)
-
-
-def _case(roles: tuple[Role, ...], convention: Convention, grading: Grading) -> _FewCellsCase:
-    table = handed_in_values(roles)
-    finite = np.isfinite(table).all(axis=-1)
-    table[~finite] = 0.0
-    variables = variables_of(roles, grading.samples)
-    right = finite & moves_with(table, changes(variables), IS_ANGLE[:, None])
-    places = [] if right.all() else np.argwhere(~right).tolist()
-    wrong = frozenset((i, column) for i, column in places)
-    return _FewCellsCase(roles, table, variables, wrong, convention, grading)
-
-
-def _few_cells_repairs(case: _FewCellsCase) -> list[CellRepair]:
-    factors = factors_of(case.table[..., SUBSET_SAMPLES], case.convention, case.unit)
-    pose = _in_unit(case.reference[-1, SUBSET_SAMPLES], case.unit)
-    by_factor = one_factor_repairs(factors, pose)
-    if by_one_cell := _admissible(by_factor, [1], case):
-        return by_one_cell
-    by_two_cells = chain(by_factor, two_factor_repairs(factors, pose))
-    by_row = one_row_repairs(factors, pose, case.wrong)
-    return [*_admissible(by_two_cells, [2], case), *_admissible(by_row, [3, 4], case)]
-
-
-def _admissible(
-    repairs: Iterable[CellRepair], counts: Container[int], case: _FewCellsCase
-) -> list[CellRepair]:
-    # The number of cells of a repair must be in ``counts``; lengths are returned in the table's
-    # unit.
-    of_count = (_in_table_unit(repair, case) for repair in repairs if len(repair.cells) in counts)
-    return [
-        repair
-        for repair in of_count
-        if case.wrong <= set(repair.cells) and _moves_rightly(repair, case, slice(FEW_CELLS_SUBSET))
-    ]
-
-
-def _in_one_row(repair: CellRepair) -> bool:
-    return len({row for row, _ in repair.cells}) == 1
-
-
-def _few_cells_likeliest(repairs: Sequence[CellRepair], case: _FewCellsCase) -> NearestTable | None:
-    # A repair is likely if it has few cells, if these are in one row, if it leads to frames near
-    # the reference's frames, and if students often make the mistake that it repairs.
-    tables = np.repeat(case.table[:, :, None, SUBSET_SAMPLES], len(repairs), axis=2)
-    for k, repair in enumerate(repairs):
-        _fill(tables[:, :, k], repair)
-    on_axes = case.from_reference(frames(tables, case.convention))
-    departures = departure(on_axes.reshape(-1, *on_axes.shape[2:]), case.unit)
-    costs = departures.reshape(on_axes.shape[:2]).sum(axis=0)
-    costs += [_base_cost(*each, case) for each in zip(repairs, costs.tolist(), strict=True)]
-    factors = factors_of(case.table, case.convention, case.unit)
-    best = None
-    for k in np.argsort(costs, kind="stable").tolist():
-        cells, cost = repairs[k].cells, float(costs[k])
-        if best is not None and cost >= best.cost:
-            break
-        table = _few_cells_repaired(cells, factors, case)
-        if table is None:
-            continue
-        if len(repairs) > 1:
-            cost += sum(_penalty(cell, table, case) for cell in cells)
-        if best is None or cost < best.cost:
-            best = NearestTable(case.roles, table, on_axes[:, k], cost)
-    return best
-
-
-def _lost(repair: CellRepair, case: _FewCellsCase) -> float:
-    if len(repair.cells) == 1:
-        return WRONG_CELL
-    repaired = case.table[..., SUBSET_SAMPLES].copy()
-    _fill(repaired, repair)
-    wrong = np.zeros(repaired.shape[:2], np.bool_)
-    wrong[tuple(np.array(repair.cells).T)] = True
-    return units_lost(repaired, case.variables[..., SUBSET_SAMPLES], wrong, case.unit)
-
-
-def _base_cost(repair: CellRepair, departures: float, case: _FewCellsCase) -> float:
-    # ``departures`` is the cost of the frames.
-    rows = [role.row for role in case.roles]
-    if all((row := rows[i]) and not row.entries[c].readable for i, c in repair.cells):
-        return UNREAD
-    if len(repair.cells) == 1:
-        return WRONG_CELL
-    is_preferred = not departures and _in_one_row(repair)
-    return WRONG_CELL * len(repair.cells) - IN_ONE_ROW * is_preferred
-
-
-def _penalty(cell: CellIndex, repaired: Table, case: _FewCellsCase) -> float:
-    right = _constant(repaired[cell], cell, case)
-    written = None if cell in case.wrong else _constant(case.table[cell], cell, case)
-    return slip_penalty(written, right, bool(IS_ANGLE[cell[1]]), case.grading)
-
-
-def _constant(values: Numbers, cell: CellIndex, case: _FewCellsCase) -> Numbers:
-    # The values must be a constant, plus or minus the joint variable that belongs in the cell.
-    variable: Numbers = case.variables[cell]
-    error = np.abs(difference(changes(values), changes(variable), IS_ANGLE[cell[1]]))
-    return values - variable if error.max() < SAME_MOTION else values + variable
-
-
-def _few_cells_repaired(
-    cells: Sequence[CellIndex], factors: Factors, case: _FewCellsCase
-) -> Table | None:
-    pose = _in_unit(case.reference[-1], case.unit)
-    if len(cells) <= MAX_CELLS:
-        values = repaired_values(factors, pose, cells)
-    else:
-        values = repaired_row(factors, pose, cells[0][0])
-        values = None if values is None else values[[column for _, column in cells]]
-    if values is None:
-        return None
-    repair = _in_table_unit(CellRepair(tuple(cells), values), case)
-    if not _moves_rightly(repair, case, slice(None)):
-        return None
-    table = case.table.copy()
-    _fill(table, repair)
-    return table
-
-
-def _moves_rightly(repair: CellRepair, case: _FewCellsCase, samples: slice) -> bool:
-    return all(
-        moves_with(value, changes(case.variables[cell])[samples], IS_ANGLE[cell[1]])
-        for cell, value in zip(repair.cells, repair.values, strict=True)
-    )
-
-
-def _fill(table: Table, repair: CellRepair) -> None:
-    for cell, value in zip(repair.cells, repair.values, strict=True):
-        table[cell] = value
-
-
-def _in_table_unit(repair: CellRepair, case: _FewCellsCase) -> CellRepair:
-    units = [[1.0 if IS_ANGLE[column] else case.unit] for _, column in repair.cells]
-    return CellRepair(repair.cells, repair.values * np.array(units))
-
-
-def _in_unit(pose: Matrices, unit: float) -> Matrices:
-    measured = pose.copy()
-    measured[..., :3, 3] /= unit
-    return measured
-
-
-# --- Find the valid table (one that describes the robot) nearest to a submitted table
-
-
-def nearest_for_roles(
-    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
-) -> NearestTable:
-    """Return the valid table nearest to rows whose joints are known."""
-    if freedom == FrameFreedom() and all(role.row is not None for role in roles):
-        nearest = nearest_by_few_cells(roles, convention, grading)
-        nearest = nearest or _as_intended(roles, convention, freedom, grading)
-        if nearest is not None and 2 * WRONG_CELL < nearest.lost < np.inf:
-            # Frames in which cells of several rows are wrong may lose less than a whole row.
-            searched = _link_by_link(roles, convention, freedom, grading)
-            nearest = replace(nearest, lost=min(nearest.lost, searched.lost))
-        if nearest is not None:
-            return nearest
-    return _link_by_link(roles, convention, freedom, grading)
-
-
-def _as_intended(
-    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
-) -> NearestTable | None:
-    values = handed_in_values(roles)
-    if not np.isfinite(values).all():
-        return None
-    exercise, samples = grading.exercise, grading.samples
-    handed_in = written_table(values, convention, None, exercise.robot.joints, samples)
-    for repaired in hypotheses_of(handed_in, Rereadable):
-        table = repaired.answer
-        [valid] = valid_tables(
-            table.values[None], roles, table.convention, freedom, exercise, samples, INTENDED_POSE
-        )
-        intended = in_convention(table, convention) if valid else None
-        if intended is not None:
-            frames = frames_from_reference(intended, roles, convention, grading)
-            changed = np.abs(intended - values).max(axis=-1) > UNCHANGED_CELL
-            cost = WRONG_CELL * max(1, int(np.count_nonzero(changed)))
-            return NearestTable(roles, intended, frames, cost)
-    return None
-
-
-def in_convention(table: WrittenTable, convention: Convention) -> Table | None:
-    """Convert a table to a convention; return None if the table would get more or fewer rows."""
-    links = regrouped(table.values, table.convention)
-    left_out = links[0] if convention is Convention.STANDARD else links[-1, :2]
-    return None if left_out.any() else as_table(links, convention)
-
-
-def _link_by_link(
-    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
-) -> NearestTable:
-    # Try the table as written, then tables that differ in one cell, then a search.
-    exercise, samples = grading.exercise, grading.samples
-    scale = exercise.length_scale
-    mechanism = mechanism_at(exercise, samples)
-    targets = targets_of(roles, convention, mechanism, freedom)
-    rows = row_constants(roles, exercise.robot.joints, convention, samples)
-    match = _as_written(rows, targets, roles, mechanism, freedom, scale)
-    if match is None and freedom != FrameFreedom() and all(role.row for role in roles):
-        match = one_cell_match(rows, targets, roles, convention, freedom, grading)
-    # The cell may be the only wrong one in these frames, and its row may lose less in other frames.
-    if match is None or match.cost > WRONG_CELL:
-        searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
-        lost = searched.lost if match is None else min(match.lost, searched.lost)
-        match = replace(match or searched, lost=lost)
-    # Each cell should be its constant plus its joint variable.
-    expected = np.tile(as_table(match.rows, convention), 2)
-    for (i, column), joint in joint_cells(roles).items():
-        sign = (freedom.directions and rows[i + 1].joint_sign) or match.joint_signs[i]
-        expected[i, column] += sign * samples.values[joint.variable]
-    frames = frames_on_axes(match.relative_poses, match.rows, roles, convention, mechanism)
-    lost = match.lost
-    if lost > WRONG_CELL and freedom != FrameFreedom():
-        spoiled = with_spoiled_row(roles, expected, scale)
-        if spoiled is not None:
-            rows = row_constants(spoiled, exercise.robot.joints, convention, samples)
-            searched = _searched(rows, targets, roles, convention, mechanism, freedom, scale)
-            lost = min(lost, searched.lost)
-    return NearestTable(roles, expected, frames, match.cost, lost)
-
-
-def _as_written(
-    rows: list[RowConstants],
-    targets: list[Target],
-    roles: tuple[Role, ...],
-    mechanism: Mechanism,
-    freedom: FrameFreedom,
-    scale: float,
-) -> ChainMatch | None:
-    written = np.array([row.written for row in rows])
-    signs = np.array([row.joint_sign for row in rows])
-    for base in possible_bases(written, signs, roles, mechanism, freedom):
-        match = match_as_written(
-            rows, targets, scale, directions_given=not freedom.directions, start=base
-        )
-        if match is not None:
-            return match
-    return None
-
-
-def _searched(
-    rows: list[RowConstants],
-    targets: list[Target],
-    roles: tuple[Role, ...],
-    convention: Convention,
-    mechanism: Mechanism,
-    freedom: FrameFreedom,
-    scale: float,
-) -> ChainMatch:
-    search = partial(
-        search_nearest_table, length_scale=scale, directions_given=not freedom.directions
-    )
-    z_ends_rows = convention is Convention.MODIFIED
-    # Seen from the tool, the two halves of a row are in the opposite order.
-    search = partial(search, z_ends_rows=z_ends_rows != (freedom.base and not freedom.tool))
-    if not freedom.base:
-        return search(rows, targets)
-    if freedom.tool:
-        match = search(rows, targets, base_given=False)
-        if match.cost >= WRONG_CELL:
-            return match
-    else:
-        seen_from_tool = reversed_targets(targets, mechanism.offsets)
-        match = search(reversed_rows(rows), seen_from_tool)
-        match = replace(match, rows=-reversed_cells(match.rows))
-    signs = np.array([row.joint_sign for row in rows])
-    bases = possible_bases(match.rows, signs, roles, mechanism, freedom)
-    if freedom.tool:
-        return min((search(rows, targets, start=base) for base in bases), key=lambda m: m.cost)
-    [base] = bases
-    _, poses = match_tables(match.rows[None], 0 * signs[None], targets, scale, start=base)
-    return replace(match, relative_poses=poses[:, 0])
-
-
-def parallel_neighbours(
-    roles: tuple[Role, ...], convention: Convention, grading: Grading
-) -> NDArray[np.bool_]:
-    """Return a mask ``(rows,)`` of the rows whose axis is parallel to a neighbouring axis."""
-    # Offsets along parallel axes add up.
-    reference = reference_frames(grading.exercise, convention, grading.samples)
-    axes = reference[:, :2, :3, 2]
-    parallel = np.abs(cross(axes[:-1], axes[1:])).max(axis=(1, 2)) < PARALLEL
-    # The tool's axis counts only if the d of some row lies along it.
-    parallel[-1] &= roles[-1].joint is None
-    of_joints = iter((parallel | np.append(False, parallel[:-1])).tolist())
-    return np.array([role.joint is not None and next(of_joints) for role in roles])
+    numbers = np.broadcast_to(out_of_place(len(roles), length_scale), handed_in.shape)
+    spoiled = Role(computed_row(numbers[i], GIVEN_UP), roles[i].joint)
+    return (*roles[:i], spoiled, *roles[i + 1 :])
 
 
 # --- Estimate the loss of points for wrong cells
@@ -807,10 +816,12 @@ def parallel_neighbours(
 def units_lost(
     expected: Table, variables: Table, wrong: NDArray[np.bool_], length_scale: float
 ) -> float:
-    """Return the estimated loss for the ``wrong`` cells; a single wrong cell costs 1."""
-    # Several wrong cells in one row lose no more than the row is worth. ``expected`` ``(rows, 4,
-    # samples)`` is the correct table. ``variables`` is the joint variable that belongs in each
-    # cell, or 0.
+    """Return the estimated loss for the ``wrong`` cells; a single wrong cell costs 1.
+
+    Several wrong cells in one row lose no more than the row is worth. ``expected`` ``(rows, 4,
+    samples)`` is the correct table. ``variables`` is the joint variable that belongs in each cell,
+    or 0.
+    """
     either = np.array([expected - variables, expected + variables])
     error = np.abs(difference(either, np.zeros(1), IS_ANGLE[:, None])).max(axis=-1).min(axis=0)
     known = error > SAME_CONTENT * np.where(IS_ANGLE, 1.0, length_scale)
@@ -820,11 +831,9 @@ def units_lost(
 
 # --- Find the likeliest of several mistakes that each explain a wrong table
 #
-# A mistake is likely if the correct value is simple, or if students often make it.
-#
-# On parallel axes, and around prismatic joints, a mistake can often be repaired in several cells.
-# Students often make a wrong sign, a forgotten value, a quarter turn, an extra term, a missing or
-# misplaced joint variable.
+# On parallel axes, and around prismatic joints, a mistake can often be repaired in several cells. A
+# mistake is likely if the correct value is simple, or if students often make it: a wrong sign, a
+# forgotten value, a quarter turn, an extra term, a missing or misplaced joint variable.
 
 
 # All these costs are far below that of a wrong cell; an unknown slip costs less than a moved frame.
@@ -838,9 +847,8 @@ UNRELATED = 4
 def slip_penalty(written: Numbers | None, right: Numbers, angle: bool, grading: Grading) -> float:
     """Return how unlikely it is to write one constant for another; at least 0.
 
-    ``written`` is None if the cell is unreadable or depends wrongly on the joints.
+    ``written`` is None if the cell is unreadable, or if the mistake is in its joint variable.
     """
-    # Then the mistake is in the joint variable.
     right_terms = _terms(right, angle, grading)
     penalty = TERM * _count(right_terms)
     if written is None or _is_turn(written, right, angle):

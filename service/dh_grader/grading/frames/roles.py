@@ -1,4 +1,8 @@
-"""Which joint each row belongs to, what unread cells may be, and what rounding has lost."""
+"""Choose the joint of each submitted row; find what unread cells and rounded decimals may be.
+
+This file knows tables as wholes: whether their rows, with some joints, values and decimals, can
+describe the robot. What a single wrong cell loses is known to ``nearest.py``.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -49,6 +53,7 @@ from dh_grader.kinematics import (
     Matrices,
     Numbers,
     Table,
+    cross,
     exponential,
     frames,
     identity,
@@ -59,14 +64,119 @@ from dh_grader.kinematics import (
 )
 from dh_grader.kinematics.frame_choice import WRONG_CELL, Target, match_tables, misfits
 
+# --- Choose which joint each submitted row belongs to
+
+
+def best_roles(
+    part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
+) -> tuple[tuple[Role, ...], NearestTable]:
+    """Return each row with its joint, and the nearest table that describes the robot."""
+    freedom = freedom_of(part)
+    roles, nearest = _best_as_written(rows, convention, freedom, grading)
+    return roles, with_rounded_cells(nearest, convention, freedom, grading)
+
+
+def _best_as_written(
+    rows: tuple[StudentRow, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> tuple[tuple[Role, ...], NearestTable]:
+    joints = grading.exercise.robot.joints
+    roles = roles_in(rows, convention, grading)
+    roles = with_true_numbers(roles, convention, freedom, grading)
+    nearest = nearest_with_tool_row(roles, convention, freedom, grading)
+    if nearest.cost < WRONG_CELL:
+        return roles, nearest
+    other, price = None, 0.0
+    if len(nearest.roles) < len(rows):
+        # The row of zeros that was left out may belong to a joint.
+        other = roles_in(rows, convention, grading, expected_rows=len(rows))
+    elif len(rows) == len(joints) and len(rows) < usual_rows(convention, grading):
+        # The missing row need not be the last.
+        other, price = roles_in(rows, convention, grading, in_order=False), WRONG_CELL
+    elif len(rows) > len(joints):
+        # A joint's row may look like a fixed row because its variable is wrong.
+        other = roles_in(rows, convention, grading, in_order=True)
+    if other is None or _pairing(other) == _pairing(roles):
+        return roles, nearest
+    found = nearest_for_roles(other, convention, freedom, grading)
+    lost = min(found.lost, nearest.lost)
+    if found.cost + price < nearest.cost:
+        return other, replace(found, lost=lost)
+    return roles, replace(nearest, lost=lost)
+
+
+def roles_in(
+    rows: tuple[StudentRow, ...],
+    convention: Convention,
+    grading: Grading,
+    expected_rows: int | None = None,
+    *,
+    in_order: bool | None = None,
+) -> tuple[Role, ...]:
+    """Return each submitted row with its joint, and with rounded angles made exact.
+
+    ``in_order`` is true if the rows are in the order of the joints, None if unknown.
+    """
+    expected_rows = expected_rows or usual_rows(convention, grading)
+    rows = without_idle_rows(rows, expected_rows)
+    joints = grading.exercise.robot.joints
+    roles = roles_of(rows, joints, grading.samples, expected_rows, in_order=in_order)
+    return with_exact_angles(roles, grading.exercise, grading.samples)
+
+
+def nearest_with_tool_row(
+    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
+) -> NearestTable:
+    """Return the valid table nearest to the rows, which may lack the row of the tool."""
+    nearest = nearest_for_roles(roles, convention, freedom, grading)
+    if nearest.cost < WRONG_CELL or len(roles) >= usual_rows(convention, grading):
+        return nearest
+    longer = nearest_for_roles((*roles, Role(None, None)), convention, freedom, grading)
+    is_longer = longer.cost + WRONG_CELL <= nearest.cost
+    return replace(longer if is_longer else nearest, lost=min(longer.lost, nearest.lost))
+
+
+def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple[StudentRow, ...]:
+    """Return the rows without extra rows at the end that move nothing."""
+    while len(rows) > expected_rows and rows[-1].is_zero:
+        rows = rows[:-1]
+    return rows
+
+
+def rows_of_mechanism(
+    rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
+) -> list[int]:
+    """Return the indices of the rows that belong to the robot, without extra rows.
+
+    The choice depends only on the joint variables in the rows, not on what is correct.
+    """
+    usual, joints = usual_rows(convention, grading), grading.exercise.robot.joints
+    if len(rows) <= usual:
+        return list(range(len(rows)))
+    roles = [role for role in roles_of(rows, joints, grading.samples, usual) if role.row]
+    last = max((i for i, role in enumerate(roles) if role.joint), default=-1)
+    of_joints = [i for i, role in enumerate(roles) if role.joint]
+    return [*of_joints, *range(last + 1, len(roles))[: usual - len(joints)]]
+
+
+def usual_rows(convention: Convention, grading: Grading) -> int:
+    """Return the number of rows that a table of this robot usually has."""
+    robot = grading.exercise.robot
+    reference = robot.tables.get(convention)
+    return len(robot.joints if reference is None else reference.rows)
+
+
+def _pairing(roles: Sequence[Role]) -> list[tuple[Joint | None, bool]]:
+    return [(role.joint, role.row is None) for role in roles]
+
+
 # --- Search for values of a table's unreadable cells with which the table describes the robot
 #
-# If such values exist, no other cell is wrong. The method is Newton's with damping (Levenberg and
-# Marquardt), from many starts.
+# If such values exist, no other cell is wrong. The value of an unread cell is a constant, or a
+# constant plus or minus the joint variable that belongs in the cell.
 #
-# The value of an unread cell is a constant, or a constant plus or minus the joint variable that
-# belongs in the cell. Shapes: S starts, L joint values, U unknowns (the unread cells, and the pose
-# of a base or tool that the student chose).
+# The method is Newton's with damping (Levenberg and Marquardt), from many starts. Shapes: S starts,
+# L joint values, U unknowns (the unread cells, and the pose of a base or tool that the student
+# chose).
 
 
 STARTS, POSTURES, STEPS = 32, 6, 25
@@ -86,11 +196,13 @@ _LEAST_DAMPING = 1e-12
 
 @dataclass(frozen=True)
 class _Case:
-    """A table with unread cells at one set of link lengths."""
+    """A table with unread cells at one set of link lengths; the unit is the typical length.
 
-    # The unit is the typical length. ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells
-    # ``(U, 2)``. ``variables`` ``(U, L)`` is the joint variable that belongs in each unread cell.
-    # ``target`` ``(L, 4, 4)`` are the tool frames of the reference.
+    ``table`` is ``(rows, 4, L)`` with 0 in the ``unread`` cells ``(U, 2)``. ``variables`` ``(U,
+    L)`` is the joint variable that belongs in each unread cell. ``target`` ``(L, 4, 4)`` are the
+    tool frames of the reference.
+    """
+
     table: Table
     unread: NDArray[np.int_]
     variables: Numbers
@@ -118,11 +230,10 @@ def completed(
 ) -> NearestTable | None:
     """Return the table if some values in its unreadable cells make it describe the robot.
 
-    Return None if there are no such values. The result has 0 in the unreadable cells.
+    Return None if there are no such values. They are not unique, so the result has 0 in the
+    unreadable cells, and the frames of the reference. The directions of the joint axes count as
+    given.
     """
-    # The values are not unique.
-    # The frames of the result are those of the reference. The directions of the joint axes count as
-    # given.
     if any(role.row is None for role in roles):
         return None
     case = _case(roles, convention, freedom, grading)
@@ -184,7 +295,7 @@ def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
         rng.normal(0, 1, (STARTS, count)),
     )
     signs = _signs([bool(variable.any()) for variable in case.variables])
-    base, tool = _completion_moved(
+    base, tool = _with_moved_ends(
         case.freedom,
         identity((STARTS, 1)),
         identity((STARTS, 1)),
@@ -208,7 +319,7 @@ def _can_be_completed(case: _Case, budget: WorkBudget) -> bool:
         if step > PATIENCE and _promise(change, error, columns).max() < LEAST_PROMISE:
             return False
         tried = constants + change[:, :count]
-        moved_base, moved_tool = _completion_moved(case.freedom, base, tool, change[:, count:])
+        moved_base, moved_tool = _with_moved_ends(case.freedom, base, tool, change[:, count:])
         new_error, new_columns = _linearised(case, tried, signs, moved_base, moved_tool)
         better = (new_error**2).sum(axis=-1) < size
         damping = np.where(better, np.maximum(damping / 5, _LEAST_DAMPING), damping * 4)
@@ -251,7 +362,7 @@ def _linearised(
     point = np.concatenate([np.broadcast_to(each, (len(each), *shape)) for each in points])
     motion = np.zeros((*axis.shape[:-1], 6))
     motion[..., :3] = axis
-    motion[..., 3:] = _cross(axis, pose[..., :3, 3] - point)
+    motion[..., 3:] = cross(axis, pose[..., :3, 3] - point)
     motion[case.slides, ..., :3], motion[case.slides, ..., 3:] = 0.0, axis[case.slides]
     error = np.empty((*shape[:2], 6))
     error[..., :3] = _rotation_vector(case.target[..., :3, :3] @ pose[..., :3, :3].swapaxes(-1, -2))
@@ -268,12 +379,6 @@ def _rotation_vector(rotation: Matrices) -> Numbers:
     return np.asarray(twice_sine / 2 * (angle / np.maximum(sine, NO_SINE))[..., None])
 
 
-def _cross(one: Numbers, other: Numbers) -> Numbers:
-    # Several times faster than numpy.cross.
-    (a, b, c), (x, y, z) = np.moveaxis(one, -1, 0), np.moveaxis(other, -1, 0)
-    return np.stack([b * z - c * y, c * x - a * z, a * y - b * x], axis=-1)
-
-
 def _step(error: Numbers, columns: Numbers, damping: Numbers) -> Numbers:
     # ``error`` is ``(S, E)``, ``columns`` ``(S, U, E)``, the step ``(S, U)``.
     square = columns @ columns.swapaxes(-1, -2)
@@ -287,7 +392,7 @@ def _promise(change: Numbers, error: Numbers, columns: Numbers) -> Numbers:
     return np.asarray(undone / (error**2).sum(axis=-1))
 
 
-def _completion_moved(
+def _with_moved_ends(
     freedom: FrameFreedom, base: Matrices, tool: Matrices, twists: Numbers
 ) -> tuple[Matrices, Matrices]:
     # ``(S, 1, 4, 4)`` each.
@@ -298,118 +403,15 @@ def _completion_moved(
     return base, tool
 
 
-# --- Choose which joint each submitted row belongs to
-
-
-def best_roles(
-    part: DhTableSpec, rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
-) -> tuple[tuple[Role, ...], NearestTable]:
-    """Return each row with its joint, and the nearest table that describes the robot."""
-    freedom = freedom_of(part)
-    roles, nearest = _best_as_written(rows, convention, freedom, grading)
-    return roles, with_rounded_cells(nearest, convention, freedom, grading)
-
-
-def _best_as_written(
-    rows: tuple[StudentRow, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
-) -> tuple[tuple[Role, ...], NearestTable]:
-    joints = grading.exercise.robot.joints
-    roles = roles_in(rows, convention, grading)
-    roles = with_true_numbers(roles, convention, freedom, grading)
-    nearest = nearest_with_tool_row(roles, convention, freedom, grading)
-    if nearest.cost < WRONG_CELL:
-        return roles, nearest
-    other, price = None, 0.0
-    if len(nearest.roles) < len(rows):
-        # The row of zeros that was left out may belong to a joint.
-        other = roles_in(rows, convention, grading, expected_rows=len(rows))
-    elif len(rows) == len(joints) and len(rows) < usual_rows(convention, grading):
-        # The missing row need not be the last.
-        other, price = roles_in(rows, convention, grading, in_order=False), WRONG_CELL
-    elif len(rows) > len(joints):
-        # A joint's row may look like a fixed row because its variable is wrong.
-        other = roles_in(rows, convention, grading, in_order=True)
-    if other is None or _pairing(other) == _pairing(roles):
-        return roles, nearest
-    found = nearest_for_roles(other, convention, freedom, grading)
-    lost = min(found.lost, nearest.lost)
-    if found.cost + price < nearest.cost:
-        return other, replace(found, lost=lost)
-    return roles, replace(nearest, lost=lost)
-
-
-def roles_in(
-    rows: tuple[StudentRow, ...],
-    convention: Convention,
-    grading: Grading,
-    expected_rows: int | None = None,
-    *,
-    in_order: bool | None = None,
-) -> tuple[Role, ...]:
-    """Return each submitted row with its joint, and with rounded angles made exact."""
-    # ``in_order`` is true if the rows are in the order of the joints, None if unknown.
-    expected_rows = expected_rows or usual_rows(convention, grading)
-    rows = without_idle_rows(rows, expected_rows)
-    joints = grading.exercise.robot.joints
-    roles = roles_of(rows, joints, grading.samples, expected_rows, in_order=in_order)
-    return with_exact_angles(roles, grading.exercise, grading.samples)
-
-
-def nearest_with_tool_row(
-    roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
-) -> NearestTable:
-    """Return the valid table nearest to the rows, which may lack the row of the tool."""
-    nearest = nearest_for_roles(roles, convention, freedom, grading)
-    if nearest.cost < WRONG_CELL or len(roles) >= usual_rows(convention, grading):
-        return nearest
-    longer = nearest_for_roles((*roles, Role(None, None)), convention, freedom, grading)
-    is_longer = longer.cost + WRONG_CELL <= nearest.cost
-    return replace(longer if is_longer else nearest, lost=min(longer.lost, nearest.lost))
-
-
-def without_idle_rows(rows: tuple[StudentRow, ...], expected_rows: int) -> tuple[StudentRow, ...]:
-    """Return the rows without extra rows at the end that move nothing."""
-    while len(rows) > expected_rows and rows[-1].is_zero:
-        rows = rows[:-1]
-    return rows
-
-
-def rows_of_mechanism(
-    rows: tuple[StudentRow, ...], convention: Convention, grading: Grading
-) -> list[int]:
-    """Return the indices of the rows that belong to the robot, without extra rows."""
-    # The choice depends only on the joint variables in the rows, not on what is correct.
-    usual, joints = usual_rows(convention, grading), grading.exercise.robot.joints
-    if len(rows) <= usual:
-        return list(range(len(rows)))
-    roles = [role for role in roles_of(rows, joints, grading.samples, usual) if role.row]
-    last = max((i for i, role in enumerate(roles) if role.joint), default=-1)
-    of_joints = [i for i, role in enumerate(roles) if role.joint]
-    return [*of_joints, *range(last + 1, len(roles))[: usual - len(joints)]]
-
-
-def usual_rows(convention: Convention, grading: Grading) -> int:
-    """Return the number of rows that a table of this robot usually has."""
-    robot = grading.exercise.robot
-    reference = robot.tables.get(convention)
-    return len(robot.joints if reference is None else reference.rows)
-
-
-def _pairing(roles: Sequence[Role]) -> list[tuple[Joint | None, bool]]:
-    return [(role.joint, role.row is None) for role in roles]
-
-
 # --- Correct the rounding of all decimals of a table at once
 #
 # After that, the table describes the robot. Each decimal is shifted by at most a unit of its last
-# place.
-
-
-# So a less precise decimal cannot hide a wrong number.
-
-# In a row of parallel axes it does not matter which offset was rounded. The errors of the chain
-# depend almost linearly on the shifts (``kinematics.chain_match``). The pose of a free base may
-# change slightly, and the right value of a wrong cell is unknown. Both are unknowns, too.
+# place, so a less precise decimal cannot hide a wrong number. In a row of parallel axes it does not
+# matter which offset was rounded.
+#
+# The errors of the chain (``frame_choice.misfits``) depend almost linearly on the shifts. The pose
+# of a free base may change slightly, and the right value of a wrong cell is unknown. Both are
+# unknowns, too.
 
 
 # The number of sets of links needed to distinguish letters if only decimals are unknown.
@@ -425,12 +427,13 @@ LEAST_SIZE = 1e-16
 
 @dataclass(frozen=True, slots=True)
 class _Chain:
-    """A table whose decimals are shifted until it describes the robot."""
+    """A table whose decimals are shifted until it describes the robot, at L sets of link lengths.
 
-    # At L sets of link lengths.
-    # ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of the table; ``values`` ``(rows,
-    # 4, SAMPLES)`` are its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or
-    # None if frame 0 is given. The ``unknown`` cells may have any value.
+    ``links`` ``(rows + 1, 4, L)`` are the regrouped constants of the table; ``values`` ``(rows, 4,
+    SAMPLES)`` are its cells. ``base`` ``(L, 4, 4)`` is the approximate pose of frame 0, or None if
+    frame 0 is given. The ``unknown`` cells may have any value.
+    """
+
     links: Table
     values: Table
     targets: Sequence[Target]
@@ -454,7 +457,8 @@ class _Chain:
         for i, (row, column) in enumerate(self.unknown):
             unit = SMALL if IS_ANGLE[column] else SMALL * self.length_scale
             moved[:, row, column] += unit * free[:, i]
-        links = self.links + _regrouped(moved, self.convention)
+        moved = np.moveaxis(regrouped(np.moveaxis(moved, 0, -1), self.convention), -1, 0)
+        links = self.links + moved
         start = None if self.base is None else self._twisted(free[:, -TWIST:])
         no_signs = np.zeros(links.shape[:2], dtype=np.int_)
         _, poses = match_tables(links, no_signs, self.targets, self.length_scale, start=start)
@@ -500,18 +504,14 @@ class _Chain:
         return None if found is None else split(found)
 
 
-def _regrouped(tables: Numbers, convention: Convention) -> Numbers:
-    return np.moveaxis(regrouped(np.moveaxis(tables, 0, -1), convention), -1, 0)
-
-
 def with_true_numbers(
     roles: tuple[Role, ...], convention: Convention, freedom: FrameFreedom, grading: Grading
 ) -> tuple[Role, ...]:
     """Shift the decimals in the rows of ``roles`` so that the table describes the robot.
 
-    Return ``roles`` itself if that is unnecessary or impossible.
+    A changed row keeps the written numbers in ``as_written``. Return ``roles`` itself if shifting
+    is unnecessary or impossible.
     """
-    # A changed row keeps the written numbers in ``as_written``.
     if not _has_decimals(roles):
         return roles
     written, known = _with_known_angles(roles, grading)
@@ -521,7 +521,7 @@ def with_true_numbers(
     for chain in _chains(written, roles, convention, freedom, decimals, grading):
         found = chain.fit()
         if found is not None:
-            return _rounded_cells_moved(written, decimals, found[0])
+            return _with_shifts(written, decimals, found[0])
     return roles
 
 
@@ -530,10 +530,9 @@ def with_rounded_cells(
 ) -> NearestTable:
     """Find the nearest valid table again, with exact numbers for rounded decimals.
 
-    A valid table describes the robot.
+    ``nearest`` was computed from the rounded decimals, so that even its correct cells differ
+    slightly from the written ones.
     """
-    # ``nearest`` was computed from the rounded decimals.
-    # So even its correct cells differ slightly from the written cells.
     roles = nearest.roles
     if nearest.cost < WRONG_CELL or not _has_decimals(roles):
         return nearest
@@ -545,9 +544,7 @@ def with_rounded_cells(
     near = nearly_equal(handed_in, nearest.expected, scales, IS_ANGLE[:, None])
     unknown = [(i, column) for i, column in np.argwhere(~near).tolist()]
     decimals = _decimals(written, grading, [*known, *unknown])
-    if decimals is None:
-        return nearest
-    if len(unknown) > MOST_UNKNOWN:
+    if decimals is None or len(unknown) > MOST_UNKNOWN:
         return nearest
     start = handed_in.copy()
     for cell in unknown:
@@ -561,7 +558,7 @@ def with_rounded_cells(
         if found is None:
             continue
         shifts, others = found
-        expected = _shifted(decimals, shifts, handed_in)
+        expected = _shifted_values(decimals, shifts, handed_in)
         for i, cell in enumerate(unknown):
             unit = SMALL if IS_ANGLE[cell[1]] else SMALL * scale
             expected[cell] = start[cell] + np.resize(unit * others[i], SAMPLES)
@@ -659,15 +656,15 @@ def _chains(
     ]
 
 
-def _shifted(decimals: SharedDecimals, shifts: Numbers, values: Table) -> Table:
+def _shifted_values(decimals: SharedDecimals, shifts: Numbers, values: Table) -> Table:
     moved: Table = decimals.shifted(shifts[None], values.reshape(-1, SAMPLES))[0]
     return moved.reshape(values.shape)
 
 
-def _rounded_cells_moved(
+def _with_shifts(
     roles: tuple[Role, ...], decimals: SharedDecimals, shifts: Numbers
 ) -> tuple[Role, ...]:
-    values = _shifted(decimals, shifts, handed_in_values(roles))
+    values = _shifted_values(decimals, shifts, handed_in_values(roles))
     return tuple(
         replace(role, row=replace(role.row, values=moved, as_written=role.row.handed_in))
         if role.row and np.abs(moved - role.row.values).max() > 0

@@ -1,4 +1,8 @@
-"""Answer kind ``frames``: the frames that the student places on the joint axes."""
+"""Answer kind ``frames``: the frames that the student places on the joint axes.
+
+This file judges where frames stand, and says which DH table follows from right ones. The rules of
+placement are in ``kinematics.placement``, the slips in ``diagnosis``.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -73,7 +77,7 @@ from dh_grader.kinematics.placement import (
 )
 from dh_grader.translations import say
 
-# --- Judge the frames that a student places on the joint axes, with all joint variables 0
+# --- Compare placed frames with the rules, with all joint variables 0
 
 
 # The most sliding joints whose axes are tried both as moved and as drawn: 16 ways.
@@ -83,10 +87,11 @@ AXIS, Z, ORIGIN, X = 0, 1, slice(2, 5), 5
 
 @dataclass(frozen=True, slots=True)
 class FramesAtHome:
-    """The frames to be placed and the given frames, with all joint variables 0."""
+    """The frames to be placed and the given frames, with all joint variables 0.
 
-    # ``joints`` are the numbers of the frames' joints. ``base`` and ``tool`` are ``(SAMPLES, 4,
-    # 4)``.
+    ``joints`` are the numbers of the frames' joints. ``base`` and ``tool`` are ``(SAMPLES, 4, 4)``.
+    """
+
     convention: Convention
     asked: tuple[AskedFrame, ...]
     joints: tuple[int, ...]
@@ -195,12 +200,11 @@ def ways_to_judge(
 ) -> list[JudgedFrames]:
     """Judge placed frames in several ways, because the axis of a sliding joint has no fixed place.
 
-    ``written`` are the student's entries.
+    The first way puts each sliding axis through the origin that the student chose, if the rules
+    allow that. If cells are then wrong, the other ways leave some sliding axes where the figure
+    draws them, or put one sliding axis where the neighbouring frames need it. So one wrong origin
+    need not make another frame wrong. ``written`` are the student's entries.
     """
-    # The axis of a sliding joint has no fixed place. The first way puts each sliding axis through
-    # the origin that the student chose, if the rules allow that. If cells are then wrong, the other
-    # ways leave some sliding axes where the figure draws them, or put one sliding axis where the
-    # neighbouring frames need it. So one wrong origin need not make another frame wrong.
     everywhere = (True,) * len(robot.asked)
     first = _judged(robot, placed, written, home, everywhere)
     moved = [i for i, place in enumerate(first.places) if place.own is not robot.asked[i].own]
@@ -288,40 +292,20 @@ def _match(error: float, slack: float) -> int:
 
 
 def lazy_frames(robot: FramesAtHome) -> list[PlacedFrame]:
-    """Return an answer that needs no geometry: all frames are equal to the base frame."""
-    # The joint numbers are correct.
+    """Return an answer that needs no geometry: base frames, with the correct joint numbers."""
     count = len(robot.base)
     z, x = (np.tile(np.eye(3)[i], (count, 1)) for i in (2, 0))
     return [PlacedFrame(joint, z, 0.0, np.zeros((3, count)), 0.0, x, 0.0) for joint in robot.joints]
 
 
 def known_frames(robot: FramesAtHome, home: Samples) -> NDArray[np.bool_]:
-    """Return a mask ``(frames, 6)`` of the cells that need geometry."""
-    # In these cells, frames that are all placed at the base frame are wrong.
+    """Return a mask ``(frames, 6)`` of the cells in which ``lazy_frames`` are wrong."""
     everywhere = (True,) * len(robot.asked)
     judged = _judged(robot, lazy_frames(robot), None, home, everywhere)
     return np.asarray(judged.found == Match.DIFFERENT)
 
 
-def table_of_frames(
-    robot: FramesAtHome, placed: Sequence[PlacedFrame], exercise: Exercise, samples: Samples
-) -> Table:
-    """Return the DH table ``(rows, 4, samples)`` that follows from correct frames."""
-    # If the z axis of a frame is opposite to its joint's axis, the joint variable has a minus sign.
-    frames = [robot.base]
-    senses = {0: np.ones(len(robot.base))} if robot.convention is Convention.STANDARD else {}
-    for asked, frame in zip(robot.asked, placed, strict=True):
-        assert frame.z is not None
-        assert frame.x is not None
-        frames.append(frame_of(frame.z, frame.origin.T, frame.x))
-        senses[asked.joint] = np.sign((frame.z * asked.own.direction).sum(axis=-1))
-    frames.append(robot.tool)
-    table = home_rows(frames, robot.convention)
-    for i, joint in enumerate(exercise.joints):
-        # The last frame of a modified table without a fixed row is the tool's.
-        sense = senses.get(i, np.ones(len(robot.base)))
-        table[i, D if joint.prismatic else THETA] += sense * samples.values[joint.variable]
-    return table
+# --- Read and judge an answer
 
 
 # The share of the points that frames of the other convention cost, regardless of their number.
@@ -523,6 +507,32 @@ def _is_other_convention(
     chosen = [placed[i] for i in places]
     [first, *_] = ways_to_judge(robot, chosen, [answer[i] for i in places], home)
     return not first.wrong
+
+
+# --- The DH table that follows from right frames
+
+
+def table_of_frames(
+    robot: FramesAtHome, placed: Sequence[PlacedFrame], exercise: Exercise, samples: Samples
+) -> Table:
+    """Return the DH table ``(rows, 4, samples)`` that follows from correct frames.
+
+    If the z axis of a frame is opposite to its joint's axis, the joint variable has a minus sign.
+    """
+    frames = [robot.base]
+    senses = {0: np.ones(len(robot.base))} if robot.convention is Convention.STANDARD else {}
+    for asked, frame in zip(robot.asked, placed, strict=True):
+        assert frame.z is not None
+        assert frame.x is not None
+        frames.append(frame_of(frame.z, frame.origin.T, frame.x))
+        senses[asked.joint] = np.sign((frame.z * asked.own.direction).sum(axis=-1))
+    frames.append(robot.tool)
+    table = home_rows(frames, robot.convention)
+    for i, joint in enumerate(exercise.joints):
+        # The last frame of a modified table without a fixed row is the tool's.
+        sense = senses.get(i, np.ones(len(robot.base)))
+        table[i, D if joint.prismatic else THETA] += sense * samples.values[joint.variable]
+    return table
 
 
 def _table_at(

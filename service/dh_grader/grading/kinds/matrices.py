@@ -1,4 +1,8 @@
-"""Answer kinds ``vector``, ``transform``, ``rotation``, ``position`` and ``matrix``."""
+"""Answer kinds ``vector``, ``transform``, ``rotation``, ``position`` and ``matrix``.
+
+Each kind has a function that reads and one that judges (``AnswerKind``). They only put together
+what ``reading``, ``judging.py`` and ``diagnosis`` know.
+"""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -67,9 +71,9 @@ from dh_grader.grading.judging import (
 from dh_grader.grading.marks import stands_still
 from dh_grader.grading.misconception import Mask, diagnosed, number_formula, spelled
 from dh_grader.grading.numbers import Match, Samples
-from dh_grader.grading.reading.lists import HOMOGENEOUS as LISTS_HOMOGENEOUS
 from dh_grader.grading.reading.lists import (
-    PLANAR,
+    ONE_TAIL,
+    ZERO_TAIL,
     StudentValues,
     Tail,
     names_of_components,
@@ -88,7 +92,7 @@ def read_vector_answer(part: VectorSpec, answer: object, grading: Grading) -> St
     names = names_of_components(
         tuple((each.name, each.quantity) for each in part.components), grading.reader.vocabulary
     )
-    tails = (PLANAR,) if len(part.components) == len("xy") else ()
+    tails = (ZERO_TAIL,) if len(part.components) == len("xy") else ()
     return read_list(answer, names, grading.reader, tails)
 
 
@@ -107,7 +111,7 @@ def judge_vector_answer(part: VectorSpec, answer: StudentValues, grading: Gradin
     explains = wrong.any() and grading.affords(SEARCH_WORK)
     answers = slipped_answers(part, grading) if explains else None
     answers = answers and answers.of(lambda grid: grid[:, 0])
-    explained = _slip(answers, compared, different, grading) if different.sum() > 1 else None
+    explained = _slip_of_all(answers, compared, different, grading) if different.sum() > 1 else None
     wrong &= ~(different & bool(explained))
     corrected = ComparedValues(answer, expected, corrections)
     slips = slips_of(corrected, wrong, grading, answers)
@@ -116,7 +120,7 @@ def judge_vector_answer(part: VectorSpec, answer: StudentValues, grading: Gradin
     return Judged(value_rows(answer, found, slips, grading), content, feedback)
 
 
-def _slip(
+def _slip_of_all(
     answers: SlippedAnswers | None, compared: ComparedValues, wrong: Mask, grading: Grading
 ) -> Finding | None:
     # None if fewer than two values are wrong.
@@ -205,13 +209,13 @@ def judge_rotation_answer(part: RotationSpec, answer: StudentMatrix, grading: Gr
         answers = None if steps else slipped_answers(part, grading)
         return answers and answers.of(lambda poses: poses[:, :3, :3])
 
-    expected = ExpectedMatrix(_rotation_expected(part, steps, grading), ROTATION, rigid=True)
+    expected = ExpectedMatrix(_expected_rotation(part, steps, grading), ROTATION, rigid=True)
     judged = matrix_rows(answer, expected, grading, chains, explanations, slipped, motion)
     content = of_rigid(expected.values, part, grading)
     return Judged(judged.rows, content, judged.feedback)
 
 
-def _rotation_expected(part: RotationSpec, steps: list[Step], grading: Grading) -> Numbers:
+def _expected_rotation(part: RotationSpec, steps: list[Step], grading: Grading) -> Numbers:
     if steps:
         return as_entries(composed([(step.rotation, step.fixed) for step in steps]))
     given = formula_values(part, grading)
@@ -241,20 +245,20 @@ def read_position_answer(part: PositionSpec, answer: object, grading: Grading) -
 def _tails(coordinates: str) -> tuple[Tail, ...]:
     # Such as the 0 in [x, y, 0].
     if coordinates == "xy":
-        return PLANAR, LISTS_HOMOGENEOUS, (*PLANAR, *LISTS_HOMOGENEOUS)
+        return ZERO_TAIL, ONE_TAIL, (*ZERO_TAIL, *ONE_TAIL)
     # If x and z are expected, z in [x, y, 0] may be the second or the third value.
-    return (LISTS_HOMOGENEOUS,) if len(coordinates) == len("xyz") else ()
+    return (ONE_TAIL,) if len(coordinates) == len("xyz") else ()
 
 
 def judge_position_answer(part: PositionSpec, answer: StudentValues, grading: Grading) -> Judged:
     """Judge the coordinates; the report has one row for each coordinate."""
-    expected = _position_expected(part, grading)
+    expected = _expected_position(part, grading)
     compared = ComparedValues(answer, expected, number_corrections(expected, grading))
     found = compared.matches(grading)
     wrong = found < Match.ROUNDED
     different = found == Match.DIFFERENT
     explains = wrong.any() and grading.affords(SEARCH_WORK)
-    answers = _slipped(part, grading) if explains else None
+    answers = _slipped_positions(part, grading) if explains else None
     explained = _explained(part, compared, different, answers, grading) if explains else None
     slips = slips_of(compared, wrong & ~(different & bool(explained)), grading, answers)
     rows = value_rows(answer, found, slips, grading)
@@ -262,7 +266,7 @@ def judge_position_answer(part: PositionSpec, answer: StudentValues, grading: Gr
     return Judged(rows, content, grading.messages(*explained) if explained else ())
 
 
-def _position_expected(part: PositionSpec, grading: Grading) -> Numbers:
+def _expected_position(part: PositionSpec, grading: Grading) -> Numbers:
     given = formula_values(part, grading)
     if given is not None:
         return np.asarray(given[0])
@@ -295,7 +299,7 @@ def _explained(
     return ((finding,), value_places(wrong)) if finding else None
 
 
-def _slipped(part: PositionSpec, grading: Grading) -> SlippedAnswers | None:
+def _slipped_positions(part: PositionSpec, grading: Grading) -> SlippedAnswers | None:
     answers = slipped_answers(part, grading)
     if answers is None or part.expected is not None:
         return answers and answers.of(lambda grid: grid[:, 0])
@@ -337,42 +341,26 @@ class MatrixRows:
     is_right: bool = False
 
 
-def _no_chains(_samples: Samples) -> tuple[Chain, ...]:
-    return ()
-
-
-def _no_explanations(_case: MatrixCase) -> list[Explanation]:
-    return []
-
-
-def _no_slips() -> SlippedAnswers | None:
-    return None
-
-
-def _no_motion(_samples: Samples) -> GivenMotion | None:
-    return None
-
-
 def matrix_rows(
     student: StudentMatrix,
     expected: ExpectedMatrix,
     grading: Grading,
-    chains: Callable[[Samples], tuple[Chain, ...]] = _no_chains,
-    explanations: Callable[[MatrixCase], list[Explanation]] = _no_explanations,
-    slipped: Callable[[], SlippedAnswers | None] = _no_slips,
-    motion: Callable[[Samples], GivenMotion | None] = _no_motion,
+    chains: Callable[[Samples], tuple[Chain, ...]] = lambda _: (),
+    explanations: Callable[[MatrixCase], list[Explanation]] = lambda _: [],
+    slipped: Callable[[], SlippedAnswers | None] = lambda: None,
+    motion: Callable[[Samples], GivenMotion | None] = lambda _: None,
     work_budget: float = WORK_BUDGET,
     name: str = "",
 ) -> MatrixRows:
     """Return the report rows of a matrix, with explanations of its wrong entries.
 
-    The functions among the arguments are called only if an entry is wrong.
+    The functions among the arguments are called only if an entry is wrong. ``explanations`` returns
+    the explanations that only this kind of answer has; the general ones are tried only if there are
+    none of these. ``chains`` returns the links whose product is the matrix, ``motion`` the motion
+    in given formulas, both at given samples. ``slipped`` returns the matrices that follow from
+    slips in the table. ``work_budget`` limits the search in products. ``name`` is the name of this
+    matrix if the answer has several, as in the row "A2.1".
     """
-    # ``explanations`` returns the explanations that only this kind of answer has; the general ones
-    # are tried only if there are none of these. ``chains`` returns the links whose product is the
-    # matrix, ``motion`` the motion in given formulas, both at given samples. ``slipped`` returns
-    # the matrices that follow from slips in the table. ``work_budget`` limits the search in
-    # products. ``name`` is the name of this matrix if the answer has several, as in the row "A2.1".
     notes = grading.messages(student.findings)
     labels = [f"{name}.{i + 1}" if name else str(i + 1) for i in range(len(student.entries))]
     found = expected.matches(student, grading.exercise.length_scale, grading.samples)
@@ -433,7 +421,7 @@ def matrix_rows(
     )
     slips = diagnose_entries(entries, grading.affords, work_budget, requirements)
     check = check_yourself(case, slips)
-    findings = [(each.finding, _cells(each.entries & case.wrong, labels)) for each in explained]
+    findings = [(each.finding, _places_of(each.entries & case.wrong, labels)) for each in explained]
     findings += [(check, tuple(map(Place, labels[:3])))] if check else []
     return MatrixRows(
         entry_rows(student.entries, found, slips, grading, labels=labels),
@@ -446,5 +434,5 @@ def matrix_rows(
     )
 
 
-def _cells(entries: Mask, labels: Sequence[str]) -> tuple[Place, ...]:
+def _places_of(entries: Mask, labels: Sequence[str]) -> tuple[Place, ...]:
     return tuple(Place(labels[i], str(j + 1)) for i, j in np.argwhere(entries).tolist())

@@ -1,4 +1,8 @@
-"""Answer kinds ``screw_axes``, ``link_transforms`` and ``euler_angles``."""
+"""Answer kinds ``screw_axes``, ``link_transforms`` and ``euler_angles``.
+
+Each kind has a function that reads and one that judges (``AnswerKind``). They only put together
+what ``reading``, ``judging.py`` and ``diagnosis`` know; the nearest triple of angles is found here.
+"""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -10,7 +14,6 @@ from numpy.typing import NDArray
 
 from dh_grader.catalogue.kinds import EulerAnglesSpec, LinkTransformsSpec, ScrewAxesSpec
 from dh_grader.catalogue.robot import HOMOGENEOUS, SCREW, at_home
-from dh_grader.expressions import Note
 from dh_grader.grading.diagnosis.lists import WrongTriple, explain_triple, is_arctangent, slips_of
 from dh_grader.grading.diagnosis.matrices import WORK_BUDGET
 from dh_grader.grading.diagnosis.motions import Explanation, MatrixCase
@@ -61,7 +64,7 @@ from dh_grader.grading.numbers import (
     fitted_shifts,
     rounding_slack,
 )
-from dh_grader.grading.reading.entries import Entry, from_grid_error, from_note
+from dh_grader.grading.reading.entries import from_grid_error, from_note
 from dh_grader.grading.reading.lists import StudentValues, names_of_angles, read_list
 from dh_grader.grading.reading.matrices import (
     WIDTH,
@@ -116,9 +119,11 @@ COSTS = {"body_for_space": 0.5, "space_for_body": 0.5}
 
 @dataclass(frozen=True, slots=True)
 class ExpectedScrews:
-    """The expected screw axes in the requested frame, and the same axes in the other frame."""
+    """The expected screw axes in the requested frame, and the same axes in the other frame.
 
-    # ``(joints, 6, SAMPLES)`` each; ``labels`` are the joints' numbers.
+    They are ``(joints, 6, SAMPLES)`` each; ``labels`` are the joints' numbers.
+    """
+
     axes: Numbers
     elsewhere: Numbers | None
     labels: tuple[str, ...]
@@ -136,14 +141,15 @@ def read_screw_axes_answer(part: ScrewAxesSpec, answer: object, grading: Grading
         rows = matrix_of_grid(grid, quantities, grading.reader)
         if len(numbers) != WIDTH or not _columns_are_axes(part, rows, grading):
             return rows
-        return _by_columns(rows, columns_as_axes(grid), grading)
+        columns = _transposed(rows, grading)
+        return replace(columns, findings=(*rows.findings, from_note(columns_as_axes(grid))))
     return read_matrix(screw_rows(answer, numbers), quantities, grading.reader)
 
 
 def _columns_are_axes(part: ScrewAxesSpec, rows: StudentMatrix, grading: Grading) -> bool:
     # As in Lynch & Park, "Modern Robotics". One column may be correct by chance, so the number of
     # correct columns must exceed that of correct rows by two.
-    axes = _screw_axes_expected(part, grading).axes
+    axes = _expected_screws(part, grading).axes
     senses = (1, -1) if part.directions == "free" else (1,)
 
     def right(matrix: StudentMatrix) -> int:
@@ -158,14 +164,9 @@ def _transposed(rows: StudentMatrix, grading: Grading) -> StudentMatrix:
     return matrix_of_entries(entries, rows.quantities, grading.reader)
 
 
-def _by_columns(rows: StudentMatrix, note: Note, grading: Grading) -> StudentMatrix:
-    columns = _transposed(rows, grading)
-    return replace(columns, findings=(*rows.findings, from_note(note)))
-
-
 def judge_screw_axes_answer(part: ScrewAxesSpec, answer: StudentMatrix, grading: Grading) -> Judged:
     """Judge the axes; the report has one row for each joint."""
-    expected = _screw_axes_expected(part, grading)
+    expected = _expected_screws(part, grading)
     axes = expected.axes
     found = _matches(answer, axes, grading)
     remarks: dict[int, Finding] = {}
@@ -179,12 +180,12 @@ def judge_screw_axes_answer(part: ScrewAxesSpec, answer: StudentMatrix, grading:
     case = WrongScrews(
         answer.values, axes, _scale(grading), wrong, expected.elsewhere, frame=part.frame
     )
-    explained, cost = _screw_axes_explained(answer, case, grading) if wrong.any() else ({}, None)
+    explained, cost = _explained_screws(answer, case, grading) if wrong.any() else ({}, None)
     slips = {
         (i, j): slip
         for i in np.flatnonzero(wrong.any(axis=1)).tolist()
         if i not in explained
-        for (j, _), slip in _screw_axes_slips(answer, i, axes[i], wrong[i], grading).items()
+        for (j, _), slip in _slips_of_screw(answer, i, axes[i], wrong[i], grading).items()
     }
     shared, of_single_rows = _shared_messages(explained, wrong, expected.labels, grading)
     remarks = {i: remark for i, remark in remarks.items() if i not in explained}
@@ -197,10 +198,10 @@ def judge_screw_axes_answer(part: ScrewAxesSpec, answer: StudentMatrix, grading:
         remarks={**remarks, **of_single_rows},
     )
     feedback = (*grading.messages(answer.findings), *shared)
-    return Judged(rows, of_rows(_known(axes, grading)), feedback, whole_cost=cost)
+    return Judged(rows, of_rows(_known_cells_of_screws(axes, grading)), feedback, whole_cost=cost)
 
 
-def _screw_axes_explained(
+def _explained_screws(
     answer: StudentMatrix, case: WrongScrews, grading: Grading
 ) -> tuple[dict[int, Finding], float | None]:
     # If one slip explains all wrong axes, the cost is its share of the points; otherwise it is
@@ -244,7 +245,7 @@ def _shared_messages(
     return tuple(shared), alone
 
 
-def _known(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
+def _known_cells_of_screws(axes: Numbers, grading: Grading) -> NDArray[np.bool_]:
     # A cell that earns points differs from 0 and from the cell of the frame's own z axis.
     turns = np.abs(axes[:, :3]).max(axis=(1, 2)) > 0
     lazy = np.where(turns[:, None], [0, 0, 1, 0, 0, 0], [0, 0, 0, 0, 0, 1])
@@ -262,7 +263,7 @@ REVERSED = Finding(
 )
 
 
-def _screw_axes_expected(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
+def _expected_screws(part: ScrewAxesSpec, grading: Grading) -> ExpectedScrews:
     exercise, samples = grading.exercise, grading.samples
     given, robot = formula_values(part, grading), exercise.reference
     if given is not None:
@@ -290,7 +291,7 @@ def _scale(grading: Grading) -> Numbers:
     return np.repeat([1.0, grading.exercise.length_scale], 3)
 
 
-def _screw_axes_slips(
+def _slips_of_screw(
     student: StudentMatrix, i: int, axis: Numbers, wrong: NDArray[np.bool_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
     values = StudentValues(student.entries[i], SCREW, student.values[i])
@@ -321,8 +322,10 @@ class StudentLinks:
 def read_link_transforms_answer(
     part: LinkTransformsSpec, answer: object, grading: Grading
 ) -> StudentLinks:
-    """Read the matrices of a list or of one pasted text, one for each row of the table."""
-    # The entries of an omitted matrix at the end are missing.
+    """Read the matrices of a list or of one pasted text, one for each row of the table.
+
+    The entries of an omitted matrix at the end are missing.
+    """
     labels = grading.exercise.robot.tables[part.convention].labels
     if isinstance(answer, str):
         matrices = tuple(read_matrices(answer, labels, HOMOGENEOUS, grading.reader))
@@ -356,7 +359,7 @@ def judge_link_transforms_answer(
 ) -> Judged:
     """Judge the matrices; the report has the rows "A1.1" to "An.4"."""
     labels = grading.exercise.robot.tables[part.convention].labels
-    right = _link_transforms_expected(part, answer, grading)
+    right = _expected_links(part, answer, grading)
     rows: list[RowReport] = []
     messages: list[Feedback] = []
     expected = [
@@ -371,7 +374,7 @@ def judge_link_transforms_answer(
             expected[i],
             grading,
             slipped=partial(slipped_link, i, right[i], part.convention, grading),
-            explanations=partial(_as_told, throughout) if throughout else by_others,
+            explanations=partial(_throughout, throughout) if throughout else by_others,
             work_budget=WORK_BUDGET / len(labels),
             name=f"A{label}",
         )
@@ -379,7 +382,7 @@ def judge_link_transforms_answer(
         messages.extend(judged.feedback)
     return Judged(
         tuple(rows),
-        _link_transforms_content(right, part, grading),
+        _content_of_links(right, part, grading),
         tuple(messages),
         stands_still=stands_still(
             np.array([matrix.with_zeros for matrix in answer.matrices]), HOMOGENEOUS, grading
@@ -388,7 +391,7 @@ def judge_link_transforms_answer(
     )
 
 
-def _as_told(finding: Finding, case: MatrixCase) -> list[Explanation]:
+def _throughout(finding: Finding, case: MatrixCase) -> list[Explanation]:
     return [Explanation(finding, case.mask(...))]
 
 
@@ -402,9 +405,7 @@ def _by_other_links(
     return explain_link(link, case)
 
 
-def _link_transforms_content(
-    right: Matrices, part: LinkTransformsSpec, grading: Grading
-) -> Content:
+def _content_of_links(right: Matrices, part: LinkTransformsSpec, grading: Grading) -> Content:
     exercise, samples = grading.exercise, grading.samples
     table = exercise.robot.tables[part.convention]
     reference = links(table.values(samples.values, SAMPLES), part.convention)
@@ -415,9 +416,7 @@ def _links_of(values: list[Numbers]) -> Matrices:
     return np.moveaxis(np.array(values), -1, 1)
 
 
-def _link_transforms_expected(
-    part: LinkTransformsSpec, answer: StudentLinks, grading: Grading
-) -> Matrices:
+def _expected_links(part: LinkTransformsSpec, answer: StudentLinks, grading: Grading) -> Matrices:
     reference = grading.exercise.robot.tables[part.convention]
     chain, wanted = grading.student_chain, len(reference.rows)
     if chain is not None and grading.following and len(chain.frames) == wanted + 1:
@@ -513,22 +512,23 @@ def judge_euler_angles_answer(
     angles, rotation = answer.values, _expected_rotation(part, grading)
     slack = [rounding_slack(each, grading.samples) if each else 0.0 for each in answer.expressions]
     expected = nearest_triple(angles, rotation, turns, fixed=fixed, slack=slack)
-    found = _found(answer, expected, rotation, part, grading)
+    found = _matches_of_angles(answer, expected, rotation, part, grading)
     slips: dict[tuple[int, int], Finding] = {}
     findings: tuple[Finding, ...] = ()
     if is_singular(turns, rotation, fixed=fixed).all():
         findings = (SINGULAR,)
     if (found < Match.ROUNDED).any() and np.isfinite(angles).all():
-        case = WrongTriple(angles, rotation, turns, fixed, _arctangents(answer.entries))
-        found, slips, explained = _euler_angles_explained(found, explain_triple(case))
+        arctangents = [bool(each and is_arctangent(each.tree)) for each in answer.expressions]
+        case = WrongTriple(angles, rotation, turns, fixed, arctangents)
+        found, slips, explained = _explained_angles(found, explain_triple(case))
         findings += explained
     if not findings or findings[-1] is SINGULAR:
-        slips = {**_euler_angles_slips(answer, expected, found, grading), **slips}
+        slips = {**_slips_of_angles(answer, expected, found, grading), **slips}
     rows = value_rows(answer, found, slips, grading)
-    return Judged(rows, _euler_angles_content(expected, rotation, part), grading.messages(findings))
+    return Judged(rows, _content_of_angles(expected, rotation, part), grading.messages(findings))
 
 
-def _euler_angles_content(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
+def _content_of_angles(expected: Numbers, rotation: Matrices, part: EulerAnglesSpec) -> Content:
     # The angles that are not 0. At most as many count as in the simplest triple of the rotation.
     fixed = part.axes == "fixed"
     simplest = nearest_triple(np.zeros_like(expected), rotation, part.turns, fixed=fixed)
@@ -543,7 +543,7 @@ def _expected_rotation(part: EulerAnglesSpec, grading: Grading) -> Matrices:
     return from_angles(part.turns, given[0].T, fixed=part.axes == "fixed")
 
 
-def _found(
+def _matches_of_angles(
     student: StudentValues,
     expected: Numbers,
     rotation: Matrices,
@@ -589,10 +589,9 @@ def nearest_triple(
 ) -> Numbers:
     """Return the triple ``(3, SAMPLES)`` of ``rotation`` that is nearest to ``angles``.
 
-    The nearest triple has the fewest different angles. ``slack`` is the rounding error of each
-    angle.
+    The nearest triple has the fewest different angles; a NaN does not count as different. ``slack``
+    is the rounding error of each angle.
     """
-    # A NaN does not count as different.
     if fixed:
         return nearest_triple(angles[::-1], rotation, sequence[::-1], slack=slack[::-1])[::-1]
     one = to_angles(sequence, rotation)
@@ -629,12 +628,7 @@ def _singular_triple(angles: Numbers, one: Numbers, rotation: Matrices, sequence
     return np.stack([first, one[:, 1], last], axis=-1)
 
 
-def _arctangents(entries: Sequence[Entry]) -> list[bool]:
-    expressions = [entry.expression for entry in entries]
-    return [each is not None and is_arctangent(each.tree) for each in expressions]
-
-
-def _euler_angles_explained(
+def _explained_angles(
     found: NDArray[np.int_], explained: Explained | None
 ) -> tuple[NDArray[np.int_], dict[tuple[int, int], Finding], tuple[Finding, ...]]:
     if explained is None:
@@ -647,7 +641,7 @@ def _euler_angles_explained(
     return matched, {(int(i), 0): finding for i in np.flatnonzero(slipped)}, ()
 
 
-def _euler_angles_slips(
+def _slips_of_angles(
     student: StudentValues, expected: Numbers, found: NDArray[np.int_], grading: Grading
 ) -> dict[tuple[int, int], Finding]:
     wrong = found < Match.ROUNDED

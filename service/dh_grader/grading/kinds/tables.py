@@ -1,4 +1,8 @@
-"""Answer kinds ``dh_table``, ``find_slip`` and ``dh_row``."""
+"""Answer kinds ``dh_table``, ``find_slip`` and ``dh_row``: read and judge the answer to a part.
+
+Each kind has a function that reads and one that judges (``AnswerKind``). They only put together
+what ``reading``, ``judging_table.py`` and ``diagnosis`` know.
+"""
 
 import re
 from collections.abc import Mapping
@@ -85,7 +89,6 @@ from dh_grader.grading.reading.table_cells import (
 )
 from dh_grader.grading.report import (
     CellReport,
-    Feedback,
     Finding,
     Place,
     RowReport,
@@ -156,8 +159,7 @@ def judge_dh_table_answer(part: DhTableSpec, answer: StudentTable, grading: Grad
 
 
 def judged_once(part: DhTableSpec, answer: StudentTable, grading: Grading) -> JudgedTable:
-    """Judge the table as written, in its convention."""
-    # A correct table is not diagnosed.
+    """Judge the table as written, in its convention; only a wrong table is diagnosed."""
     convention, judgement, findings = judged_in_convention(part, answer, grading)
     notes = grading.messages((*answer.findings, *findings))
     judge_rows = _judged_wrong if judgement.wrong or judgement.slips else _judged_right
@@ -191,7 +193,7 @@ def _judged_wrong(
     first: Judgement,
     grading: Grading,
 ) -> Judged:
-    judgement, found, lost = _of_the_whole(part, answer.rows, first, convention, grading)
+    judgement, found, lost = _explained_as_a_whole(part, answer.rows, first, convention, grading)
     cases = wrong_cells(judgement, grading) if judgement.wrong else {}
     # A slip of the whole table gets one message; its cells contribute only the corrections.
     slips = diagnose_cells(cases, judgement) if cases and not found else {}
@@ -217,7 +219,7 @@ def _judged_wrong(
             *grading.messages((*extra, *of_rows)),
         ),
         slips=judgement.slips,
-        whole_cost=_cost_of(found) if found else None,
+        whole_cost=sum(COSTS.get(each.code, COST) for each in found) if found else None,
         stands_still=judgement.wrong > 0 and stands_still(with_zeros(answer), _QUANTITIES, grading),
         lost=first.lost,
         chain=lambda: _chain(answer, first, convention),
@@ -230,7 +232,7 @@ def _row_places(
     return () if judgement.in_place else row_places(answer, judgement, convention, grading)
 
 
-def _of_the_whole(
+def _explained_as_a_whole(
     part: DhTableSpec,
     rows: tuple[StudentRow, ...],
     judgement: Judgement,
@@ -270,10 +272,6 @@ def _chain(
         frames_at,
         nearest_links=links(np.array([row.expected for row in judgement.rows]), convention),
     )
-
-
-def _cost_of(found: tuple[Finding, ...]) -> float:
-    return sum(COSTS.get(finding.code, COST) for finding in found)
 
 
 def _row_reports(judgement: Judgement, grading: Grading, slips: Slips) -> tuple[RowReport, ...]:
@@ -321,8 +319,10 @@ _CHANGED = register(
 
 
 def with_given_rows(part: DhTableSpec, table: StudentTable, grading: Grading) -> StudentTable:
-    """Return the table with the rows that the exercise gives."""
-    # A table with too many rows is unchanged.
+    """Return the table with the rows that the exercise gives.
+
+    A table with too many rows is unchanged.
+    """
     if not part.given or not table.rows:
         return table
     robot = grading.exercise.robot
@@ -425,10 +425,9 @@ _MARK_LINE: Final = regex(r"(?:\\text\{)?\s*marked\s*[:=](.*?)\}?\s*", re.IGNORE
 class FoundSlip:
     """An answer: the marked cells and the corrected table.
 
-    ``table`` is None if it is missing or unreadable.
+    ``table`` is None if it is missing or unreadable; then ``unread`` has the reason.
     """
 
-    # ``unread`` has the reason.
     marked: MarkedCells
     table: StudentTable | None
     unread: Finding | None = None
@@ -464,17 +463,17 @@ def _split(answer: object) -> tuple[object, object]:
         return answer.get(MARKED), answer.get(TABLE)
     if isinstance(answer, Mapping) and "rows" in answer and MARKED not in answer:
         return None, answer
-    raise UnreadableAnswerError(_FIND_SLIP_WRONG_SHAPE)
+    raise UnreadableAnswerError(_NOT_MARKED_AND_MENDED)
 
 
 def judge_find_slip_answer(part: FindSlipSpec, answer: FoundSlip, grading: Grading) -> Judged:
     """Judge the marked cells and the corrected table.
 
-    If the marked cells are wrong, the report does not show which cells of the table are wrong.
+    If the marked cells are wrong, the report does not show which cells of the table are wrong:
+    otherwise a student could find the slip by submitting the given table.
     """
-    # Otherwise a student could find the slip by submitting the given table.
     drawn = slip_of(part, grading.exercise)
-    is_found = _is_found(answer.marked.cells, drawn)
+    is_found = any(_covers(answer.marked.cells, wrong) for wrong in drawn.places)
     table = (
         None if answer.table is None else judge_dh_table_answer(part.table, answer.table, grading)
     )
@@ -486,7 +485,8 @@ def judge_find_slip_answer(part: FindSlipSpec, answer: FoundSlip, grading: Gradi
         content = _content(rows, drawn)
     else:
         hidden = _hidden_table(answer, table, grading, is_found=is_found)
-        rows, feedback = (hidden,), _on_reading(table)
+        rows = (hidden,)
+        feedback = tuple(each for each in table.feedback if each.reading) if table else ()
         content = Content(((True,), (True,)), ((0,), (1,)), equal=True)
     return Judged(
         (marked, *rows),
@@ -530,16 +530,8 @@ def _hidden_table(
     return row_report(TABLE, (CellReport(TABLE, verdict, grading.messages(findings)),))
 
 
-def _on_reading(table: Judged | None) -> tuple[Feedback, ...]:
-    return () if table is None else tuple(each for each in table.feedback if each.reading)
-
-
-def _is_found(marked: frozenset[CellIndex], drawn: DrawnSlip) -> bool:
-    # A whole row or column may be marked if at least two of its cells are wrong.
-    return any(_covers(marked, wrong) for wrong in drawn.places)
-
-
 def _covers(marked: frozenset[CellIndex], wrong: frozenset[CellIndex]) -> bool:
+    # A whole row or column may be marked if at least two of its cells are wrong.
     if not wrong <= marked:
         return False
     rows = {row for row, _ in marked}
@@ -566,13 +558,45 @@ def _content(rows: tuple[RowReport, ...], drawn: DrawnSlip) -> Content:
     return Content(known, groups, equal=True)
 
 
-# --- the given table
+_NOT_MARKED_AND_MENDED: Final = reading_error(
+    "wrong_shape",
+    say('The answer is written {{"marked": "2.alpha", "table": {{"rows": […]}}}}.'),
+)
+
+_NOT_THERE: Final = Finding(
+    "slip_elsewhere",
+    say("The slip is not here, or not only here. Mark the wrong cells and no others."),
+)
+_NOT_MENDED: Final = Finding(
+    "not_mended",
+    say("The mark is right. Now write the mended table below, and check again."),
+    severity=Severity.INFO,
+)
+
+
+@cache
+def _meaning(slip: str) -> str:
+    return next(
+        record.meaning(slip)
+        for record in all_records()
+        if slip in record.codes and issubclass(record.of, _OF_TABLES)
+    )
+
+
+def _named(slip: str) -> Finding:
+    hint = say("This was the slip: {meaning}.", meaning=say(_meaning(slip)))
+    return Finding("slip_found", hint, severity=Severity.INFO)
+
+
+# --- The given table of the kind ``find_slip``, and its mistake
 
 
 def slip_of(part: FindSlipSpec, exercise: Exercise) -> DrawnSlip:
-    """Return the given table and its mistake (slip)."""
-    # If the slip that the part asks for does not fit the robot, the table has another slip;
-    # ``exercises check`` reports this.
+    """Return the given table and its mistake (slip).
+
+    If the slip that the part asks for does not fit the robot, the table has another slip;
+    ``exercises check`` reports this.
+    """
     return _slip_of(_Asked(exercise.version, part.id, part, exercise))
 
 
@@ -644,44 +668,37 @@ def blame(
     return TableBlame(codes, wrong, single)
 
 
-@cache
-def _meaning(slip: str) -> str:
-    return next(
-        record.meaning(slip)
-        for record in all_records()
-        if slip in record.codes and issubclass(record.of, _OF_TABLES)
-    )
-
-
-def _named(slip: str) -> Finding:
-    hint = say("This was the slip: {meaning}.", meaning=say(_meaning(slip)))
-    return Finding("slip_found", hint, severity=Severity.INFO)
-
-
-_NOT_THERE: Final = Finding(
-    "slip_elsewhere",
-    say("The slip is not here, or not only here. Mark the wrong cells and no others."),
-)
-_NOT_MENDED: Final = Finding(
-    "not_mended",
-    say("The mark is right. Now write the mended table below, and check again."),
-    severity=Severity.INFO,
-)
-_FIND_SLIP_WRONG_SHAPE: Final = reading_error(
-    "wrong_shape",
-    say('The answer is written {{"marked": "2.alpha", "table": {{"rows": […]}}}}.'),
-)
-
-
 # --- Answer kind ``dh_row``: the DH row of a transform, or "none"
 
 
 LABEL = "1"
 NONE = "none"
-
-
 # A row, or the answer that there is none.
 RowOrNone = StudentRow | Literal["none"]
+
+_NOT_SAID: tuple[object, ...] = (None, False, "")
+
+_WRONG_SHAPE = reading_error(
+    "wrong_shape",
+    say(
+        'One row is asked for: {{"a": …, "alpha": …, "d": …, "theta": …}}, or {{"none": true}} '
+        "where there is none."
+    ),
+)
+_WRONG_TEXT = reading_error(
+    "wrong_shape",
+    say(
+        "One row is asked for: write a, α, d, θ in this order with commas between them, or by name "
+        "as in a = …, d = …. Write none where there is no row."
+    ),
+)
+_CONTRADICTION = reading_error(
+    "contradiction",
+    say(
+        'The answer says that there is no row, and gives one: write {{"none": true}} alone, or the '
+        "row alone."
+    ),
+)
 
 
 def read_dh_row_answer(part: DhRowSpec, answer: object, grading: Grading) -> RowOrNone:
@@ -706,7 +723,7 @@ def judge_dh_row_answer(part: DhRowSpec, answer: RowOrNone, grading: Grading) ->
     else:
         expected = row(transform, part.convention)
         cells, findings = _against_the_row(answer, expected, transform, part, grading)
-        known = known_cells(expected, 0.0, _scale(grading), IS_ANGLE[:, None])
+        known = known_cells(expected, 0.0, column_scales(grading), IS_ANGLE[:, None])
     messages = grading.messages(tuple(findings))
     return Judged((row_report(LABEL, cells, messages),), of_one_row(known))
 
@@ -723,7 +740,7 @@ def _cells(
 def _against_the_row(
     written: StudentRow, expected: Table, transform: Matrices, part: DhRowSpec, grading: Grading
 ) -> tuple[tuple[CellReport, ...], list[Finding]]:
-    scale = _scale(grading)
+    scale = column_scales(grading)
     found = entry_matches(
         written.expressions, written.values, expected, scale, grading.samples, IS_ANGLE[:, None]
     )
@@ -740,10 +757,6 @@ def _against_the_row(
     if explained is not None:
         slips = {}
     return _cells(written, found, slips, grading), [explained] if explained else []
-
-
-def _scale(grading: Grading) -> Numbers:
-    return np.where(IS_ANGLE, 1.0, grading.exercise.length_scale)
 
 
 def _slip(
@@ -817,16 +830,16 @@ def _read_row(answer: object, grading: Grading) -> StudentRow:
     else:
         answer = canonical_table(answer if _has_rows(answer) else [answer])
         if not isinstance(answer, Mapping):
-            raise UnreadableAnswerError(_DH_ROW_WRONG_SHAPE)
+            raise UnreadableAnswerError(_WRONG_SHAPE)
     try:
         table = read_table(answer, grading.reader)
     except UnreadableAnswerError as error:
         # The refusal speaks of a table, and this answer is none.
-        wrong = error.finding.code == _DH_ROW_WRONG_SHAPE.code
+        wrong = error.finding.code == _WRONG_SHAPE.code
         finding = replace(_WRONG_TEXT, span=error.finding.span) if wrong else error.finding
         raise UnreadableAnswerError(finding) from error
     if len(table.rows) > 1:
-        raise UnreadableAnswerError(_DH_ROW_WRONG_SHAPE)
+        raise UnreadableAnswerError(_WRONG_SHAPE)
     if not table.rows:
         return StudentRow((MISSING,) * len(COLUMNS), np.full((len(COLUMNS), 1), np.nan))
     return table.rows[0]
@@ -854,28 +867,3 @@ def _has_rows(answer: object) -> bool:
     if isinstance(answer, Mapping):
         return "rows" in answer
     return isinstance(answer, list) and any(isinstance(row, list | dict) for row in answer)
-
-
-_NOT_SAID: tuple[object, ...] = (None, False, "")
-
-_DH_ROW_WRONG_SHAPE = reading_error(
-    "wrong_shape",
-    say(
-        'One row is asked for: {{"a": …, "alpha": …, "d": …, "theta": …}}, or {{"none": true}} '
-        "where there is none."
-    ),
-)
-_WRONG_TEXT = reading_error(
-    "wrong_shape",
-    say(
-        "One row is asked for: write a, α, d, θ in this order with commas between them, or by name "
-        "as in a = …, d = …. Write none where there is no row."
-    ),
-)
-_CONTRADICTION = reading_error(
-    "contradiction",
-    say(
-        'The answer says that there is no row, and gives one: write {{"none": true}} alone, or the '
-        "row alone."
-    ),
-)

@@ -31,6 +31,13 @@ from dh_grader.pasting import Grid, GridCell, GridError
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
+_DECIMAL_COMMA: Final = regex(r"[-+−–]?\s{0,4}\d{1,12},\d{1,12}")
+# A number, other than 0, that is a whole term of a sum.
+_TERM: Final = regex(
+    r"((?:^|(?<=[-+]\s)|(?<=^-))(?=[\d.]*[1-9])\d{1,20}(?:\.\d{1,20})?)(?=$|\s[-+]\s)"
+)
+_WORK_LIMIT: Final = say("The formulas are too long together: some are shown as text only.")
+
 
 @dataclass(frozen=True, slots=True)
 class Problem:
@@ -46,14 +53,13 @@ class Problem:
 class CellPreview:
     """How one cell is read, as plain text, LaTeX and MathML; or why the cell cannot be read.
 
-    ``span`` is the cell's [start, end) in the pasted text.
+    ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta" or
+    the column's number. ``span`` is the cell's [start, end) in the pasted text, and ``typed`` the
+    text there. ``entry`` is the text that means the same in a single field; it differs from
+    ``typed`` if the column's header has a unit. An empty cell has neither a reading nor a problem.
+    A cell beyond the work budget has no LaTeX and no MathML.
     """
 
-    # ``typed`` is the text there. ``entry`` is the text that means the same in a single field.
-    # ``row`` and ``column`` are labels as in a report: "1", "2" …, and "a", "alpha", "d", "theta"
-    # or the column's number. ``entry`` differs from ``typed`` if the column's header has a unit. An
-    # empty cell has neither a reading nor a problem. A cell beyond the work budget has no LaTeX and
-    # no MathML.
     row: str
     column: str
     span: Span
@@ -71,10 +77,10 @@ class CellPreview:
 class PastedPreview:
     """How a pasted text is read: its rows, or the problem with the whole text.
 
-    All spans are [start, end) in the pasted text.
+    All spans are [start, end) in the pasted text. Rows are in the order in which they are graded;
+    columns of a table are a, alpha, d, theta.
     """
 
-    # Rows are in the order in which they are graded; columns of a table are a, alpha, d, theta.
     rows: tuple[tuple[CellPreview, ...], ...] = ()
     notes: tuple[Note, ...] = ()
     problem: Problem | None = None
@@ -90,10 +96,9 @@ def preview_pasted(
 ) -> PastedPreview:
     """Read ``text`` as the answer to a part, exactly as grading reads it.
 
-    Raises LookupError for a part that does not exist.
+    The part decides whether the text is a table, a matrix or several matrices. The size of a matrix
+    is checked only by grading. Raises LookupError for a part that does not exist.
     """
-    # The part decides whether the text is a table, a matrix or several matrices. The size of a
-    # matrix is checked only by grading.
     spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, text), angle_unit)
     try:
@@ -117,9 +122,9 @@ def preview_entries(
 ) -> tuple[CellPreview, ...]:
     """Read single entries of a part; each is a pair: a text, and the expected quantity.
 
-    Raises LookupError for a part that does not exist.
+    The entries share one work budget, as in a submission. The previews have empty labels. Raises
+    LookupError for a part that does not exist.
     """
-    # The entries share one work budget, as in a submission. The previews have empty labels.
     spec = _part(exercise, part)
     reader = Reader.of(exercise, draw(exercise, part), angle_unit)
     in_table = spec.pasted_as == "table"
@@ -274,11 +279,3 @@ def _read(entry: Entry, empty: CellPreview, budget: WorkBudget) -> CellPreview:
         symbols=tuple(sorted(expression.symbols)),
         notes=tuple(Note(f.code, f.hint, f.span or empty.span) for f in entry.findings),
     )
-
-
-# A number, other than 0, that is a whole term of a sum.
-_DECIMAL_COMMA: Final = regex(r"[-+−–]?\s{0,4}\d{1,12},\d{1,12}")
-_TERM: Final = regex(
-    r"((?:^|(?<=[-+]\s)|(?<=^-))(?=[\d.]*[1-9])\d{1,20}(?:\.\d{1,20})?)(?=$|\s[-+]\s)"
-)
-_WORK_LIMIT: Final = say("The formulas are too long together: some are shown as text only.")

@@ -1,6 +1,7 @@
-"""One cell -> an entry with its values; names, units and comments of a pasted text.
+"""Read one cell as an entry with its values, and the pasted texts that hold cells.
 
-``table.py``, ``matrices.py`` and ``lists.py`` read what holds the cells.
+This file knows a cell's quantity only from its callers: ``table.py``, ``matrices.py`` and
+``lists.py`` know which place has which quantity. Nothing here is right or wrong, only readable.
 """
 
 import re
@@ -31,7 +32,6 @@ from dh_grader.expressions import (
     reading_cost,
 )
 from dh_grader.expressions.characters import with_points
-from dh_grader.expressions.errors import Note as errors_Note
 from dh_grader.grading.numbers import SAMPLES, Samples
 from dh_grader.grading.reading.headers import ANGLE_UNITS, METRES, in_plain_words, read_header
 from dh_grader.grading.report import (
@@ -67,70 +67,7 @@ from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 from dh_grader.translations import listed, say
 
-# --- Convert a length with a unit to a number: 135 mm is 0.135 in metres
-
-
-_LENGTH: Final = regex(
-    r"(?P<sign>[-−–]?)\s{0,4}(?P<number>\d{1,12}(?:[.,]\d{1,12})?)\s{0,4}[(\[]?(?P<unit>[a-z]{1,12})"
-    r"[)\]]?"
-)
-_SIUNITX: Final = regex(r"\\(?:SI|qty)\s{0,4}\{([^{}]{1,30})\}\s{0,4}\{([^{}]{1,30})\}")
-# 1,350 mm is a metre and more, or a millimetre and more.
-_THOUSANDS: Final = regex(r"[1-9]\d{0,2},\d{3}")
-
-
-def converted(text: str, unit: str) -> str | None:
-    """Return the number in ``unit`` for a length such as ``13.5 cm``; None for any other text."""
-    plain = unicodedata.normalize("NFKC", _SIUNITX.sub(r"\1\2", text)).replace("\\", "")
-    length = _LENGTH.fullmatch(plain.strip())
-    if length is None or _THOUSANDS.fullmatch(length["number"]):
-        return None
-    if length["unit"] not in METRES or unit not in METRES:
-        return None
-    metres = Decimal(length["number"].replace(",", ".")) * Decimal(str(METRES[length["unit"]]))
-    number = (metres / Decimal(str(METRES[unit]))).normalize()
-    sign = "-" if length["sign"] and number else ""
-    return f"{sign}{number:f}"
-
-
-# --- Names of joint variables that a robot does not have, such as theta0
-#
-# A cell with such a name is wrong, but not unreadable.
-#
-# Students write them if they count the joints from 0, or revolute and prismatic joints separately.
-# theta3 is absent if joint 3 slides.
-
-
-_LETTERS: Final = "thetad"
-# Larger than every joint number, so that no shorthand (such as c1) means an absent variable.
-_FIRST_ABSENT_JOINT: Final = 1000
-
-
-@lru_cache(maxsize=256)
-def with_absent_variables(vocabulary: Vocabulary) -> Vocabulary:
-    """Add the usual joint variables that the robot does not have to the vocabulary."""
-    # They are counted from 0.
-    # Names such as ``d2`` are added only if some joint slides; otherwise they are unknown lengths.
-    if not vocabulary.joints:
-        return vocabulary
-    indices = range(vocabulary.joints[-1] + 1)
-    absent = [symbol for index in indices for symbol in _absent(index, vocabulary)]
-    return Vocabulary([*vocabulary.symbols, *absent], decimal_comma=vocabulary.decimal_comma)
-
-
-def _absent(index: int, vocabulary: Vocabulary) -> Iterator[Symbol]:
-    known = vocabulary.by_name
-    others = [name for name in (f"th{index}", f"q{index}") if name not in known]
-    if f"theta{index}" not in known:
-        joint = _FIRST_ABSENT_JOINT + 2 * index
-        yield Symbol(f"theta{index}", "angle", tuple(others), joint=joint)
-    if vocabulary.sliding and f"d{index}" not in known:
-        yield Symbol(f"d{index}", "length", joint=_FIRST_ABSENT_JOINT + 2 * index + 1)
-
-
-def joint_counted(name: str) -> int:
-    """Return the joint number in the name of an absent joint variable: 3 for theta3."""
-    return int(name.lstrip(_LETTERS))
+R = TypeVar("R")
 
 
 # --- Read a submitted cell as an entry, and evaluate entries at the samples
@@ -140,11 +77,11 @@ def joint_counted(name: str) -> int:
 # on that would hide the others.
 EXPECTED_IN_TABLES = frozenset({"joint_marker"})
 
-# The codes of errors on a name that may be an absent joint variable (``absent_variables``).
+# The codes of errors on a name that may be an absent joint variable.
 _UNKNOWN_NAMES = frozenset({"unknown_joint", "unknown_symbol"})
 
 # The unit in "all lengths are in metres".
-_STATED = regex(r"(?<!\w)(?:in|en)\s(\w{4,12})(?!\w)")
+_IN_METRES = regex(r"(?<!\w)(?:in|en)\s(\w{4,12})(?!\w)")
 
 # The largest absolute values. No robot is larger, and a larger angle has no precise digits left
 # after whole turns are removed.
@@ -155,10 +92,9 @@ BOUNDS: Mapping[Kind, float] = {"angle": 1e6, "length": 1e9, "number": 1e9}
 class Entry:
     """One cell as read: an expression, or the reason why it cannot be read.
 
-    Without an expression, ``verdict`` is MISSING or UNREADABLE.
+    Without an expression, ``verdict`` is MISSING or UNREADABLE. With one, it is not known yet.
     """
 
-    # With an expression, the verdict is not known yet.
     expression: Expression | None
     verdict: Verdict = Verdict.CORRECT
     findings: tuple[Finding, ...] = ()
@@ -173,11 +109,11 @@ class Entry:
 class Reader:
     """Reads the cells of one submission.
 
-    ``length_unit`` is the unit of all lengths of the exercise, or None if there are several.
+    ``length_unit`` is the unit of all lengths of the exercise, or None if there are several. If no
+    length has a letter, it is the unit that the statement names: "in metres". Copies with another
+    angle unit share the work budget.
     """
 
-    # Copies with another angle unit share the work budget. If no length has a letter,
-    # ``length_unit`` is the unit that the statement names: "in metres".
     vocabulary: Vocabulary
     samples: Samples
     angle_unit: AngleUnit
@@ -199,10 +135,9 @@ class Reader:
     def read(self, raw: object, quantity: Kind, *, in_table: bool = False) -> Entry:
         """Return the entry for a JSON value. Never raises: any bad value is an unreadable entry.
 
-        ``in_table`` is for cells of a DH table.
+        ``in_table`` is for cells of a DH table: there, a star may mark the joint variable, and an
+        absent joint variable is wrong instead of unreadable.
         """
-        # In a table, a star may mark the joint variable, and an absent joint variable is wrong
-        # instead of unreadable.
         budget = self.budget
         symbols = 1
         if isinstance(raw, str):
@@ -240,7 +175,9 @@ class Reader:
         return Entry(expression, findings=tuple(map(from_note, shown)))
 
     def _finding(self, error: ExpressionError, raw: str | int | float) -> Finding:
-        finding = _from_error(error)
+        finding = Finding(
+            error.code, error.message, span=error.span, reading=True, suggestion=error.suggestion
+        )
         if error.code == "length_unit" and self.length_unit:
             in_metres = converted("1 m", self.length_unit) == "1"
             kept = error.suggestion if in_metres else None
@@ -280,25 +217,20 @@ def length_unit_of(exercise: Exercise) -> str | None:
     """Return the unit of all lengths of an exercise, or None if there are several."""
     lengths = [each for each in exercise.variables if each.kind == "length"]
     units: Set[str] = {length.unit for length in lengths}
-    units = units or _stated_units(exercise.statement)
+    units = units or _length_units(exercise.statement)
     [unit] = units if len(units) == 1 else [None]
     return unit
 
 
 @lru_cache(maxsize=256)
-def _stated_units(statement: str) -> Set[str]:
-    return METRES.keys() & _STATED.findall(statement.lower())
+def _length_units(statement: str) -> Set[str]:
+    return METRES.keys() & _IN_METRES.findall(statement.lower())
 
 
 @lru_cache(maxsize=256)
 def _bounds(quantities: tuple[Kind, ...]) -> Numbers:
     return np.array([[BOUNDS[quantity]] for quantity in quantities])
 
-
-_TOO_MUCH = reading_error(
-    "too_long",
-    say("The answers are too long. This place and all after it are not read."),
-)
 
 MISSING = Entry(
     None,
@@ -324,19 +256,80 @@ def _wrong_type(raw: object) -> Finding:
     return reading_error("wrong_type", message)
 
 
-def _from_error(error: ExpressionError) -> Finding:
-    return Finding(
-        error.code,
-        error.message,
-        span=error.span,
-        reading=True,
-        suggestion=error.suggestion,
-    )
+_TOO_MUCH = reading_error(
+    "too_long",
+    say("The answers are too long. This place and all after it are not read."),
+)
 
 
 def from_note(note: Note) -> Finding:
     """Convert a note on how a text was read to a finding (a message in the report)."""
     return reading_note(note.code, note.message, note.span)
+
+
+# --- Names of joint variables that a robot does not have, such as theta0
+#
+# A cell with such a name is wrong, but not unreadable. Students write them if they count the joints
+# from 0, or revolute and prismatic joints separately. theta3 is absent if joint 3 slides.
+
+
+_LETTERS: Final = "thetad"
+# Larger than every joint number, so that no shorthand (such as c1) means an absent variable.
+_FIRST_ABSENT_JOINT: Final = 1000
+
+
+@lru_cache(maxsize=256)
+def with_absent_variables(vocabulary: Vocabulary) -> Vocabulary:
+    """Add the usual joint variables that the robot does not have, counted from 0, to a vocabulary.
+
+    Names such as ``d2`` are added only if some joint slides; otherwise they are unknown lengths.
+    """
+    if not vocabulary.joints:
+        return vocabulary
+    indices = range(vocabulary.joints[-1] + 1)
+    absent = [symbol for index in indices for symbol in _absent(index, vocabulary)]
+    return Vocabulary([*vocabulary.symbols, *absent], decimal_comma=vocabulary.decimal_comma)
+
+
+def _absent(index: int, vocabulary: Vocabulary) -> Iterator[Symbol]:
+    known = vocabulary.by_name
+    others = [name for name in (f"th{index}", f"q{index}") if name not in known]
+    if f"theta{index}" not in known:
+        joint = _FIRST_ABSENT_JOINT + 2 * index
+        yield Symbol(f"theta{index}", "angle", tuple(others), joint=joint)
+    if vocabulary.sliding and f"d{index}" not in known:
+        yield Symbol(f"d{index}", "length", joint=_FIRST_ABSENT_JOINT + 2 * index + 1)
+
+
+def joint_counted(name: str) -> int:
+    """Return the joint number in the name of an absent joint variable: 3 for theta3."""
+    return int(name.lstrip(_LETTERS))
+
+
+# --- Convert a length with a unit to a number: 135 mm is 0.135 in metres
+
+
+_LENGTH: Final = regex(
+    r"(?P<sign>[-−–]?)\s{0,4}(?P<number>\d{1,12}(?:[.,]\d{1,12})?)\s{0,4}[(\[]?(?P<unit>[a-z]{1,12})"
+    r"[)\]]?"
+)
+_SIUNITX: Final = regex(r"\\(?:SI|qty)\s{0,4}\{([^{}]{1,30})\}\s{0,4}\{([^{}]{1,30})\}")
+# 1,350 mm is a metre and more, or a millimetre and more.
+_THOUSANDS: Final = regex(r"[1-9]\d{0,2},\d{3}")
+
+
+def converted(text: str, unit: str) -> str | None:
+    """Return the number in ``unit`` for a length such as ``13.5 cm``; None for any other text."""
+    plain = unicodedata.normalize("NFKC", _SIUNITX.sub(r"\1\2", text)).replace("\\", "")
+    length = _LENGTH.fullmatch(plain.strip())
+    if length is None or _THOUSANDS.fullmatch(length["number"]):
+        return None
+    if length["unit"] not in METRES or unit not in METRES:
+        return None
+    metres = Decimal(length["number"].replace(",", ".")) * Decimal(str(METRES[length["unit"]]))
+    number = (metres / Decimal(str(METRES[unit]))).normalize()
+    sign = "-" if length["sign"] and number else ""
+    return f"{sign}{number:f}"
 
 
 # --- Sort values by their names: ``y = 2, x = 1`` is x, then y. Report wrong names
@@ -356,10 +349,9 @@ class Arrangement(NamedTuple):
     """The order of named values, or the findings on wrong names.
 
     ``order`` has, for each place, the index of its value. ``misnamed`` maps the index of a value
-    with a wrong name to its finding.
+    with a wrong name to its finding; it is empty if reordering makes all names correct.
     """
 
-    # ``misnamed`` is empty if reordering makes all names correct.
     order: tuple[int, ...]
     misnamed: Mapping[int, Finding]
 
@@ -425,8 +417,7 @@ def misnamed_value(name: LeftSide, asked: str) -> Finding:
 
 
 def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]:
-    """Return sorted entries with the note ``message`` on their order."""
-    # It replaces the notes on equations.
+    """Return sorted entries with the note ``message`` on their order, instead of on equations."""
     # The note has no span, so that the report shows it once for all entries.
     note = reading_note("ordered_by_names", message)
     return tuple(
@@ -440,7 +431,7 @@ def with_order_note(entries: Sequence[Entry], message: str) -> tuple[Entry, ...]
 
 # --- Replace letters by the numbers that a script gives them, as in ``d1 = 0.1625``
 #
-# The numbers count only if the exercise has no lengths as letters; otherwise letters are its
+# The numbers count only if the exercise has no lengths as letters: otherwise letters are its
 # symbols.
 
 
@@ -453,26 +444,24 @@ _ASSIGNED: Final = regex(r"(?<![\w.])(\w{1,21})[ \t]{0,40}[-+*/]?=(?!=)")
 _LAST: Final = regex(r"(?<![\w.])[A-Za-z]\w{0,20}\s{0,9},\s{0,9}([A-Za-z]\w{0,20})\s{0,9}=(?!=)")
 # A letter in a value. The z of the cell ``z = 0`` is the name of a value in a list.
 _NAME: Final = regex(r"(?<![\w.\\])[A-Za-z]\w*(?![\w(\[]|[ \t]*=(?!=))")
-_MOST: Final = 40
+_MOST_GIVEN: Final = 40
 
 
 def with_given_letters(grid: Grid, text: str, reader: Reader) -> Grid:
     """Replace letters that a text defines by their numbers; return the grid and a note."""
-    given = _given(text, reader)
+    given = _given_letters(text, reader)
     used: dict[str, None] = {}
-    rows = tuple(tuple(_cell(cell, given, used) for cell in row) for row in grid.rows)
+    rows = tuple(tuple(_with_numbers(cell, given, used) for cell in row) for row in grid.rows)
     if not used:
         return grid
     message = say(
         "The numbers that the text gives to {letters} were used.", letters=", ".join(used)
     )
     notes = [note for note in grid.notes if note.code != "given_numbers"]
-    return replace(
-        grid, rows=rows, notes=(*notes, errors_Note("used_numbers", message, (0, len(text))))
-    )
+    return replace(grid, rows=rows, notes=(*notes, Note("used_numbers", message, (0, len(text)))))
 
 
-def _given(text: str, reader: Reader) -> dict[str, str]:
+def _given_letters(text: str, reader: Reader) -> dict[str, str]:
     # Letters that the text sets once and the exercise does not know.
     slides = reader.vocabulary.sliding.values()
     if any(each.kind == "length" and each not in slides for each in reader.vocabulary.symbols):
@@ -481,12 +470,12 @@ def _given(text: str, reader: Reader) -> dict[str, str]:
     names = _ASSIGNED.findall(text) + _LAST.findall(text)
     return {
         each[1]: each[2]
-        for each in islice(_NUMBER.finditer(text), _MOST)
+        for each in islice(_NUMBER.finditer(text), _MOST_GIVEN)
         if names.count(each[1]) == 1 and not reader.read(each[1], "number").readable
     }
 
 
-def _cell(cell: GridCell, given: dict[str, str], used: dict[str, None]) -> GridCell:
+def _with_numbers(cell: GridCell, given: dict[str, str], used: dict[str, None]) -> GridCell:
     names = [name for name in _NAME.finditer(cell.text) if name[0] in given]
     if not names or read_header(cell.text):
         return cell
@@ -501,8 +490,6 @@ def _cell(cell: GridCell, given: dict[str, str], used: dict[str, None]) -> GridC
 
 # --- Read the grids (tables and matrices) in pasted texts, and report errors in them
 
-
-R = TypeVar("R")
 
 # An index in square brackets: theta[1], l[2].
 _INDEX: Final = regex(r"((?<![^\W\d])[^\W\d_]{1,6}_?)\[(\s?[0-9]{1,2}\s?)\]")
@@ -521,8 +508,10 @@ _JOINT_VARIABLES: Final = frozenset({"q", "th", "theta", "θ", "ϑ"})
 
 
 def pasted_grid(text: str, reader: Reader, *, of_table: bool = False) -> Grid:
-    """Return the table or matrix in a pasted text. Raises GridError if there is none."""
-    # Also raised if the pasted texts of a submission are too long.
+    """Return the table or matrix in a pasted text.
+
+    Raises GridError if there is none, or if the pasted texts of a submission are too long.
+    """
 
     def read() -> Grid:
         grid = read_grid(_prepared(text, reader), of_table=of_table)
@@ -534,9 +523,8 @@ def pasted_grid(text: str, reader: Reader, *, of_table: bool = False) -> Grid:
 def pasted_robot(text: str, reader: Reader) -> RobotTable | None:
     """Return the DH table of the robot that a pasted script describes; None for any other text.
 
-    Raises GridError if the script's table is ambiguous.
+    Raises GridError if the script's table is ambiguous, or if the pasted texts are too long.
     """
-    # Also raised if the pasted texts of a submission are too long.
 
     def read() -> RobotTable | None:
         robot = read_robot(_without_own_units(text, reader))
@@ -585,6 +573,12 @@ def once(way: str, text: str, reader: Reader, read: Callable[[], R]) -> R:
     return again
 
 
+def stated_units(text: str) -> set[str]:
+    """Return the units in sentences and comments such as "all lengths in mm", in small letters."""
+    found = {unit[1].lower() for unit in islice(_IN_UNIT.finditer(text), _MOST_UNITS)}
+    return found & (ANGLE_UNITS.keys() | METRES.keys())
+
+
 def _prepared(text: str, reader: Reader) -> str:
     # Decimal points for decimal commas, and unambiguous indices.
     if reader.vocabulary.decimal_comma:
@@ -592,10 +586,18 @@ def _prepared(text: str, reader: Reader) -> str:
     return _with_indices_from_one(_without_own_units(text, reader), reader)
 
 
-def stated_units(text: str) -> set[str]:
-    """Return the units in sentences and comments such as "all lengths in mm", in small letters."""
-    found = {unit[1].lower() for unit in islice(_IN_UNIT.finditer(text), _MOST_UNITS)}
-    return found & (ANGLE_UNITS.keys() | METRES.keys())
+def _charge(text: str, reader: Reader) -> None:
+    """Charge the cutting of a text. Raises GridError if it may not be cut."""
+    if len(text) > GRID_LIMITS.characters or reader.budget.charge_pasted(text):
+        # A text that is too long is not cut.
+        return
+    message = say("The pasted texts have more than {most:,} characters together.", most=MAX_PASTED)
+    if reader.budget.pasted >= 0:
+        message = say(
+            "The pasted texts have more than {most:,} brackets and quotation marks together.",
+            most=MAX_PASTED_SIGNS,
+        )
+    raise GridError("too_long", message, (0, len(text)))
 
 
 def _without_own_units(text: str, reader: Reader) -> str:
@@ -638,20 +640,6 @@ def _with_indices_from_one(text: str, reader: Reader) -> str:
             found[0].span(),
         )
     return _INDEX.sub(r"\1(\2)", text)
-
-
-def _charge(text: str, reader: Reader) -> None:
-    """Charge the cutting of a text. Raises GridError if it may not be cut."""
-    if len(text) > GRID_LIMITS.characters or reader.budget.charge_pasted(text):
-        # A text that is too long is not cut.
-        return
-    message = say("The pasted texts have more than {most:,} characters together.", most=MAX_PASTED)
-    if reader.budget.pasted >= 0:
-        message = say(
-            "The pasted texts have more than {most:,} brackets and quotation marks together.",
-            most=MAX_PASTED_SIGNS,
-        )
-    raise GridError("too_long", message, (0, len(text)))
 
 
 def from_grid_error(error: GridError, text: str = "") -> Finding:
@@ -719,9 +707,10 @@ _NO_UNITS: Final = frozenset({"m", "in", "foot"})
 
 
 def refuse_other_lengths(text: str, kinds: Iterable[Kind], reader: Reader) -> None:
-    """Raise GridError if a comment or a caption gives lengths a unit that is not the exercise's."""
-    # ``kinds`` are the quantities of the entries.
-    # Without lengths, all comments are accepted.
+    """Raise GridError if a comment or a caption gives lengths a unit that is not the exercise's.
+
+    ``kinds`` are the quantities of the entries. Without lengths, all comments are accepted.
+    """
     if "length" in kinds:
         once("lengths", text, reader, lambda: _refuse_other_lengths(text, reader))
 
@@ -778,7 +767,7 @@ def units_in(comment: str) -> tuple[set[AngleUnit], set[float]]:
     return angles, {METRES[word] for word in words if word in METRES}
 
 
-# --- A text with several answers
+# --- Read a text that has several answers only once, if they are equal
 
 
 _MOST_ANSWERS: Final = 4
@@ -823,9 +812,9 @@ def read_once(
 ) -> tuple[R, tuple[Note, ...]]:
     """Read a text, or only the first of its answers if all are equal; then there is a note.
 
-    Raises GridError if the text cannot be read, or if its answers differ.
+    ``is_one`` is False if what was read may be several answers. Raises GridError if the text cannot
+    be read, or if its answers differ.
     """
-    # ``is_one`` is False if what was read may be several answers.
     try:
         found = read(text)
     except GridError:
@@ -840,8 +829,8 @@ def read_once(
 def _first_of_equals(text: str, find: Find, reader: Reader) -> tuple[str, Note] | None:
     # The text up to the end of its first answer, and a note, if equal answers follow; None if the
     # text has only one answer. Raises GridError if the answers differ.
-    # A text that was not cut is not read in pieces either.
     if len(text) > GRID_LIMITS.characters or not reader.budget.charge_pasted(text):
+        # A text that was not cut is not read in pieces either.
         return None
     if not _FEWEST_LINES <= len(text.splitlines()) <= _MOST_LINES:
         return None
@@ -945,11 +934,7 @@ def _values(answer: FoundAnswer, reader: Reader) -> Numbers:
 
 
 def _is_row(line: SourceText) -> bool:
-    return not _is_between(line.text)
-
-
-def _is_between(line: str) -> bool:
-    return _NO_ROW.fullmatch(line) is not None or is_sentence(line)
+    return _NO_ROW.fullmatch(line.text) is None and not is_sentence(line.text)
 
 
 def _starts(lines: Sequence[SourceText]) -> Iterator[list[int]]:
@@ -974,13 +959,8 @@ def _starts(lines: Sequence[SourceText]) -> Iterator[list[int]]:
     tried = set()
     for way in ways:
         # What is before the first piece belongs to it, and so do titles above another piece.
-        inner = [_above(i, rows) for i in way if i > first]
+        inner = [max(row for row in rows if row < i) + 1 for i in way if i > first]
         starts = [0, *inner]
         if 2 <= len(starts) <= _MOST_ANSWERS and (key := tuple(starts)) not in tried:
             tried.add(key)
             yield starts
-
-
-def _above(start: int, rows: Sequence[int]) -> int:
-    # The line after the last row above a line.
-    return max(i for i in rows if i < start) + 1

@@ -1,4 +1,7 @@
-"""Words in headers and labels of tables, in six languages: columns, units, order of rows."""
+"""Read headers and row labels of tables, in six languages: columns, units, order of rows.
+
+This file knows words, not tables: each function takes the text of one cell, or the labels of rows.
+"""
 
 import re
 import unicodedata
@@ -14,10 +17,9 @@ from dh_grader.translations import say
 
 # --- Words in headers and row labels, in English, German, Spanish, French, Italian and Chinese
 #
-# Words are in small letters without accents: "articulación" is "articulacion".
-#
-# "ß" is "ss". A word that means different parameters in different books, such as "Abstand", is a
-# filler: the letter next to it decides, and without a letter the header is unknown.
+# Words are in small letters without accents: "articulación" is "articulacion", "ß" is "ss". A word
+# that means different parameters in different books, such as "Abstand", is a filler: the letter
+# next to it decides, and without a letter the header is unknown.
 
 
 LETTERS: Final[Mapping[str, str]] = {
@@ -123,86 +125,6 @@ def _without_accent(letter: str) -> str:
     return "ss" if letter == "ß" else unicodedata.normalize("NFD", letter)[0]
 
 
-# --- Order the rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector
-
-
-LAST: Final = 10_000
-_ROW_LABELS_LONGEST: Final = 30
-_WORDS: Final = "|".join(sorted(PLACES - {"#", "name", "label"}, key=len, reverse=True))
-# Glied Nr. 1, articulation n° 1.
-_ROW_LABELS_NUMERO: Final = r"(?:n[or°]|num|nummer|number|numero|#)\.?\s?"
-_ROW_LABELS_NUMBER: Final = regex(
-    rf"(?:(?:{_WORDS}|[ijklnta#])[\s.]?)?(\d{{1,2}})\.?|(?:{_WORDS})?\s?{_ROW_LABELS_NUMERO}(\d{{1,2}})"
-)
-# 1. Gelenk, 第1关节, and the numbers of Chinese.
-_ORDINAL: Final = regex(rf"第\s?(\d{{1,2}})(?:\s?joint)?|(\d{{1,2}})\.\s?(?:{_WORDS})")
-_NUMERALS: Final = str.maketrans("一二三四五六七八九", "123456789")
-_STEP: Final = regex(r"(\d{1,2})\s?(?:-|→|->|to)\s?(\d{1,2})")
-_END: Final = frozenset(
-    {"e", "ee", "tool", "tcp", "tip", "end", "effector", "end effector", "end-effector", "n+1"}
-    | {"endeffektor", "werkzeug", "effecteur", "outil", "efector final", "herramienta"}
-)
-
-
-def label_place(text: str) -> int | None:
-    """Return the number in a row's label, LAST for an end effector; None if it is not a label.
-
-    Examples: ``1``, ``Link 1``, ``J1``, ``{1}``, ``0→1``; ``e``, ``tool``, ``end effector``.
-    """
-    if len(text) > _ROW_LABELS_LONGEST:
-        return None
-    plain = in_plain_words(unicodedata.normalize("NFKC", text).translate(_NUMERALS))
-    for mark in "${}_\\()*`":
-        plain = plain.replace(mark, "")
-    plain = " ".join(plain.split())
-    if plain in _END:
-        return LAST
-    if step := _STEP.fullmatch(plain):
-        return int(step[2]) if int(step[2]) == int(step[1]) + 1 else None
-    number = _ROW_LABELS_NUMBER.fullmatch(plain) or _ORDINAL.fullmatch(plain)
-    return int(number[number.lastindex or 1]) if number else None
-
-
-def is_label(text: str) -> bool:
-    """True if a cell is the label of a row."""
-    return label_place(text) is not None
-
-
-def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
-    """Return the indices of the rows in the order of their labels, and findings on the order.
-
-    Raises GridError if two rows share a label.
-    """
-    # Rows keep their order if a row has no label.
-    typed = list(range(len(labels)))
-    places = [label_place(label.text) for label in labels]
-    known = [place for place in places if place is not None]
-    if len(known) < len(places):
-        if not any(label.text for label in labels):
-            return typed, ()
-        unknown = next(i for i in typed if places[i] is None)
-        message = say(
-            "Not all rows have a number, so the rows were read in the order in which they stand."
-        )
-        return typed, (reading_note("row_labels", message, labels[unknown].whole),)
-    if len(set(known)) < len(known):
-        again = next(i for i in typed if known[i] in known[:i])
-        raise GridError(
-            "duplicate_row",
-            say(
-                "Two rows have the label {label}. Give each row its own.",
-                label=labels[again].text[:_ROW_LABELS_LONGEST],
-            ),
-            labels[again].whole,
-        )
-    order = sorted(typed, key=known.__getitem__)
-    if order == typed:
-        return typed, ()
-    moved = next(i for i in typed if order[i] != i)
-    message = say("The rows were put in the order of their labels.")
-    return order, (reading_note("rows_reordered", message, labels[moved].whole),)
-
-
 # --- Read the headers of a pasted DH table: the parameter in a column, and its unit
 
 
@@ -220,14 +142,14 @@ QUANTITIES: Final[Mapping[str, Kind]] = {
 # The names of the columns in messages.
 SHOWN: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
-_COLUMN_HEADERS_LONGEST: Final = 60
+_LONGEST_HEADER: Final = 60
 # Characters that NFKC leaves alone, or replaces by wrong ones.
 _SIGNS: Final = str.maketrans(
     {"⍺": "α", "∝": "α", "−": "-", "–": "-", "‐": "-", "‑": "-", "º": "°", "˚": "°"}
 )
 # An accent in LaTeX: \'e. And "n°", a number in French, Spanish and Italian.
 _ACCENT: Final = regex(r"\\['`\"^~](?=[a-z{])")
-_COLUMN_HEADERS_NUMERO: Final = regex(r"(?<![a-z])n\.?\s?°")
+_NUMERO_SIGN: Final = regex(r"(?<![a-z])n\.?\s?°")
 # The preposition in "n° d'articulation" and "numéro de l'axe" is not d.
 _OF: Final = regex(r"(?<=no|ro)\s(?:de\s)?[dl]['’](?=[a-z]{3})")
 _STYLE: Final = regex(
@@ -245,7 +167,7 @@ _INDEX: Final = regex(r"[ijkn]~?")
 # The axis of a parameter: d_z, a_x, but d_x is the length along x.
 _ALONG: Final = regex(r"(?<![a-z])(?:(a|r|d)\s?x|(d)\s?z|(alpha)\s?x|(theta|φ|phi)\s?z)(?![a-z])")
 # The number of a row after the name of a parameter: θ_1, a_{2}, d(3); but not a_{i-1}.
-_COLUMN_HEADERS_NUMBER: Final = regex(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
+_ROW_NUMBER: Final = regex(r"(?<=[^\W\d]|[_({])([0-9]{1,2})[)}\s*]*$")
 _IGNORED: Final = frozenset(".,:;()[]{}|'\"/?_")
 _DIGITS_OR_OPERATORS: Final = regex(r"[0-9+\-*/=^]")
 
@@ -259,7 +181,7 @@ _TRAILING_UNIT: Final = regex(
 
 @dataclass(frozen=True, slots=True)
 class Header:
-    """The meaning of a header.
+    """The meaning of a header; ``unit`` is in small letters.
 
     ``column`` is a, alpha, d, theta, "label", or "aside" for a column that is ignored; it is
     "theta offset" for a number that is added to θ, and "l" for the letter l. ``shifted`` is true
@@ -267,7 +189,6 @@ class Header:
     beside a column d a number that is added to the variable of the joint.
     """
 
-    # ``unit`` is in small letters.
     column: str
     unit: str = ""
     shifted: bool = False
@@ -293,8 +214,8 @@ class NamedParameter(NamedTuple):
 
 def named_parameter(name: str) -> NamedParameter | None:
     r"""Return the DH parameter with a name such as a, \alpha_1, θ₁, d_{i}; None for other names."""
-    plain = unicodedata.normalize("NFKC", name[: _COLUMN_HEADERS_LONGEST + 1])
-    number = _COLUMN_HEADERS_NUMBER.search(plain)
+    plain = unicodedata.normalize("NFKC", name[: _LONGEST_HEADER + 1])
+    number = _ROW_NUMBER.search(plain)
     header = read_header(plain[: number.start()] if number else plain)
     if header is None or header.column not in QUANTITIES or header.unit:
         return None
@@ -306,7 +227,7 @@ def read_header(text: str) -> Header | None:
 
     Examples: ``a``, ``a_{i-1}``, ``α_i (deg)``, ``link length [mm]``, ``$\theta_i$``, ``#``.
     """
-    if len(text) > _COLUMN_HEADERS_LONGEST:
+    if len(text) > _LONGEST_HEADER:
         return None
     plain, unit = _plain(text)
     if ASIDES.fullmatch(plain):
@@ -360,14 +281,14 @@ def _without_axis(named: re.Match[str]) -> str:
 
 def is_wordy(text: str) -> bool:
     """True if a cell might be a header: a word or a name, but not a number or formula."""
-    plain, _ = _plain(text[:_COLUMN_HEADERS_LONGEST])
+    plain, _ = _plain(text[:_LONGEST_HEADER])
     return bool(plain.strip()) and _DIGITS_OR_OPERATORS.search(plain) is None
 
 
 def _plain(text: str) -> tuple[str, str]:
     # ``~`` replaces -1.
     plain = unicodedata.normalize("NFKC", text.translate(_SIGNS)).translate(_SIGNS)
-    plain = _OF.sub(" ", _COLUMN_HEADERS_NUMERO.sub("no", _ACCENT.sub("", in_plain_words(plain))))
+    plain = _OF.sub(" ", _NUMERO_SIGN.sub("no", _ACCENT.sub("", in_plain_words(plain))))
     plain = _SIUNITX.sub(lambda unit: unit[1].replace("\\", "").replace(" ", ""), plain)
     plain = _CIRCLE.sub("°", _MARKER.sub(" ", _STYLE.sub(" ", plain)))
     plain = plain.replace("α", " alpha ").replace("θ", " theta ")
@@ -383,3 +304,82 @@ def _plain(text: str) -> tuple[str, str]:
             plain, unit = plain[: trailing.start()], trailing[1] or trailing[2]
     plain = " ".join(plain.replace("_", " ").split())
     return _SHIFTED.sub(lambda match: "".join(filter(None, match.groups())) + "~", plain), unit
+
+
+# --- Order the rows of a pasted table by their labels: 1, 2, 3 … and e for the end effector
+
+
+LAST: Final = 10_000
+_LONGEST_LABEL: Final = 30
+_WORDS: Final = "|".join(sorted(PLACES - {"#", "name", "label"}, key=len, reverse=True))
+# Glied Nr. 1, articulation n° 1.
+_NUMERO: Final = r"(?:n[or°]|num|nummer|number|numero|#)\.?\s?"
+_LABEL_NUMBER: Final = regex(
+    rf"(?:(?:{_WORDS}|[ijklnta#])[\s.]?)?(\d{{1,2}})\.?|(?:{_WORDS})?\s?{_NUMERO}(\d{{1,2}})"
+)
+# 1. Gelenk, 第1关节, and the numbers of Chinese.
+_ORDINAL: Final = regex(rf"第\s?(\d{{1,2}})(?:\s?joint)?|(\d{{1,2}})\.\s?(?:{_WORDS})")
+_NUMERALS: Final = str.maketrans("一二三四五六七八九", "123456789")
+_STEP: Final = regex(r"(\d{1,2})\s?(?:-|→|->|to)\s?(\d{1,2})")
+_END: Final = frozenset(
+    {"e", "ee", "tool", "tcp", "tip", "end", "effector", "end effector", "end-effector", "n+1"}
+    | {"endeffektor", "werkzeug", "effecteur", "outil", "efector final", "herramienta"}
+)
+
+
+def label_place(text: str) -> int | None:
+    """Return the number in a row's label, LAST for an end effector; None if it is not a label.
+
+    Examples: ``1``, ``Link 1``, ``J1``, ``{1}``, ``0→1``; ``e``, ``tool``, ``end effector``.
+    """
+    if len(text) > _LONGEST_LABEL:
+        return None
+    plain = in_plain_words(unicodedata.normalize("NFKC", text).translate(_NUMERALS))
+    for mark in "${}_\\()*`":
+        plain = plain.replace(mark, "")
+    plain = " ".join(plain.split())
+    if plain in _END:
+        return LAST
+    if step := _STEP.fullmatch(plain):
+        return int(step[2]) if int(step[2]) == int(step[1]) + 1 else None
+    number = _LABEL_NUMBER.fullmatch(plain) or _ORDINAL.fullmatch(plain)
+    return int(number[number.lastindex or 1]) if number else None
+
+
+def is_label(text: str) -> bool:
+    """True if a cell is the label of a row."""
+    return label_place(text) is not None
+
+
+def in_order(labels: Sequence[GridCell]) -> tuple[list[int], tuple[Finding, ...]]:
+    """Return the indices of the rows in the order of their labels, and findings on the order.
+
+    Rows keep their order if a row has no label. Raises GridError if two rows share a label.
+    """
+    typed = list(range(len(labels)))
+    places = [label_place(label.text) for label in labels]
+    known = [place for place in places if place is not None]
+    if len(known) < len(places):
+        if not any(label.text for label in labels):
+            return typed, ()
+        unknown = next(i for i in typed if places[i] is None)
+        message = say(
+            "Not all rows have a number, so the rows were read in the order in which they stand."
+        )
+        return typed, (reading_note("row_labels", message, labels[unknown].whole),)
+    if len(set(known)) < len(known):
+        again = next(i for i in typed if known[i] in known[:i])
+        raise GridError(
+            "duplicate_row",
+            say(
+                "Two rows have the label {label}. Give each row its own.",
+                label=labels[again].text[:_LONGEST_LABEL],
+            ),
+            labels[again].whole,
+        )
+    order = sorted(typed, key=known.__getitem__)
+    if order == typed:
+        return typed, ()
+    moved = next(i for i in typed if order[i] != i)
+    message = say("The rows were put in the order of their labels.")
+    return order, (reading_note("rows_reordered", message, labels[moved].whole),)

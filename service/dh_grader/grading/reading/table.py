@@ -1,4 +1,8 @@
-"""Read a submitted DH table, JSON or pasted text, as rows and their numbers."""
+"""Read a submitted DH table, JSON or pasted text, as rows and their numbers.
+
+This file knows how many rows a table may have and which names of conventions count.
+``table_cells.py`` knows the shapes of JSON and the names of cells, ``pasted_table.py`` the texts.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
@@ -37,27 +41,21 @@ from dh_grader.kinematics import COLUMNS, Convention, Table
 from dh_grader.pasting import GridError
 from dh_grader.translations import say
 
+# --- A table as read, and what others do with its rows
+
+
 IS_ANGLE = np.array([QUANTITIES[column] == "angle" for column in COLUMNS])
 MAX_ROWS = 12
-
-CONVENTION_NAMES: Mapping[str, Convention] = {
-    "standard": Convention.STANDARD,
-    "distal": Convention.STANDARD,
-    "classic": Convention.STANDARD,
-    "modified": Convention.MODIFIED,
-    "proximal": Convention.MODIFIED,
-    "craig": Convention.MODIFIED,
-}
 
 
 @dataclass(frozen=True, slots=True)
 class StudentRow:
     """One row as read: an entry for each of a, α, d, θ, and their numbers ``(4, SAMPLES)``.
 
-    A number is NaN if its cell could not be read.
+    A number is NaN if its cell could not be read. If rounded angles were made exact in ``values``,
+    ``as_written`` has the numbers as written.
     """
 
-    # If rounded angles were made exact in ``values``, ``as_written`` has the numbers as written.
     entries: tuple[Entry, ...]
     values: Table
     as_written: Table | None = None
@@ -109,12 +107,11 @@ class StudentRow:
 class StudentTable:
     """A table as read: its rows and their numbers ``(rows, 4, SAMPLES)``.
 
-    ``convention`` is the convention that the answer names, or None.
+    ``convention`` is the convention that the answer names, or None. ``reread`` reads the table with
+    its columns in another order; it is None if the columns of a pasted table have headers.
+    ``named`` is true if the cells were typed one by one into the columns of a grid.
     """
 
-    # ``reread`` reads the table with its columns in another order. It is None if the columns of a
-    # pasted table have headers. ``named`` is true if the cells were typed one by one into the
-    # columns of a grid.
     rows: tuple[StudentRow, ...]
     values: Table
     convention: Convention | None
@@ -128,11 +125,10 @@ Reread: TypeAlias = Callable[[Sequence[str]], StudentTable]
 
 
 def without_empty_end(table: StudentTable, joints: int, asked: int) -> StudentTable:
-    """Return the table without empty rows at its end.
+    """Return the table without empty rows at its end; the rows of all joints are kept.
 
     A table with more rows than ``asked`` is unchanged.
     """
-    # The rows of all joints are kept.
     # A table that is correct in the other convention may have one row fewer than the form. Such a
     # table is recognized only without the empty row at its end. An extra empty row costs as much as
     # an extra wrong row.
@@ -141,6 +137,64 @@ def without_empty_end(table: StudentTable, joints: int, asked: int) -> StudentTa
     written = [i for i, row in enumerate(table.rows) if not row.is_missing]
     kept = max(joints, written[-1] + 1) if written else len(table.rows)
     return replace(table, rows=table.rows[:kept], values=table.values[:kept])
+
+
+def values_of(rows: Sequence[StudentRow]) -> Table:
+    """Return the numbers of the rows, ``(rows, 4, SAMPLES)``; NaN for an unreadable cell."""
+    return np.array([row.values for row in rows])
+
+
+def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
+    """Return the numbers that the student wrote, at these samples: ``(rows, 4, samples)``."""
+    return _values([row.entries for row in rows], samples)
+
+
+# The entry for blank cells and dashes: they share one message.
+EMPTY = Entry(
+    None,
+    Verdict.MISSING,
+    (
+        reading_error(
+            "missing", say("Empty cells and dashes have no value: write 0 where a parameter is 0.")
+        ),
+    ),
+)
+ZERO = Entry(
+    read_expression(0, Vocabulary([])),
+    findings=(
+        Finding(
+            "empty_cells",
+            say("Empty cells and dashes were read as 0."),
+            severity=Severity.INFO,
+            reading=True,
+        ),
+    ),
+)
+
+# The entry of a cell whose number was computed instead of read.
+COMPUTED = Entry(read_expression(0, Vocabulary([])))
+# The entry of a cell whose number is wrong in any frames, to see what the other cells are worth.
+GIVEN_UP = Entry(read_expression(0, Vocabulary([])))
+
+
+def computed_row(values: Table, entry: Entry = COMPUTED) -> StudentRow:
+    """Return a row with the numbers ``(4, SAMPLES)``, as if a student had submitted them."""
+    return StudentRow((entry,) * len(COLUMNS), values)
+
+
+# --- Read a table, in JSON or pasted text
+
+
+CONVENTION_NAMES: Mapping[str, Convention] = {
+    "standard": Convention.STANDARD,
+    "distal": Convention.STANDARD,
+    "classic": Convention.STANDARD,
+    "modified": Convention.MODIFIED,
+    "proximal": Convention.MODIFIED,
+    "craig": Convention.MODIFIED,
+}
+
+_NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))
 
 
 def read_table(
@@ -152,13 +206,11 @@ def read_table(
 ) -> StudentTable:
     """Read a table in JSON or pasted text; columns without names are in ``order``.
 
-    With ``empty_is_zero``, an empty cell means 0. Raises UnreadableAnswerError if there are no
-    rows.
+    The answer is ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}`` or has one of the
+    other shapes that ``canonical_table`` accepts. A cell that is empty or a dash is missing; with
+    ``empty_is_zero`` it is 0 if another cell of its row is not empty. An unreadable row or cell
+    affects only itself. Raises UnreadableAnswerError if there are no rows.
     """
-    # The answer is ``{"rows": [{"a", "alpha", "d", "theta"} …], "convention"?}`` or has one of the
-    # other shapes that ``canonical_table`` accepts. A cell that is empty or a dash is missing; with
-    # ``empty_is_zero`` it is 0 if another cell of its row is not empty. An unreadable row or cell
-    # affects only itself.
     if isinstance(answer, str):
         answer = {"rows": answer}
     if isinstance(answer, Mapping) and isinstance(answer.get("rows"), str):
@@ -229,6 +281,44 @@ def _pasted(text: str, reader: Reader, *, empty_is_zero: bool) -> StudentTable:
     return table if pasted.is_named else replace(table, reread=reread)
 
 
+def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
+    cells = [_cells(row) for row in rows]
+    return [
+        memoized_row(row, reader) or read_row(row, _number_of_row(i, cells, reader), reader)
+        for i, row in enumerate(cells)
+    ]
+
+
+def _number_of_row(i: int, cells: Sequence[Sequence[object]], reader: Reader) -> int | None:
+    first = first_number(cells, reader.vocabulary)
+    return None if first is None else first + i
+
+
+def _cells(row: object) -> list[object]:
+    if row is None:
+        return [None] * len(COLUMNS)
+    if not isinstance(row, Mapping):
+        return [_NOT_VALUES] * len(COLUMNS)
+    # A row with an unknown name has values that were not read: its other cells are not missing.
+    absent = None if row.keys() <= QUANTITIES.keys() else _NO_ROW
+    return [row.get(column, absent) for column in COLUMNS]
+
+
+def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]:
+    if stated is None:
+        return None, ()
+    name = stated.strip().lower() if isinstance(stated, str) else ""
+    if name in CONVENTION_NAMES:
+        return CONVENTION_NAMES[name], ()
+    unknown = Finding(
+        "unknown_convention",
+        say('This convention is not known, so it was ignored. Write "standard" or "modified".'),
+        severity=Severity.WARNING,
+        reading=True,
+    )
+    return None, (unknown,)
+
+
 def _with_empty_cells(row: tuple[Entry, ...], empty_is_zero: bool) -> tuple[Entry, ...]:
     # All empty cells and cells with a dash get the same entry.
     if all(entry.readable for entry in row):
@@ -258,91 +348,12 @@ def _table(
     return StudentTable(rows, values, convention, findings, reread, named)
 
 
-# The entry for blank cells and dashes: they share one message.
-EMPTY = Entry(
-    None,
-    Verdict.MISSING,
-    (
-        reading_error(
-            "missing", say("Empty cells and dashes have no value: write 0 where a parameter is 0.")
-        ),
-    ),
-)
-ZERO = Entry(
-    read_expression(0, Vocabulary([])),
-    findings=(
-        Finding(
-            "empty_cells",
-            say("Empty cells and dashes were read as 0."),
-            severity=Severity.INFO,
-            reading=True,
-        ),
-    ),
-)
-
-# The entry of a cell whose number was computed instead of read.
-COMPUTED = Entry(read_expression(0, Vocabulary([])))
-# The entry of a cell whose number is wrong in any frames, to see what the other cells are worth.
-GIVEN_UP = Entry(read_expression(0, Vocabulary([])))
-
-
-def computed_row(values: Table, entry: Entry = COMPUTED) -> StudentRow:
-    """Return a row with the numbers ``(4, SAMPLES)``, as if a student had submitted them."""
-    return StudentRow((entry,) * len(COLUMNS), values)
-
-
-_NO_ROWS: Table = np.empty((0, len(COLUMNS), 0))
-
-
 def _values(rows: Sequence[tuple[Entry, ...]], samples: Samples) -> Table:
     cells = [entry for entries in rows for entry in entries]
     if absent := samples.absent_names(entry.expression for entry in cells):
         samples = samples.with_names(absent)
     numbers = entry_values(cells, (*QUANTITIES.values(),) * len(rows), samples)
     return numbers.reshape(len(rows), len(COLUMNS), -1)
-
-
-def _too_many_rows(found: int) -> Finding:
-    message = say("A table has at most {most} rows; yours has {found}.", most=MAX_ROWS, found=found)
-    return reading_error("too_many_rows", message)
-
-
-def _convention(stated: object) -> tuple[Convention | None, tuple[Finding, ...]]:
-    if stated is None:
-        return None, ()
-    name = stated.strip().lower() if isinstance(stated, str) else ""
-    if name in CONVENTION_NAMES:
-        return CONVENTION_NAMES[name], ()
-    unknown = Finding(
-        "unknown_convention",
-        say('This convention is not known, so it was ignored. Write "standard" or "modified".'),
-        severity=Severity.WARNING,
-        reading=True,
-    )
-    return None, (unknown,)
-
-
-def _entries(rows: Sequence[object], reader: Reader) -> list[tuple[Entry, ...]]:
-    cells = [_cells(row) for row in rows]
-    return [
-        memoized_row(row, reader) or read_row(row, _number_of_row(i, cells, reader), reader)
-        for i, row in enumerate(cells)
-    ]
-
-
-def _number_of_row(i: int, cells: Sequence[Sequence[object]], reader: Reader) -> int | None:
-    first = first_number(cells, reader.vocabulary)
-    return None if first is None else first + i
-
-
-def _cells(row: object) -> list[object]:
-    if row is None:
-        return [None] * len(COLUMNS)
-    if not isinstance(row, Mapping):
-        return [_NOT_VALUES] * len(COLUMNS)
-    # A row with an unknown name has values that were not read: its other cells are not missing.
-    absent = None if row.keys() <= QUANTITIES.keys() else _NO_ROW
-    return [row.get(column, absent) for column in COLUMNS]
 
 
 # The message for a JSON object shows the expected object; the one for a list or a value uses words.
@@ -359,11 +370,6 @@ _NO_ROW = reading_error(
 _NOT_VALUES = reading_error("wrong_shape", say("Write the four values a, α, d, θ in this row."))
 
 
-def table_values(rows: Sequence[StudentRow], samples: Samples) -> Table:
-    """Return the numbers that the student wrote, at these samples: ``(rows, 4, samples)``."""
-    return _values([row.entries for row in rows], samples)
-
-
-def values_of(rows: Sequence[StudentRow]) -> Table:
-    """Return the numbers of the rows, ``(rows, 4, SAMPLES)``; NaN for an unreadable cell."""
-    return np.array([row.values for row in rows])
+def _too_many_rows(found: int) -> Finding:
+    message = say("A table has at most {most} rows; yours has {found}.", most=MAX_ROWS, found=found)
+    return reading_error("too_many_rows", message)

@@ -1,4 +1,8 @@
-"""Which column and row a cell's name means, and cells that are read one by one."""
+"""Find the four cells of each row of a DH table, in JSON or text, and read them as entries.
+
+This file knows the shapes that an answer in JSON may have, and what the names of cells mean. The
+rows of a pasted table are found by ``pasted_table.py``.
+"""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
@@ -35,6 +39,70 @@ from dh_grader.kinematics import COLUMNS
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
+# --- Read the cells of one row as entries
+
+
+# Longer rows are not memoized: hardly any two students write the same one.
+_LONGEST_MEMOIZED: Final = 60
+_MEMOIZED: Final = 4096
+_NO_SAMPLES: Final = Samples({})
+
+
+def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
+    """Read the four cells of one row as entries.
+
+    A cell is a JSON value, or the finding that says why the cell is unreadable. ``number`` is the
+    number of the row, None if unknown.
+    """
+    found = arranged_row(cells, reader.vocabulary)
+    ordered = [cells[i] for i in found.order] if found else cells
+
+    def read(column: int) -> Entry:
+        raw = ordered[column]
+        if isinstance(raw, Finding):
+            return unreadable(raw)
+        return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
+
+    return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
+
+
+def memoized_row(cells: Sequence[object], reader: Reader) -> tuple[Entry, ...] | None:
+    """Return the memoized entries of a row of short, readable texts; None for any other row."""
+    # Most students of a class write the same rows, and a lookup takes a tenth of reading one. Rows
+    # with names, such as ``theta_1 = q1``, are not memoized: they depend on the row's number.
+    a, alpha, d, theta = cells
+    if not (type(a) is type(alpha) is type(d) is type(theta) is str):
+        return None
+    if len(a) + len(alpha) + len(d) + len(theta) > _LONGEST_MEMOIZED:
+        return None
+    found = _read_texts((a, alpha, d, theta), reader.vocabulary, reader.angle_unit)
+    if found is None or found.symbols > reader.budget.symbols:
+        return None
+    reader.budget.symbols -= found.symbols
+    # Equal rows of a table are different objects, by which the report tells them apart.
+    return (*found.entries,)
+
+
+class _MemoizedRow(NamedTuple):
+    # ``symbols`` is the number of names, numbers and signs in the text of the row.
+    entries: tuple[Entry, ...]
+    symbols: int
+
+
+@lru_cache(maxsize=_MEMOIZED)
+def _read_texts(
+    texts: tuple[str, str, str, str], vocabulary: Vocabulary, angle_unit: AngleUnit
+) -> _MemoizedRow | None:
+    if any(name_of(text, vocabulary) for text in texts):
+        return None
+    budget = WorkBudget(repairs=0)
+    reader = Reader(vocabulary, _NO_SAMPLES, angle_unit, None, budget)
+    entries = read_row(texts, None, reader)
+    # Rows that need repairs are not memoized: each submission must pay for its own repairs.
+    is_plain = budget.repairs == 0 and all(entry.readable for entry in entries)
+    return _MemoizedRow(entries, MAX_SYMBOLS - budget.symbols) if is_plain else None
+
+
 # --- Find the column and row that a cell's name means, as in theta_1 = q1
 
 
@@ -54,8 +122,10 @@ def _columns_of(names: Sequence[LeftSide | None], _: Vocabulary) -> list[Places]
 
 
 def first_number(rows: Sequence[Sequence[object]], vocabulary: Vocabulary) -> int | None:
-    """Return the number of the first row: 0 if its θ or d has the index 0, else 1."""
-    # None for a single row, which may belong to any joint.
+    """Return the number of the first row: 0 if its θ or d has the index 0, else 1.
+
+    Return None for a single row, which may belong to any joint.
+    """
     if len(rows) < 2:
         return None
     names = [name_of(cell, vocabulary) for cell in rows[0]]
@@ -72,9 +142,11 @@ def row_entries(
     placed: Callable[[int, Entry], Entry],
     vocabulary: Vocabulary,
 ) -> tuple[Entry, ...]:
-    """Return the entries of a row whose ``cells`` were arranged by their names."""
-    # ``found`` is the arrangement. ``read`` returns the entry of a column. ``placed`` moves the
-    # spans of an entry from its cell to the whole text.
+    """Return the entries of a row whose ``cells`` were arranged by their names.
+
+    ``found`` is the arrangement. ``read`` returns the entry of a column. ``placed`` moves the spans
+    of an entry from its cell to the whole text.
+    """
     entries: list[Entry] = []
     for column, cell in enumerate(cells):
         wrong = found.misnamed.get(column) if found else None
@@ -104,10 +176,8 @@ def _names_another_row(
     return misnamed_value(name, say("{parameter} (row {row})", parameter=SHOWN[column], row=number))
 
 
-# --- Find the cells of a DH table or of one row, as JSON or as text, and read them as entries
+# --- Convert the shapes that a table may have in JSON to the one that the reader expects
 
-
-# Part 1: the JSON shapes of a table -> the one that the reader expects.
 
 _KEYS: Final = QUANTITIES.keys()
 _IN_ORDER: Final = (*QUANTITIES,)
@@ -116,22 +186,22 @@ _MOST_ROWS: Final = 16
 _MOST_NAMES: Final = 40
 
 # A row's label, if it has one, and its cells by column; or None and the row as it was sent.
-_Read = tuple[object, object]
+_LabelledRow = tuple[object, object]
 
 
 def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
     """Convert a table to ``{"rows": [{"a", "alpha", "d", "theta"} …], …}``. Never raises.
 
-    A row may be a mapping whose keys are headers, or a list in ``order``. Rows with row numbers are
-    sorted by these numbers.
+    The answer may be a mapping with ``rows`` (other fields are kept), the list of rows alone, or a
+    mapping from headers to lists. A row may be a mapping whose keys are headers, or a list in
+    ``order``. A list of four headers may precede rows that are lists; or each list has the values
+    of one parameter, after its header. Headers have any spelling ("α", "alpha_i", "twist"). Rows
+    are sorted if all have a number or "e".
+
+    A row of any other form is unchanged. So is a row whose keys have a unit, or name one column
+    twice: the reader then refuses the row, or reads the cells that it knows. An answer without any
+    row is returned unchanged.
     """
-    # The answer may be a mapping with ``rows`` (other fields are kept), the list of rows alone, or
-    # a mapping from headers to lists. Headers have any spelling ("α", "alpha_i", "twist"). A list
-    # of four headers may precede rows that are lists; or each list has the values of one parameter,
-    # after its header. Rows are ordered if all have a number or "e". A row of any other form is
-    # unchanged. A row whose keys have a unit, or name one column twice, is unchanged, too: the
-    # reader then refuses the row, or reads the cells that it knows. An answer without any row is
-    # returned unchanged.
     if isinstance(answer, Mapping):
         rows = answer.get("rows")
         if rows is None and (rows := _from_columns(answer)) is not None:
@@ -146,6 +216,14 @@ def canonical_table(answer: object, order: Sequence[str] = _IN_ORDER) -> object:
         isinstance(row, Mapping) and not _KEYS.isdisjoint(row) for row in found[:_MOST_ROWS]
     )
     return {"rows": found} if has_rows else answer
+
+
+def has_unnamed_columns(answer: object) -> bool:
+    """True if the rows are lists without headers, so that only their order gives the columns."""
+    rows = answer.get("rows") if isinstance(answer, Mapping) else answer
+    if not isinstance(rows, list) or not any(isinstance(row, list) for row in rows):
+        return False
+    return _columns(_with_parameters_in_columns(rows), {}) is None
 
 
 def _from_columns(answer: Mapping[str, object]) -> list[object] | None:
@@ -170,14 +248,6 @@ def _with_parameters_in_columns(rows: list[object]) -> list[object]:
     return [list(row) for row in zip(*lists, strict=True)]
 
 
-def has_unnamed_columns(answer: object) -> bool:
-    """True if the rows are lists without headers, so that only their order gives the columns."""
-    rows = answer.get("rows") if isinstance(answer, Mapping) else answer
-    if not isinstance(rows, list) or not any(isinstance(row, list) for row in rows):
-        return False
-    return _columns(_with_parameters_in_columns(rows), {}) is None
-
-
 def _is_canonical(rows: Sequence[object]) -> bool:
     return all(isinstance(row, dict) and row.keys() == _KEYS for row in rows)
 
@@ -189,7 +259,7 @@ def _canonical_rows(rows: list[object], order: Sequence[str]) -> list[object]:
     body = rows if columns is None else rows[1:]
     if columns is None:
         columns = (LABEL, *order) if _are_numbered(rows[:_MOST_ROWS]) else tuple(order)
-    read = [_read_row(row, columns, names) for row in body[:_MOST_ROWS]]
+    read = [_labelled_row(row, columns, names) for row in body[:_MOST_ROWS]]
     return [*_in_order(read), *body[_MOST_ROWS:]]
 
 
@@ -223,7 +293,9 @@ def _place(label: object) -> int | None:
     return label_place(str(label)) if is_number or isinstance(label, str) else None
 
 
-def _read_row(row: object, columns: tuple[str, ...], names: dict[str, Header | None]) -> _Read:
+def _labelled_row(
+    row: object, columns: tuple[str, ...], names: dict[str, Header | None]
+) -> _LabelledRow:
     if isinstance(row, Mapping):
         return _by_keys(row, names)
     is_flat = isinstance(row, list) and not any(isinstance(cell, list | dict) for cell in row)
@@ -233,7 +305,7 @@ def _read_row(row: object, columns: tuple[str, ...], names: dict[str, Header | N
     return cells.pop(LABEL, None), cells
 
 
-def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _Read:
+def _by_keys(row: Mapping[str, object], names: dict[str, Header | None]) -> _LabelledRow:
     label: object = None
     cells: dict[str, object] = {}
     for key, value in row.items():
@@ -258,7 +330,7 @@ def _header(name: object, names: dict[str, Header | None]) -> Header | None:
     return names[name]
 
 
-def _in_order(rows: Sequence[_Read]) -> list[object]:
+def _in_order(rows: Sequence[_LabelledRow]) -> list[object]:
     # If a label is missing or occurs twice, the rows keep their own order.
     places = [_place(label) for label, _ in rows]
     known = [place for place in places if place is not None]
@@ -267,7 +339,8 @@ def _in_order(rows: Sequence[_Read]) -> list[object]:
     return [rows[i][1] for i in sorted(range(len(rows)), key=known.__getitem__)]
 
 
-# Part 2: the text of one row -> its cells.
+# --- Find the cells in the text of one row
+
 
 _LONGEST_TEXT: Final = 2_000
 # A name before = or a colon, with or without an index: a, \alpha_1, θ₁.
@@ -298,10 +371,9 @@ class NamedCell(NamedTuple):
 def named_cells(text: str) -> Mapping[str, NamedCell] | None:
     """Return the cells of a text such as ``a=3, d=2, theta=90deg, alpha=0`` by column.
 
-    Return None for any other text.
+    The order is free. Separators are commas, semicolons, blanks or line ends; a colon may replace
+    ``=``. The mapping is empty if a parameter is named twice. Return None for any other text.
     """
-    # The order is free. Separators are commas, semicolons, blanks or line ends; a colon may replace
-    # ``=``. The mapping is empty if a parameter is named twice.
     if len(text) > _LONGEST_TEXT:
         return None
     names = list(_NAMED.finditer(text))
@@ -362,64 +434,3 @@ def says_none(text: str) -> bool:
     plain = _STYLE.sub(r"\1", text)
     plain = "".join(sign for sign in plain if sign not in "$\"'“”").strip().rstrip(".!").lower()
     return _NONE.fullmatch(" ".join(plain.split())) is not None
-
-
-# Part 3: the cells of a row -> entries.
-
-# Longer rows are not memoized: hardly any two students write the same one.
-_LONGEST_MEMOIZED: Final = 60
-_MEMOIZED: Final = 4096
-_NO_SAMPLES: Final = Samples({})
-
-
-def read_row(cells: Sequence[object], number: int | None, reader: Reader) -> tuple[Entry, ...]:
-    """Read the four cells of one row as entries."""
-    # A cell is a JSON value, or the finding that says why the cell is unreadable. ``number`` is
-    # None if unknown.
-    found = arranged_row(cells, reader.vocabulary)
-    ordered = [cells[i] for i in found.order] if found else cells
-
-    def read(column: int) -> Entry:
-        raw = ordered[column]
-        if isinstance(raw, Finding):
-            return unreadable(raw)
-        return reader.read(raw, QUANTITIES[COLUMNS[column]], in_table=True)
-
-    return row_entries(ordered, found, number, read, lambda _, entry: entry, reader.vocabulary)
-
-
-def memoized_row(cells: Sequence[object], reader: Reader) -> tuple[Entry, ...] | None:
-    """Return the memoized entries of a row of short, readable texts; None for any other row."""
-    # Most students of a class write the same rows, and a lookup takes a tenth of reading one. Rows
-    # with names, such as ``theta_1 = q1``, are not memoized: they depend on the row's number.
-    a, alpha, d, theta = cells
-    if not (type(a) is type(alpha) is type(d) is type(theta) is str):
-        return None
-    if len(a) + len(alpha) + len(d) + len(theta) > _LONGEST_MEMOIZED:
-        return None
-    found = _read_texts((a, alpha, d, theta), reader.vocabulary, reader.angle_unit)
-    if found is None or found.symbols > reader.budget.symbols:
-        return None
-    reader.budget.symbols -= found.symbols
-    # Equal rows of a table are different objects, by which the report tells them apart.
-    return (*found.entries,)
-
-
-class _MemoizedRow(NamedTuple):
-    # ``symbols`` is the number of names, numbers and signs in the text of the row.
-    entries: tuple[Entry, ...]
-    symbols: int
-
-
-@lru_cache(maxsize=_MEMOIZED)
-def _read_texts(
-    texts: tuple[str, str, str, str], vocabulary: Vocabulary, angle_unit: AngleUnit
-) -> _MemoizedRow | None:
-    if any(name_of(text, vocabulary) for text in texts):
-        return None
-    budget = WorkBudget(repairs=0)
-    reader = Reader(vocabulary, _NO_SAMPLES, angle_unit, None, budget)
-    entries = read_row(texts, None, reader)
-    # Rows that need repairs are not memoized: each submission must pay for its own repairs.
-    is_plain = budget.repairs == 0 and all(entry.readable for entry in entries)
-    return _MemoizedRow(entries, MAX_SYMBOLS - budget.symbols) if is_plain else None
