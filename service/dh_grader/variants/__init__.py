@@ -54,8 +54,8 @@ def _keyed(secret: str, learner: str, exercise: str, number: int, seed: str) -> 
 
 # --- Keep the variants of an assignment when an exercise file is corrected
 #
-# The table ``[vary]`` of a file says which numbers its variants may have. An assignment stores a copy
-# of this table and uses it instead of the file's table.
+# The table ``[vary]`` of a file says which numbers its variants may have. An assignment stores a
+# copy of this table and uses it instead of the file's table.
 
 
 # As many exercises in assignments are used at the same time.
@@ -99,7 +99,7 @@ MOST_BUILT: Final = 512
 
 
 class NoVariantError(LookupError):
-    """An exercise has no variant for this seed, or no variants at all. The message is for people."""
+    """An exercise has no variant for this seed, or none at all. The message is for people."""
 
 
 def built(exercise: Exercise, seed: str) -> Exercise:
