@@ -301,7 +301,7 @@ def _levels(feedback: FeedbackLevel | list[FeedbackLevel]) -> tuple[FeedbackLeve
 def _version(spec: ExerciseSpec) -> str:
     """Return the digest of all fields that affect grading."""
     # Default values are left out, so a new field of the schema changes no exercise's version.
-    written = spec.model_dump(mode="json", exclude_defaults=True, exclude=NOT_GRADING)
+    written = spec.model_dump(mode="json", exclude_defaults=True, exclude=set(NOT_GRADING))
     content = json.dumps(written, sort_keys=True)
     return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 
