@@ -43,9 +43,6 @@ from dh_grader.solutions import solve
 from dh_grader.solutions.answers import LAZY
 from dh_grader.translations import Sentence, joined, say, say_count, template
 
-# --- Checks of an exercise for its author, before students see it, and a template for a new one
-
-
 __all__ = [
     "Level",
     "Remark",

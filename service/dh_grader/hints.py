@@ -41,7 +41,7 @@ STEPS: Final = 3
 _WITHOUT_RECORD: Final = frozenset(
     {"frames_of_other_convention", "no_joint_variable", "slip_elsewhere"}
 )
-_IN_WORDS: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
+_PRINTED: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 # The rule for a message whose code has no record of its own.
 _OF_KIND: Final[Mapping[str, RuleName]] = {
     "dh_table": "of_column",
@@ -207,8 +207,8 @@ def _entry(topic: Topic) -> Sentence:
         return say("the answer")
     if topic.cell is None:
         return say("row {row}", row=topic.row)
-    if topic.cell in _IN_WORDS:
-        return say("{symbol} in row {row}", symbol=_IN_WORDS[topic.cell], row=topic.row)
+    if topic.cell in _PRINTED:
+        return say("{symbol} in row {row}", symbol=_PRINTED[topic.cell], row=topic.row)
     return say("row {row}, column {column}", row=topic.row, column=topic.cell)
 
 
@@ -608,7 +608,6 @@ _LENGTH, _TWIST, _OFFSET, _ANGLE = 1.6, np.radians(40), 1.0, np.radians(55)
 _SCALE: Final = 92.0
 _ARROW: Final = 0.85
 _VIEW: Final = View(-62.0, 22.0)
-_SYMBOLS: Final = {"a": "a", "alpha": "α", "d": "d", "theta": "θ"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -681,7 +680,7 @@ def _scene(convention: Convention) -> _Scene:
         x_after = _turned(x, z, _ANGLE)
         z_after = _turned(z, x_after, _TWIST)
         end = corner + _LENGTH * x_after
-        indices = dict.fromkeys(_SYMBOLS, "i")
+        indices = dict.fromkeys(_PRINTED, "i")
     else:
         corner = _LENGTH * x
         z_after = _turned(z, x, _TWIST)
@@ -762,7 +761,7 @@ def _labels(
             centre, axis, first, _ = scene.angle(name)
             half = (_ANGLE if name == "theta" else _TWIST) / 2
             middle = camera.seen(centre + 0.85 * _turned(first, axis, half))
-        label = Label(((_SYMBOLS[name], scene.indices[name]),))
+        label = Label(((_PRINTED[name], scene.indices[name]),))
         yield label, "variable", list(around(middle, 15.0)), middle[None]
 
 

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 _WORDS: Final = {"a", "A", "I", "delta", "iota"}
 _SPELLED: Final = [name for name in characters.LETTERS if name.islower() and name not in _WORDS]
 _INDEX: Final = rf"[0-9A-Za-z{characters.CLASS}]+|\{{[^{{}}\s]{{1,8}}\}}"
-_NAMES_NAME: Final = regex(
+_NAME: Final = regex(
     r"(?<!\w)\w{1,20}://\S+"
     r"|(?<![\w\\@#$'’}])(?:"
     r"(?P<frame>\{[0-9A-Za-z](?:[-−+]?[0-9])?\})"
@@ -122,7 +122,7 @@ def pieces(text: str, symbols: Container[str] = ()) -> Iterator[str | TypesetNam
     """Yield the names in a text and the texts between the names, in order."""
     text = _SIGN.sub("−", text)
     done = 0
-    for match in _NAMES_NAME.finditer(text):
+    for match in _NAME.finditer(text):
         if (name := _name(match, symbols)) is not None:
             if match.start() > done:
                 yield text[done : match.start()]
@@ -163,7 +163,7 @@ _LONGEST_TERM: Final = 36
 # A matrix with more entries is shown as text.
 _MOST_ENTRIES: Final = 64
 # The e of 1e-3 is no name.
-_FORMULAS_NAME: Final = regex(
+_NAME_IN_FORMULA: Final = regex(
     r"(?:(?<![0-9.])|(?![eE][-+]?[0-9]))[A-Za-z][A-Za-z0-9]*(?:_[A-Za-z0-9]+)*"
 )
 
@@ -227,7 +227,7 @@ def _read(text: str) -> Expression:
 
 
 def _names(text: str) -> set[str]:
-    return set(_FORMULAS_NAME.findall(text)) - RESERVED
+    return set(_NAME_IN_FORMULA.findall(text)) - RESERVED
 
 
 # --- Statements of exercises as HTML, from Markdown with LaTeX between dollar signs

@@ -1,6 +1,6 @@
 """A compiled exercise (vocabulary, robot, parts), and how it is compiled from a valid file.
 
-The models of the file are in ``schema.py`` and ``kinds.py``.
+The models of the file are in ``schema.py`` and ``kinds.py``; ``load.py`` finds the files.
 """
 
 import hashlib
@@ -43,7 +43,13 @@ from dh_grader.catalogue.schema import (
     ViewSpec,
     check_translations,
 )
-from dh_grader.catalogue.schema_fields import AttemptsSpec, ExerciseLevel, FeedbackLevel, Four
+from dh_grader.catalogue.schema_fields import (
+    NOT_GRADING,
+    AttemptsSpec,
+    ExerciseLevel,
+    FeedbackLevel,
+    Four,
+)
 from dh_grader.catalogue.varying import Vary
 from dh_grader.expressions import Expression, Kind, Symbol, Vocabulary
 from dh_grader.kinematics import COLUMNS, A, Convention, D
@@ -203,9 +209,6 @@ DEFAULT_RANGES: dict[Kind, tuple[float, float]] = {
     "length": (0.2, 1.0),
     "number": (0.5, 2.0),
 }
-# The fields of a file that do not affect grading.
-_CATALOGUE = {"level", "order", "minutes", "summary", "keywords"}
-_NOT_GRADING = {"checks", "feedback", "attempts", "view", "translations", *_CATALOGUE}
 
 
 def compile_exercise(exercise_id: str, spec: ExerciseSpec) -> Exercise:
@@ -298,7 +301,7 @@ def _levels(feedback: FeedbackLevel | list[FeedbackLevel]) -> tuple[FeedbackLeve
 def _version(spec: ExerciseSpec) -> str:
     """Return the digest of all fields that affect grading."""
     # Default values are left out, so a new field of the schema changes no exercise's version.
-    written = spec.model_dump(mode="json", exclude_defaults=True, exclude=_NOT_GRADING)
+    written = spec.model_dump(mode="json", exclude_defaults=True, exclude=set(NOT_GRADING))
     content = json.dumps(written, sort_keys=True)
     return hashlib.blake2b(content.encode(), digest_size=6).hexdigest()
 

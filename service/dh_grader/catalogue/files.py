@@ -1,6 +1,6 @@
 """Read a file of an author, and say what is wrong in it with field and line.
 
-It knows TOML and pydantic's errors, and nothing about robots.
+It knows TOML, pydantic's errors and the models of ``schema.py``, and nothing about robots.
 """
 
 import difflib
@@ -34,54 +34,99 @@ from dh_grader.catalogue.schema import (
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, joined, reason_of, say, template
 
-# --- Choose the place for temporary folders that several processes share
+# --- Read a tutor's TOML file and report faults with field and line
 
 
-# A folder in memory, which is writable even in a container with a read-only file system.
-_MEMORY: Final = Path("/dev/shm")
+# The largest shipped exercise has 8 kB.
+_LARGEST: Final = 1024 * 1024
+
+Built = TypeVar("Built")
+# The place of a value in a file, and the function that finds the model of the table around it.
+_Location = Sequence[int | str]
+TableAt = Callable[[_Location], type[BaseModel]]
 
 
-def temporary_place() -> Path:
-    """Return a folder for temporary files, in memory if possible."""
-    if os.access(_MEMORY, os.W_OK):
-        return _MEMORY
+@dataclass(frozen=True, slots=True)
+class Fault:
+    """A fault in a tutor's file: its place and its reason."""
+
+    file: Path
+    field: str
+    reason: str
+    line: int | None = None
+
+    def __str__(self) -> str:
+        """File, field and reason on one line."""
+        place = with_line(self.field, self.line)
+        return joined(": ", list(filter(None, (str(self.file), place, self.reason))))
+
+
+class CatalogueError(Exception):
+    """One or more files of a tutor cannot be used; ``faults`` are the reasons."""
+
+    def __init__(self, faults: list[Fault]) -> None:
+        super().__init__(joined("\n", list(map(str, faults))))
+        self.faults = faults
+
+
+def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
+    """Read a TOML file, and return what ``build`` makes of its content. Raises CatalogueError."""
+    return built_of(file, toml_content(file), build, table_at)
+
+
+def toml_content(file: Path) -> bytes:
+    """Return the bytes of a TOML file. Raises CatalogueError."""
     try:
-        return Path(tempfile.gettempdir())
-    except OSError:
-        return Path.cwd()
+        return read_regular(file, _LARGEST)
+    except OSError as error:
+        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
 
 
-# --- Read regular files only
+def built_of(
+    file: Path, content: bytes, build: Callable[[dict[str, Any]], Built], table_at: TableAt
+) -> Built:
+    """Return what ``build`` makes of the bytes of a TOML file. Raises CatalogueError."""
+    try:
+        text = content.decode()
+    except ValueError as error:
+        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
+    return read_toml(file, text, build, table_at)
 
 
-def read_regular(file: Path, most: int) -> bytes:
-    """Return the bytes of a regular file.
+def read_toml(
+    file: Path, text: str, build: Callable[[dict[str, Any]], Built], table_at: TableAt
+) -> Built:
+    """Return what ``build`` makes of a TOML text. Raises CatalogueError, which names ``file``."""
+    # Normalize line ends as in a file that is opened in text mode.
+    text = text.replace("\r\n", "\n")
+    try:
+        return build(tomllib.loads(text))
+    except (ValidationError, FieldError, ExceptionGroup) as error:
+        lines = value_lines(text)
+        found = refusals(error, table_at)
+        faults = [Fault(file, *fault, line_of(fault[0], lines)) for fault in found]
+        raise CatalogueError(faults) from error
+    except (ValueError, RecursionError) as error:
+        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
 
-    Raises OSError for a pipe, for a device, and for more than ``most`` bytes.
-    """
-    with open(file, "rb", opener=_open_nonblocking) as opened:
-        status = os.fstat(opened.fileno())
-        if stat.S_ISDIR(status.st_mode):
-            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
-        if not stat.S_ISREG(status.st_mode):
-            raise OSError(errno.EINVAL, "it is a pipe or device")
-        # The file may grow during the read.
-        content = b"" if status.st_size > most else opened.read(most + 1)
-        if max(status.st_size, len(content)) > most:
-            raise OSError(errno.EFBIG, f"it is larger than {most // 1024} KiB")
-        return content
 
-
-def _open_nonblocking(name: str, flags: int) -> int:
-    return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
+def fault_reason(error: Exception) -> str:
+    """Return the reason why a file cannot be read, or is not TOML."""
+    match error:
+        case OSError():
+            return say("cannot be read: {reason}", reason=reason_of(error))
+        case UnicodeDecodeError():
+            return say("is not UTF-8 text: {reason}", reason=error.reason)
+        case RecursionError():
+            return say("has tables or lists nested too deep")
+        case _:  # of TOML itself, or of a number with thousands of digits
+            return say("is not TOML: {reason}", reason=str(error))
 
 
 # --- Turn pydantic's errors into messages for the authors of exercise files
 
 
 _Detail = Mapping[str, Any]
-_Location = Sequence[int | str]
-TableAt = Callable[[_Location], type[BaseModel]]
 
 # For a field of several types, pydantic has a finding for each, with the type at the end of its
 # location.
@@ -304,7 +349,7 @@ def table_in(annotation: object) -> type[BaseModel] | None:
 
 # --- Find the line of each value in a TOML text
 #
-# The text must be valid TOML: this module does not check its syntax.
+# The text must be valid TOML: its syntax is not checked here.
 
 
 _BLANK: Final = regex(r"(?:[ \t\r\n]|#[^\n]*)*")
@@ -425,87 +470,43 @@ class _LineFinder:
         return self._text.count("\n", 0, self._at) + 1
 
 
-# --- Read a tutor's TOML file and report faults with field and line
+# --- Read regular files only
 
 
-# The largest shipped exercise has 8 kB.
-_LARGEST: Final = 1024 * 1024
+def read_regular(file: Path, most: int) -> bytes:
+    """Return the bytes of a regular file.
 
-Built = TypeVar("Built")
-
-
-@dataclass(frozen=True, slots=True)
-class Fault:
-    """A fault in a tutor's file: its place and its reason."""
-
-    file: Path
-    field: str
-    reason: str
-    line: int | None = None
-
-    def __str__(self) -> str:
-        """File, field and reason on one line."""
-        place = with_line(self.field, self.line)
-        return joined(": ", list(filter(None, (str(self.file), place, self.reason))))
+    Raises OSError for a pipe, for a device, and for more than ``most`` bytes.
+    """
+    with open(file, "rb", opener=_open_nonblocking) as opened:
+        status = os.fstat(opened.fileno())
+        if stat.S_ISDIR(status.st_mode):
+            raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        if not stat.S_ISREG(status.st_mode):
+            raise OSError(errno.EINVAL, "it is a pipe or device")
+        # The file may grow during the read.
+        content = b"" if status.st_size > most else opened.read(most + 1)
+        if max(status.st_size, len(content)) > most:
+            raise OSError(errno.EFBIG, f"it is larger than {most // 1024} KiB")
+        return content
 
 
-class CatalogueError(Exception):
-    """One or more files of a tutor cannot be used; ``faults`` are the reasons."""
-
-    def __init__(self, faults: list[Fault]) -> None:
-        super().__init__(joined("\n", list(map(str, faults))))
-        self.faults = faults
+def _open_nonblocking(name: str, flags: int) -> int:
+    return os.open(name, flags | getattr(os, "O_NONBLOCK", 0))
 
 
-def load_toml(file: Path, build: Callable[[dict[str, Any]], Built], table_at: TableAt) -> Built:
-    """Read a TOML file, and return what ``build`` makes of its content. Raises CatalogueError."""
-    return built_of(file, toml_content(file), build, table_at)
+# --- Choose the place for temporary folders that several processes share
 
 
-def toml_content(file: Path) -> bytes:
-    """Return the bytes of a TOML file. Raises CatalogueError."""
+# A folder in memory, which is writable even in a container with a read-only file system.
+_MEMORY: Final = Path("/dev/shm")
+
+
+def temporary_place() -> Path:
+    """Return a folder for temporary files, in memory if possible."""
+    if os.access(_MEMORY, os.W_OK):
+        return _MEMORY
     try:
-        return read_regular(file, _LARGEST)
-    except OSError as error:
-        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
-
-
-def built_of(
-    file: Path, content: bytes, build: Callable[[dict[str, Any]], Built], table_at: TableAt
-) -> Built:
-    """Return what ``build`` makes of the bytes of a TOML file. Raises CatalogueError."""
-    try:
-        text = content.decode()
-    except ValueError as error:
-        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
-    return read_toml(file, text, build, table_at)
-
-
-def read_toml(
-    file: Path, text: str, build: Callable[[dict[str, Any]], Built], table_at: TableAt
-) -> Built:
-    """Return what ``build`` makes of a TOML text. Raises CatalogueError, which names ``file``."""
-    # Normalize line ends as in a file that is opened in text mode.
-    text = text.replace("\r\n", "\n")
-    try:
-        return build(tomllib.loads(text))
-    except (ValidationError, FieldError, ExceptionGroup) as error:
-        lines = value_lines(text)
-        found = refusals(error, table_at)
-        faults = [Fault(file, *fault, line_of(fault[0], lines)) for fault in found]
-        raise CatalogueError(faults) from error
-    except (ValueError, RecursionError) as error:
-        raise CatalogueError([Fault(file, "", fault_reason(error))]) from error
-
-
-def fault_reason(error: Exception) -> str:
-    """Return the reason why a file cannot be read, or is not TOML."""
-    match error:
-        case OSError():
-            return say("cannot be read: {reason}", reason=reason_of(error))
-        case UnicodeDecodeError():
-            return say("is not UTF-8 text: {reason}", reason=error.reason)
-        case RecursionError():
-            return say("has tables or lists nested too deep")
-        case _:  # of TOML itself, or of a number with thousands of digits
-            return say("is not TOML: {reason}", reason=str(error))
+        return Path(tempfile.gettempdir())
+    except OSError:
+        return Path.cwd()

@@ -1,4 +1,7 @@
-"""Load exercise files from folders: once, again after a change, as variants, and as drafts."""
+"""Load exercise files from folders: once, again after a change, as variants, and as drafts.
+
+What a file may contain is in ``schema.py``; how a fault is reported is in ``files.py``.
+"""
 
 import hashlib
 import json
@@ -187,69 +190,6 @@ def _reread(file: Path, last_good: Exercise | None) -> Exercise | None:
         return last_good
 
 
-# --- Build an exercise, or one of its variants, from the content of its file
-
-
-def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
-    """Build an exercise from the content of its file, without choosing a variant.
-
-    Raises ValidationError or FieldError.
-    """
-    if "vary" not in content:
-        return compile_exercise(exercise_id, ExerciseSpec.model_validate(content))
-    return _filled(exercise_id, Vary(exercise_id, content), "")
-
-
-def exercise_of_seed(exercise: Exercise, seed: str) -> Exercise:
-    """Build the variant of an exercise for a seed. Raises ValidationError or FieldError."""
-    assert exercise.vary is not None, f"{exercise.id} has no variants"
-    return _filled(exercise.id, exercise.vary, seed)
-
-
-def _filled(exercise_id: str, vary: Vary, seed: str) -> Exercise:
-    values = vary.values(seed)
-    spec = ExerciseSpec.model_validate(vary.content(values))
-    built = compile_exercise(exercise_id, spec)
-    variant = f"{exercise_id}~{seed}" if seed else exercise_id
-    return replace(built, id=variant, version=vary.version(values), vary=vary, seed=seed)
-
-
-# --- The order of the exercises in the catalogue
-
-
-_LEVELS: Final = tuple(ExerciseLevel)
-_HEADINGS: Final = {
-    ExerciseLevel.START: say("Start here"),
-    ExerciseLevel.BASICS: say("Basics"),
-    ExerciseLevel.ARMS: say("Arms"),
-    ExerciseLevel.INDUSTRIAL: say("Industrial robots"),
-    None: say("More exercises"),
-}
-
-
-def in_order(exercises: Iterable[Exercise]) -> dict[str, Exercise]:
-    """Sort exercises by level, then by ``order``; exercises without these fields come last."""
-    return {exercise.id: exercise for exercise in sorted(exercises, key=_place)}
-
-
-def by_level(exercises: Iterable[Exercise]) -> list[tuple[str, list[Exercise]]]:
-    """Return each level's heading with its exercises, in the order of the catalogue."""
-    groups = groupby(in_order(exercises).values(), key=lambda exercise: exercise.level)
-    return [(_HEADINGS[level], list(group)) for level, group in groups]
-
-
-def exercise_after(exercise_id: str, exercises: Iterable[Exercise]) -> Exercise | None:
-    """Return the exercise after ``exercise_id`` in the catalogue, or None for the last."""
-    following = iter(in_order(exercises).values())
-    found = any(exercise.id == exercise_id for exercise in following)
-    return next(following, None) if found else None
-
-
-def _place(exercise: Exercise) -> tuple[int, bool, int]:
-    level = len(_LEVELS) if exercise.level is None else _LEVELS.index(exercise.level)
-    return level, exercise.order is None, exercise.order or 0
-
-
 # --- Load exercise files from folders
 
 
@@ -369,13 +309,76 @@ def _folder_reason(error: OSError) -> str:
             return fault_reason(error)
 
 
+# --- Build an exercise, or one of its variants, from the content of its file
+
+
+def exercise_of(exercise_id: str, content: Mapping[str, Any]) -> Exercise:
+    """Build an exercise from the content of its file, without choosing a variant.
+
+    Raises ValidationError or FieldError.
+    """
+    if "vary" not in content:
+        return compile_exercise(exercise_id, ExerciseSpec.model_validate(content))
+    return _filled(exercise_id, Vary(exercise_id, content), "")
+
+
+def exercise_of_seed(exercise: Exercise, seed: str) -> Exercise:
+    """Build the variant of an exercise for a seed. Raises ValidationError or FieldError."""
+    assert exercise.vary is not None, f"{exercise.id} has no variants"
+    return _filled(exercise.id, exercise.vary, seed)
+
+
+def _filled(exercise_id: str, vary: Vary, seed: str) -> Exercise:
+    values = vary.values(seed)
+    spec = ExerciseSpec.model_validate(vary.content(values))
+    built = compile_exercise(exercise_id, spec)
+    variant = f"{exercise_id}~{seed}" if seed else exercise_id
+    return replace(built, id=variant, version=vary.version(values), vary=vary, seed=seed)
+
+
+# --- The order of the exercises in the catalogue
+
+
+_LEVELS: Final = tuple(ExerciseLevel)
+_HEADINGS: Final = {
+    ExerciseLevel.START: say("Start here"),
+    ExerciseLevel.BASICS: say("Basics"),
+    ExerciseLevel.ARMS: say("Arms"),
+    ExerciseLevel.INDUSTRIAL: say("Industrial robots"),
+    None: say("More exercises"),
+}
+
+
+def in_order(exercises: Iterable[Exercise]) -> dict[str, Exercise]:
+    """Sort exercises by level, then by ``order``; exercises without these fields come last."""
+    return {exercise.id: exercise for exercise in sorted(exercises, key=_place)}
+
+
+def by_level(exercises: Iterable[Exercise]) -> list[tuple[str, list[Exercise]]]:
+    """Return each level's heading with its exercises, in the order of the catalogue."""
+    groups = groupby(in_order(exercises).values(), key=lambda exercise: exercise.level)
+    return [(_HEADINGS[level], list(group)) for level, group in groups]
+
+
+def exercise_after(exercise_id: str, exercises: Iterable[Exercise]) -> Exercise | None:
+    """Return the exercise after ``exercise_id`` in the catalogue, or None for the last."""
+    following = iter(in_order(exercises).values())
+    found = any(exercise.id == exercise_id for exercise in following)
+    return next(following, None) if found else None
+
+
+def _place(exercise: Exercise) -> tuple[int, bool, int]:
+    level = len(_LEVELS) if exercise.level is None else _LEVELS.index(exercise.level)
+    return level, exercise.order is None, exercise.order or 0
+
+
 # --- Drafts (exercises that are still being written) for the preview in the editor
 
 
 MOST_DRAFTS: Final = 32
 # Seconds since a draft was last written.
 KEPT: Final = 3600.0
-_ID: Final = regex(r"draft-[0-9a-f]{32}")
+_DRAFT_ID: Final = regex(r"draft-[0-9a-f]{32}")
 
 
 def drafts_folder() -> Path:
@@ -437,7 +440,7 @@ class Drafts:
         return exercise
 
     def _written(self, draft_id: str) -> int | None:
-        if not _ID.fullmatch(draft_id):
+        if not _DRAFT_ID.fullmatch(draft_id):
             return None
         try:
             written = self._file(draft_id).stat().st_mtime_ns

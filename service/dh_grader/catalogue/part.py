@@ -83,14 +83,17 @@ def matrix_shape(rows: int, columns: int) -> MatrixShape:
 
 
 def list_shape(components: Iterable[tuple[str, Kind]]) -> ListShape:
-    """The shape of a list of values, each with its name and quantity."""
+    """Return the shape of a list of values, each with its name and quantity."""
     views = [ComponentView(name=name, quantity=quantity) for name, quantity in components]
     return ListShape(rows=numbered(len(views)), components=views)
 
 
 def numbered(count: int) -> list[str]:
-    """The labels "1", "2" and so on."""
+    """Return the labels "1", "2" and so on."""
     return [str(i + 1) for i in range(count)]
+
+
+_NAMES = {"base": "base frame", "tool": "tool frame"}
 
 
 def choices(**stated: str) -> Iterator[str]:
@@ -101,10 +104,7 @@ def choices(**stated: str) -> Iterator[str]:
             yield f"{', '.join(names)} {choice}"
 
 
-_NAMES = {"base": "base frame", "tool": "tool frame"}
-
-
-# --- The base classes of answer kinds, which are the modules of ``parts/``
+# --- The base classes of answer kinds, whose subclasses are in ``kinds.py``
 
 
 class PartSpec(StrictModel, ABC):

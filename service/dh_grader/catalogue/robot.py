@@ -273,7 +273,7 @@ class ReferenceTable:
         """Return rows of zeros with only the joint variables in their columns."""
         rows = [dict.fromkeys(COLUMNS, "0") for _ in self.rows]
         for row, joint in zip(rows, self.joints, strict=False):
-            row["d" if joint.prismatic else "theta"] = joint.variable
+            row[joint.column] = joint.variable
         return rows
 
     @cached_property

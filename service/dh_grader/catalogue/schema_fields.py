@@ -21,6 +21,15 @@ from pydantic.fields import FieldInfo
 from dh_grader.regex import regex
 from dh_grader.translations import Sentence, say, template
 
+# --- The keys of a file that do not affect grading
+
+
+NOT_GRADING: Final = frozenset({
+    "checks", "feedback", "attempts", "view", "level", "order", "minutes", "summary", "keywords",
+    "translations",
+})  # fmt: skip
+
+
 # --- The levels of the catalogue
 
 
@@ -59,8 +68,8 @@ def least(*levels: FeedbackLevel) -> FeedbackLevel:
 
 # --- The pydantic types of values in an exercise file
 #
-# A formula is text in the students' notation (``"l1 + 0.1"``, ``"-90deg"``). ``compile.py`` reads
-# it, because it needs the exercise's symbols.
+# A formula is text in the students' notation (``"l1 + 0.1"``, ``"-90deg"``). ``exercise.py``
+# reads it, because it needs the exercise's symbols.
 
 
 def _no_boolean(value: object) -> object:

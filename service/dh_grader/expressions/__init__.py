@@ -4,7 +4,7 @@ This package knows nothing about robots.
 """
 
 from dh_grader.expressions.errors import LIMITS, ExpressionError, Limits, Note
-from dh_grader.expressions.parser import LeftSide, left_side
+from dh_grader.expressions.lexer import LeftSide, left_side
 from dh_grader.expressions.reader import (
     AngleUnit,
     Decimals,

@@ -41,10 +41,10 @@ class Limits:
 LIMITS = Limits()
 
 
-Span = tuple[int, int]
+# --- Errors and notes
 
-# Longer quotations in messages are shortened.
-_LONGEST_QUOTATION: Final = 40
+
+Span = tuple[int, int]
 
 Cause = Literal[
     "ambiguous_number", "ambiguous_shorthand", "ambiguous_star", "ambiguous_unit", "argument",
@@ -108,6 +108,13 @@ class UnreadableError(Exception):
         self.cause = cause
         self.span = span
         self.details = details
+
+
+# --- Quotations of the typed text in messages
+
+
+# A longer quotation is shortened.
+_LONGEST_QUOTATION: Final = 40
 
 
 def shortened(text: str) -> str:

@@ -5,7 +5,6 @@ import operator
 from collections.abc import Callable, Mapping
 from functools import lru_cache
 from math import isfinite, pi
-from operator import add, mul, sub, truediv
 from typing import Any, Final
 
 import numpy as np
@@ -255,7 +254,7 @@ _POINT_FUNCTIONS: Final[dict[str, Callable[..., float]]] = {
 }  # fmt: skip
 # math.pow raises an error for a root of a negative number; ** would return a complex number.
 _OPERATORS: Final[dict[str, Callable[[float, float], float]]] = {
-    "+": add, "-": sub, "*": mul, "/": truediv, "^": math.pow,
+    "+": operator.add, "-": operator.sub, "*": operator.mul, "/": operator.truediv, "^": math.pow,
 }  # fmt: skip
 
 
@@ -306,4 +305,4 @@ def _point_value(node: Node, at: Mapping[str, float], known: Known) -> float:
     if isinstance(node, Unit):
         operand = _point_value(node.operand, at, known)
         return math.radians(operand) if node.unit == "deg" else operand
-    return math.pi
+    return pi

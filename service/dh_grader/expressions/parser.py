@@ -1,6 +1,6 @@
 r"""Tokens -> a syntax tree, by recursive descent; ambiguous passages are noted or refused.
 
-It also knows equations and bare degrees. It knows no typed characters.
+It also converts bare degrees. It knows no typed characters, only tokens.
 
 In the grammar, a word in capitals is a token, and { } may be repeated or left out:
 
@@ -23,14 +23,13 @@ fraction that is one operand, ``½`` or ``\frac{a}{b}``. A power of a power is a
 ``2^3^2`` is not in the grammar.
 """
 
-import re
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from typing import Final, NamedTuple
 
-from dh_grader.expressions import characters
 from dh_grader.expressions.errors import LIMITS, Note, Span, UnreadableError, shortened
-from dh_grader.expressions.lexer import on_call, on_product, on_shorthand, on_sum
+from dh_grader.expressions.lexer import END, Token
 from dh_grader.expressions.vocabulary import (
     ARITY,
     BUILT,
@@ -48,21 +47,192 @@ from dh_grader.expressions.vocabulary import (
     SymbolNode,
     Unit,
     UnitName,
-    Vocabulary,
     children,
 )
-from dh_grader.expressions.words import END, Token, split
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
 # --- Parse tokens into a syntax tree, by recursive descent
 #
-
-
-#
 # Only brackets are parsed by recursion, and the lexer allows at most ``LIMITS.depth`` open
 # brackets. Everything else that can be repeated (signs, roots, powers, functions without brackets)
 # is kept in a list until its operand is parsed, so no text comes near Python's recursion limit.
+
+
+# Signs, powers and functions that wait for their operand.
+_Pending = list[Callable[[Node], Node]]
+_SIMPLE: Final = frozenset({"NAME", "NUMBER"})
+_POSTFIXES: Final = frozenset({"UNIT", "POWER"})
+_SUMS: Final[dict[str, Operator]] = {"PLUS": "+", "MINUS": "-"}
+
+
+def parse(tokens: Sequence[Token], builder: "Builder") -> Node:
+    """Return the tree that ``builder`` makes of ``tokens``, whose last token is ``END``.
+
+    Raises UnreadableError with the index of the first token that the grammar does not allow.
+    """
+    parser = _Parser(tokens, builder)
+    tree = parser.sum()
+    parser.take(END)
+    return tree
+
+
+class _Parser:
+    # One method for each rule of the grammar; ``at`` is the index of the next token.
+    # The method ``power`` implements the rules ``power``, ``exponent``, ``postfix``, ``bare_call``
+    # and ``argument`` without recursion.
+    __slots__ = ("at", "builder", "tokens")
+
+    def __init__(self, tokens: Sequence[Token], builder: "Builder") -> None:
+        self.tokens = tokens
+        self.builder = builder
+        self.at = 0
+
+    def take(self, terminal: str) -> Token:
+        """Consume and return the next token, which must be a ``terminal``."""
+        token = self.tokens[self.at]
+        if token[0] != terminal:
+            raise self.unexpected()
+        self.at += 1
+        return token
+
+    def unexpected(self) -> UnreadableError:
+        """Return the error that the grammar does not allow the next token."""
+        place = self.tokens[self.at][2:]
+        return UnreadableError("grammar", place, tokens=self.tokens, index=self.at)
+
+    def sum(self) -> Node:
+        left = self.product()
+        while operator := _SUMS.get(self.tokens[self.at][0]):
+            self.at += 1
+            left = self.builder.add(operator, left, self.product())
+        return left
+
+    def product(self) -> Node:
+        tokens, builder = self.tokens, self.builder
+        left = self.signed()
+        while True:
+            at = self.at
+            terminal = tokens[at][0]
+            if terminal == "STAR":
+                # A fast path, as in ``signed``.
+                factor = tokens[at + 1]
+                if factor[0] in _SIMPLE and tokens[at + 2][0] not in _POSTFIXES:
+                    self.at = at + 2
+                    left = builder.multiply(left, factor[1])
+                    continue
+                self.at = at + 1
+                left = builder.multiply(left, self.signed())
+            elif terminal == "JOIN":
+                self.at += 1
+                left = builder.join(left, self.power([]))
+            elif terminal == "SLASH":
+                self.at += 1
+                left = builder.divide(left, self.signed())
+            else:
+                return left
+
+    def signed(self) -> Node:
+        # A fast path for most factors: a name or a number without a sign, a unit or a power.
+        tokens, at = self.tokens, self.at
+        terminal = tokens[at][0]
+        if terminal in _SIMPLE and tokens[at + 1][0] not in _POSTFIXES:
+            self.at += 1
+            node: Node = tokens[at][1]
+            return node
+        pending: _Pending = []
+        if terminal in _SUMS:
+            self.signs(pending)
+        return self.power(pending)
+
+    def signs(self, pending: _Pending) -> None:
+        """Parse signs. Raises UnreadableError for +-90°, which may be ±."""
+        end = -1
+        while True:
+            terminal, _, start, stop = self.tokens[self.at]
+            if start == end and {terminal, self.tokens[self.at - 1][0]} == {"PLUS", "MINUS"}:
+                raise UnreadableError("plus_minus", (start - 1, stop))
+            end = stop
+            if terminal == "MINUS":
+                pending.append(partial(self.builder.negate, start))
+            elif terminal == "PLUS":
+                pending.append(partial(self.builder.keep, start))
+            else:
+                return
+            self.at += 1
+
+    def power(self, pending: _Pending) -> Node:
+        """Parse the next power, and apply the ``pending`` signs to it."""
+        tokens, builder = self.tokens, self.builder
+        is_argument = is_exponent = False
+        while True:
+            token = tokens[self.at]
+            if token[0] == "FUNCTION" and tokens[self.at + 1][0] != "LEFT":
+                self.at += 1
+                pending.append(partial(builder.bare_call, token))
+                is_argument, is_exponent = True, False
+                continue
+            operand = self.atom()
+            token = tokens[self.at]
+            if is_argument and token[0] == "TIGHT":
+                self.at += 1
+                pending.append(partial(builder.tight, operand))
+                is_argument = False
+                continue
+            while token[0] == "UNIT":
+                self.at += 1
+                operand = builder.unit(operand, token[1], token[3])
+                token = tokens[self.at]
+            if token[0] != "POWER":
+                break
+            if is_exponent:
+                raise self.unexpected()
+            self.at += 1
+            pending.append(partial(builder.raise_to, operand, token[2]))
+            self.signs(pending)
+            is_argument, is_exponent = False, True
+        while pending:
+            operand = pending.pop()(operand)
+        return operand
+
+    def atom(self) -> Node:
+        token = self.tokens[self.at]
+        terminal, value, start, _ = token
+        if terminal == "NAME" or terminal == "NUMBER":
+            self.at += 1
+            node: Node = value
+            return node
+        if terminal == "FUNCTION":
+            self.at += 1
+            return self.call(token)
+        if terminal == "LEFT":
+            self.at += 1
+            inner = self.sum()
+            return self.builder.group(start, inner, self.take("RIGHT")[3])
+        if terminal == "OPEN":
+            self.at += 1
+            inner = self.sum()
+            return self.builder.fraction(start, inner, self.take("CLOSE")[3])
+        if terminal == "ROOT":
+            return self.root()
+        raise self.unexpected()
+
+    def root(self) -> Node:
+        starts = []
+        while self.tokens[self.at][0] == "ROOT":
+            starts.append(self.take("ROOT")[2])
+        operand = self.atom()
+        for start in reversed(starts):
+            operand = self.builder.root(start, operand)
+        return operand
+
+    def call(self, function: Token) -> Node:
+        self.take("LEFT")
+        arguments = [self.sum()]
+        while self.tokens[self.at][0] == "COMMA":
+            self.at += 1
+            arguments.append(self.sum())
+        return self.builder.call(function, arguments, self.take("RIGHT")[3])
 
 
 # --- Build the syntax tree of a formula, and note its ambiguous passages
@@ -70,7 +240,7 @@ from dh_grader.translations import say
 # The parser calls one method for each rule of the grammar.
 
 
-_TREE_BUILDER_MOST_PARTS: Final = 64
+_MOST_PARTS: Final = 64
 # The nodes that may be a number, with or without a sign or a unit.
 _MAY_BE_NUMBERS: Final = frozenset({Number, Negation, Unit})
 # The codes of notes that a number was read in radians.
@@ -278,8 +448,8 @@ class Builder:
     def _note_degrees(self, left: Node, right: Node) -> None:
         """Add a note on a sum such as 90 + 45°, in which only one number is in degrees."""
         for one, other in ((left, right), (right, left)):
-            number = other.operand if type(other) is Negation else other
-            if type(one) is not Unit or one.unit != "deg" or type(number) is not Number:
+            number = _number(other)
+            if type(one) is not Unit or one.unit != "deg" or number is None:
                 continue
             if number.value and not self.degrees:
                 message = say(
@@ -345,7 +515,7 @@ def _names(node: Node) -> set[str]:
     found: set[str] = set()
     pending = [node]
     # The arguments of atan2 may be long and nested.
-    for _ in range(_TREE_BUILDER_MOST_PARTS):
+    for _ in range(_MOST_PARTS):
         if not pending:
             break
         part = pending.pop()
@@ -370,180 +540,162 @@ def _wrong_number(function: Token, arguments: list[Node], end: int) -> Unreadabl
     )  # fmt: skip
 
 
-# Signs, powers and functions that wait for their operand.
-_Pending = list[Callable[[Node], Node]]
-_SIMPLE: Final = frozenset({"NAME", "NUMBER"})
-_POSTFIXES: Final = frozenset({"UNIT", "POWER"})
-_SUMS: Final[dict[str, Operator]] = {"PLUS": "+", "MINUS": "-"}
+# --- Build functions such as sec, pow and hypot from the functions that a tree may contain
+#
+# For example, sec(x) gets the same tree as 1/cos(x).
 
 
-def parse(tokens: Sequence[Token], builder: Builder) -> Node:
-    """Return the tree that ``builder`` makes of ``tokens``, whose last token is ``END``.
-
-    Raises UnreadableError with the index of the first token that the grammar does not allow.
-    """
-    parser = _Parser(tokens, builder)
-    tree = parser.sum()
-    parser.take(END)
-    return tree
+RECIPROCALS: Final = {"sec": "cos", "csc": "sin", "cot": "tan"}
+_OPERATORS: Final[dict[str, Operator]] = {
+    "pow": "^", "quotient": "/", "sum": "+", "product": "*",
+}  # fmt: skip
 
 
-class _Parser:
-    # One method for each rule of the grammar; ``at`` is the index of the next token.
-    # The method ``power`` implements the rules ``power``, ``exponent``, ``postfix``, ``bare_call``
-    # and ``argument`` without recursion.
-    __slots__ = ("at", "builder", "tokens")
+def build_function(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
+    """Return the tree of a function such as sec. The number of arguments must be correct."""
+    if name in RECIPROCALS:
+        one = Number(1.0, "1", start, start)
+        return Binary("/", one, Call(RECIPROCALS[name], tuple(arguments), start, end), start, end)
+    if name == "hypot":
+        squares = [
+            Binary("^", side, Number(2.0, "2", side.end, side.end), side.start, side.end)
+            for side in arguments
+        ]
+        total = Binary("+", squares[0], squares[1], start, end)
+        return Call("sqrt", (total,), start, end)
+    whole = arguments[0]
+    for argument in arguments[1:]:
+        whole = Binary(_OPERATORS[name], whole, argument, start, end)
+    return whole
 
-    def __init__(self, tokens: Sequence[Token], builder: Builder) -> None:
-        self.tokens = tokens
-        self.builder = builder
-        self.at = 0
 
-    def take(self, terminal: str) -> Token:
-        """Consume and return the next token, which must be a ``terminal``."""
-        token = self.tokens[self.at]
-        if token[0] != terminal:
-            raise self.unexpected()
-        self.at += 1
-        return token
+# --- Notes on formulas that are read literally although the student may mean something else
+#
+# ``θ1 + 90`` adds 90 radians, ``cos(1)`` is the cosine of 1 radian, ``s1+2`` is a sine plus 2, and
+# ``0·5`` is 0.
 
-    def unexpected(self) -> UnreadableError:
-        """Return the error that the grammar does not allow the next token."""
-        place = self.tokens[self.at][2:]
-        return UnreadableError("grammar", place, tokens=self.tokens, index=self.at)
 
-    def sum(self) -> Node:
-        left = self.product()
-        while operator := _SUMS.get(self.tokens[self.at][0]):
-            self.at += 1
-            left = self.builder.add(operator, left, self.product())
-        return left
+# Students hardly mean larger angles (90, 180 or 22.5) in radians.
+_WHOLE_TURN: Final = 2 * math.pi
+_SHORTHAND: Final = regex(r"(?:[cCsS]|cos|sin)_?[0-9₀-₉]+")
+_DIGIT: Final = regex(r"[1-9]")
+_DOTS: Final = ("·", "⋅", "∙", "•")
 
-    def product(self) -> Node:
-        tokens, builder = self.tokens, self.builder
-        left = self.signed()
-        while True:
-            at = self.at
-            terminal = tokens[at][0]
-            if terminal == "STAR":
-                # A fast path, as in ``signed``.
-                factor = tokens[at + 1]
-                if factor[0] in _SIMPLE and tokens[at + 2][0] not in _POSTFIXES:
-                    self.at = at + 2
-                    left = builder.multiply(left, factor[1])
-                    continue
-                self.at = at + 1
-                left = builder.multiply(left, self.signed())
-            elif terminal == "JOIN":
-                self.at += 1
-                left = builder.join(left, self.power([]))
-            elif terminal == "SLASH":
-                self.at += 1
-                left = builder.divide(left, self.signed())
-            else:
-                return left
 
-    def signed(self) -> Node:
-        # A fast path for most factors: a name or a number without a sign, a unit or a power.
-        tokens, at = self.tokens, self.at
-        terminal = tokens[at][0]
-        if terminal in _SIMPLE and tokens[at + 1][0] not in _POSTFIXES:
-            self.at += 1
-            node: Node = tokens[at][1]
-            return node
-        pending: _Pending = []
-        if terminal in _SUMS:
-            self.signs(pending)
-        return self.power(pending)
+def on_sum(left: Node, right: Node, *, degrees: bool) -> Note | None:
+    """Return a note on a sum such as θ1 + 90, which may mean degrees; else None."""
+    for one, other in ((left, right), (right, left)):
+        number = _number(other)
+        if number is not None and not degrees and _is_large(number) and _has_angle(one):
+            return _radians(number)
+    return None
 
-    def signs(self, pending: _Pending) -> None:
-        """Parse signs. Raises UnreadableError for +-90°, which may be ±."""
-        end = -1
-        while True:
-            terminal, _, start, stop = self.tokens[self.at]
-            if start == end and {terminal, self.tokens[self.at - 1][0]} == {"PLUS", "MINUS"}:
-                raise UnreadableError("plus_minus", (start - 1, stop))
-            end = stop
-            if terminal == "MINUS":
-                pending.append(partial(self.builder.negate, start))
-            elif terminal == "PLUS":
-                pending.append(partial(self.builder.keep, start))
-            else:
-                return
-            self.at += 1
 
-    def power(self, pending: _Pending) -> Node:
-        """Parse the next power, and apply the ``pending`` signs to it."""
-        tokens, builder = self.tokens, self.builder
-        is_argument = is_exponent = False
-        while True:
-            token = tokens[self.at]
-            if token[0] == "FUNCTION" and tokens[self.at + 1][0] != "LEFT":
-                self.at += 1
-                pending.append(partial(builder.bare_call, token))
-                is_argument, is_exponent = True, False
-                continue
-            operand = self.atom()
-            token = tokens[self.at]
-            if is_argument and token[0] == "TIGHT":
-                self.at += 1
-                pending.append(partial(builder.tight, operand))
-                is_argument = False
-                continue
-            while token[0] == "UNIT":
-                self.at += 1
-                operand = builder.unit(operand, token[1], token[3])
-                token = tokens[self.at]
-            if token[0] != "POWER":
-                break
-            if is_exponent:
-                raise self.unexpected()
-            self.at += 1
-            pending.append(partial(builder.raise_to, operand, token[2]))
-            self.signs(pending)
-            is_argument, is_exponent = False, True
-        while pending:
-            operand = pending.pop()(operand)
-        return operand
+def on_shorthand(
+    source: str, left: Node, right: Node, turning: Mapping[int, Symbol]
+) -> Note | None:
+    """Return a note on a sum such as s1+2, which may mean s12; else None."""
+    if type(right) is not Number or not _DIGIT.fullmatch(right.literal):
+        return None
+    last, digit = left, right.literal
+    while type(last) is Binary and last.right.end == last.end:
+        last = last.right
+    written = source[last.start : last.end]
+    if type(last) is not Call or source[last.end : right.start] != "+":
+        return None
+    joint = _last_joint(last.arguments[0])
+    if joint is None or not joint < int(digit) or int(digit) not in turning:
+        return None
+    if not _SHORTHAND.fullmatch(written):
+        return None
+    if last.function == "sin":
+        message = say(
+            "This was read as {sine} + {digit}. For the sine of a sum of joint angles, write "
+            "{sine}{digit}.",
+            sine=written,
+            digit=digit,
+        )
+    else:
+        message = say(
+            "This was read as {cosine} + {digit}. For the cosine of a sum of joint angles, write "
+            "{cosine}{digit}.",
+            cosine=written,
+            digit=digit,
+        )
+    return Note("shorthand", message, (last.start, right.end))
 
-    def atom(self) -> Node:
-        token = self.tokens[self.at]
-        terminal, value, start, _ = token
-        if terminal == "NAME" or terminal == "NUMBER":
-            self.at += 1
-            node: Node = value
-            return node
-        if terminal == "FUNCTION":
-            self.at += 1
-            return self.call(token)
-        if terminal == "LEFT":
-            self.at += 1
-            inner = self.sum()
-            return self.builder.group(start, inner, self.take("RIGHT")[3])
-        if terminal == "OPEN":
-            self.at += 1
-            inner = self.sum()
-            return self.builder.fraction(start, inner, self.take("CLOSE")[3])
-        if terminal == "ROOT":
-            return self.root()
-        raise self.unexpected()
 
-    def root(self) -> Node:
-        starts = []
-        while self.tokens[self.at][0] == "ROOT":
-            starts.append(self.take("ROOT")[2])
-        operand = self.atom()
-        for start in reversed(starts):
-            operand = self.builder.root(start, operand)
-        return operand
+def on_product(source: str, left: Number, right: Number) -> Note | None:
+    """Return a note on a product such as 0·5, whose dot may be a decimal point; else None."""
+    if source[left.end : right.start] not in _DOTS or "." in left.literal + right.literal:
+        return None
+    message = say(
+        "{written} was read as a product. In a decimal number, write a full stop: {number}.",
+        written=source[left.start : right.end],
+        number=f"{left.literal}.{right.literal}",
+    )
+    return Note("raised_dot", message, (left.start, right.end))
 
-    def call(self, function: Token) -> Node:
-        self.take("LEFT")
-        arguments = [self.sum()]
-        while self.tokens[self.at][0] == "COMMA":
-            self.at += 1
-            arguments.append(self.sum())
-        return self.builder.call(function, arguments, self.take("RIGHT")[3])
+
+def on_call(
+    function: str, argument: Node, turning: Mapping[int, Symbol], *, degrees: bool
+) -> Note | None:
+    """Return a note on cos(1), which may mean joint angle 1, or cos(90), which may mean 90°."""
+    number = _number(argument)
+    if number is None or function not in TRIGONOMETRIC:
+        return None
+    joint = turning.get(int(number.literal)) if _DIGIT.fullmatch(number.literal) else None
+    if joint is not None:
+        text, formula = number.literal, f"{function}({joint.name})"
+        if degrees:
+            message = say(
+                "{number} was read as a number of degrees. For the joint angle, write {formula}.",
+                number=text,
+                formula=formula,
+            )
+        else:
+            message = say(
+                "{number} was read as a number of radians. For the joint angle, write {formula}.",
+                number=text,
+                formula=formula,
+            )
+        return Note("bare_radians", message, (number.start, number.end))
+    return _radians(number) if not degrees and _is_large(number) else None
+
+
+def _radians(number: Number) -> Note:
+    message = say(
+        "{number} was read as {number} radians. For degrees, write {number}°.",
+        number=number.literal,
+    )
+    return Note("bare_radians", message, (number.start, number.end))
+
+
+def _unsigned(node: Node) -> Node:
+    return node.operand if type(node) is Negation else node
+
+
+def _number(node: Node) -> Number | None:
+    node = _unsigned(node)
+    return node if type(node) is Number else None
+
+
+def _is_angle(node: Node) -> bool:
+    node = _unsigned(node)
+    return type(node) is SymbolNode and node.symbol.kind == "angle"
+
+
+def _is_large(number: Number) -> bool:
+    return number.value > _WHOLE_TURN and (2 * number.value).is_integer()
+
+
+def _has_angle(node: Node) -> bool:
+    return any(map(_is_angle, (node, node.left, node.right) if type(node) is Binary else (node,)))
+
+
+def _last_joint(argument: Node) -> int | None:
+    last = argument.right if type(argument) is Binary else argument
+    return last.symbol.joint if type(last) is SymbolNode else None
 
 
 # --- Refuse two values that look like a product: ``90° (π/2)``, ``a2 (0.4318)``, ``θ1 (0)``
@@ -551,7 +703,7 @@ class _Parser:
 # Students write a value in brackets after its name, or after the same angle in another unit.
 
 
-_VALUES_IN_BRACKETS_MOST_PARTS: Final = 16
+_FEW_PARTS: Final = 16
 _LARGEST_FACTOR: Final = 1.0
 _HALF_A_TURN: Final = 180.0
 
@@ -565,7 +717,7 @@ def check_product(source: str, left: Node, right: Node) -> None:
     is_whole = in_brackets and not source[: left.start].strip() and not source[right.end :].strip()
     if not (in_brackets or kind is Unit or kind is Pi) or not _is_constant(right):
         return
-    if _values_in_brackets_is_name(left):
+    if _is_name(left):
         in_words = not source[right.start - 1].strip()
         if not is_whole or not (in_words or _is_angle(left) or _is_decimal(right)):
             return
@@ -578,27 +730,22 @@ def check_product(source: str, left: Node, right: Node) -> None:
     raise UnreadableError("values", span, number=False, instead=instead and _text(source, instead))
 
 
-def _values_in_brackets_is_name(node: Node) -> bool:
-    inside = node.operand if type(node) is Negation else node
-    return type(inside) is SymbolNode and inside.symbol.kind != "number"
-
-
-def _is_angle(name: Node) -> bool:
-    inside = name.operand if type(name) is Negation else name
-    return type(inside) is SymbolNode and inside.symbol.kind == "angle"
+def _is_name(node: Node) -> bool:
+    node = _unsigned(node)
+    return type(node) is SymbolNode and node.symbol.kind != "number"
 
 
 def _is_zero(value: Node) -> bool:
-    return all(type(part) is not Number or not part.value for part in _parts_of(value))
+    return all(type(part) is not Number or not part.value for part in _first_parts(value))
 
 
 def _is_decimal(value: Node) -> bool:
-    inside = value.operand if type(value) is Negation else value
-    return type(inside) is Number and "." in inside.literal
+    number = _number(value)
+    return number is not None and "." in number.literal
 
 
 def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
-    of_left, of_right = _parts_of(left), _parts_of(right)
+    of_left, of_right = _first_parts(left), _first_parts(right)
     # 180/π and π/180 convert a value from one unit to another.
     if any(map(_divides_half_a_turn, (*of_left, *of_right))):
         return False
@@ -606,16 +753,15 @@ def _are_values(left: Node, right: Node, *, is_whole: bool) -> bool:
     angles = [any(type(part) in {Unit, Pi} for part in parts) for parts in (of_left, of_right)]
     if all(angles):
         return any(units) or is_whole
-    number = left if angles[1] else right
-    inside = number.operand if type(number) is Negation else number
-    return is_whole and any(angles) and type(inside) is Number and _is_value(inside)
+    number = _number(left if angles[1] else right)
+    return is_whole and any(angles) and number is not None and _is_value(number)
 
 
 def _divides_half_a_turn(node: Node) -> bool:
     return (
         type(node) is Binary
         and node.operator == "/"
-        and any(type(part) is Number and part.value == _HALF_A_TURN for part in _parts_of(node))
+        and any(type(part) is Number and part.value == _HALF_A_TURN for part in _first_parts(node))
     )
 
 
@@ -629,94 +775,57 @@ def _text(source: str, node: Node) -> str:
 
 
 def _is_constant(node: Node) -> bool:
-    parts = _parts_of(node)
-    return len(parts) <= _VALUES_IN_BRACKETS_MOST_PARTS and not any(
-        type(part) is SymbolNode for part in parts
+    parts = _first_parts(node)
+    return len(parts) <= _FEW_PARTS and not any(type(part) is SymbolNode for part in parts)
+
+
+# --- Refuse ambiguous degree signs: π/2° may mean π/2 or 90°
+
+
+# With one of these numbers, π belongs to a conversion, as in (q*180/π)°.
+_HALF_TURNS: Final = frozenset({180.0, 360.0})
+
+
+def check_unit(operand: Node, span: Span) -> None:
+    """Raise UnreadableError if ``operand``, which has a degree sign, contains π."""
+    if _is_of_pi(operand):
+        inside = (operand.start, operand.end)
+        raise UnreadableError("ambiguous_unit", span, opens=False, of_pi=True, inside=inside)
+
+
+def check_divisor(left: Node, right: Unit) -> None:
+    """Raise UnreadableError for a quotient in which only the divisor is in degrees: 180/2°."""
+    inside = right.operand
+    # The unit of deg2rad(2) belongs to the divisor.
+    if right.unit != "deg" or inside.start != right.start or _has(left, Unit):
+        return
+    raise UnreadableError(
+        "ambiguous_unit",
+        (left.start, right.end),
+        opens=False,
+        of_pi=_is_of_pi(left),
+        inside=(left.start, inside.end),
     )
 
 
-def _parts_of(node: Node) -> list[Node]:
+def _is_of_pi(node: Node) -> bool:
+    parts = _first_parts(node, _MOST_PARTS)
+    half_turns = (type(part) is Number and part.value in _HALF_TURNS for part in parts)
+    return _has(node, Pi) and not any(half_turns)
+
+
+def _has(node: Node, kind: type[Node]) -> bool:
+    return any(type(part) is kind for part in _first_parts(node, _MOST_PARTS))
+
+
+def _first_parts(node: Node, most: int = _FEW_PARTS) -> list[Node]:
+    """Return ``node`` and the parts below it, level by level; of a large node only the first."""
     found = [node]
     for part in found:
-        if len(found) > _VALUES_IN_BRACKETS_MOST_PARTS:
+        if len(found) > most:
             break
         found += children(part)
     return found
-
-
-# --- Equations whose left side is a name or empty: x = l1 c1, T(1,4) := l1 c1, = cos(q1)
-#
-# Only the right side is read. The left side is replaced by blanks, so that the positions of the
-# other characters do not change.
-
-
-_STYLE: Final = r"\\(?:mathrm|mathbf|mathit|mathsf|text|boldsymbol|bm|vec)\s*"
-_LETTERS: Final = rf"(?:\\?[A-Za-z]{{1,12}}[0-9]{{0,3}}|[{characters.CLASS}][0-9]{{0,3}})"
-_SCRIPT: Final = r"[_^]\s*(?:\{[^{}=]{0,24}\}|\\?[A-Za-z0-9*]{1,12})"
-_LEFT: Final = regex(
-    rf"""
-    (?: \$ | \s | \\[(\[,;:!] | \\q?quad(?![A-Za-z]) | \\begin\{{[a-z]+\*?\}} ){{0,8}}
-    (?P<side>
-      (?P<left>
-        (?: (?:let|const|var|double|float|auto) \s++ )?
-        (?: \{{\s*+\}}\s*+ )?
-        (?: {_SCRIPT}\s*+ ){{0,2}}
-        (?P<name> {_STYLE}\{{\s*{_LETTERS}\s*\}} | {_STYLE}[A-Za-z] | {_LETTERS} )?
-        (?: \s*+{_SCRIPT} | [₀-₉]+ | ['’′*] | \.[A-Za-z]{{1,8}} ){{0,3}}
-        (?P<brackets> (?: \s*+[(\[{{]\s*+[\w\s,:\\]{{1,32}}[)\]}}] ){{0,2}} )
-      )
-      \s*+ &? \s*+ (?: :?==? | ≔ | \\coloneqq(?![A-Za-z]) )
-    )
-    """,
-    re.VERBOSE,
-)
-_EQUALS: Final = regex(r"=|≔|\\coloneqq(?![A-Za-z])|≈|≡|\\(?:approx|equiv)(?![A-Za-z])|[<>≤≥]")
-_WORD: Final = regex(r"[A-Za-z]+[0-9]*")
-# A name in brackets, which may be a factor of a product. The time, as in q1(t), is not a factor.
-_OF_NAMES: Final = regex(r"[(\[{]\s*+(?!t\s*+\))[^0-9\s]")
-
-
-class LeftSide(NamedTuple):
-    """The name before an equals sign. ``span`` is the position of the name and the sign."""
-
-    name: str
-    span: Span
-
-
-def left_side(source: str, vocabulary: Vocabulary) -> LeftSide | None:
-    """Return the name before the equals sign of an equation; None for any other text."""
-    if "=" not in source and "≔" not in source and r"\coloneqq" not in source:
-        return None
-    found = _LEFT.match(source)
-    if found is None or _EQUALS.search(source, found.end()):
-        return None
-    if not source[found.end() :].strip(" $") or not _equation_is_name(found, vocabulary):
-        return None
-    return LeftSide(" ".join(found["left"].split()), found.span("side"))
-
-
-def right_side(source: str, vocabulary: Vocabulary) -> tuple[str, Note | None]:
-    """Replace a name and its equals sign by blanks.
-
-    Return the new text and a note on the change.
-    """
-    left = left_side(source, vocabulary)
-    if left is None:
-        return source, None
-    start, end = left.span
-    message = say("Only the right side of the equation was read.")
-    return f"{source[:start]}{' ' * (end - start)}{source[end:]}", Note(
-        "equation", message, left.span
-    )
-
-
-def _equation_is_name(found: re.Match[str], vocabulary: Vocabulary) -> bool:
-    """True if the left side is a name, not a function (cos) or a product (l1 (c1 + c2))."""
-    words = _WORD.findall(found["name"] or "")
-    pieces = split(words[-1], vocabulary) if words else None
-    if pieces is None:
-        return True
-    return pieces[0].kind != "function" and not _OF_NAMES.search(found["brackets"])
 
 
 # --- Add the unit of degrees to bare numbers in a tree, for a student who works in degrees
@@ -841,81 +950,3 @@ def _facts(node: Node, below: list[_Facts]) -> _Facts:
             return _Facts(constant, function in INVERSE, False)
         case _:
             return _Facts(constant, angle, pi)
-
-
-# --- Build functions such as sec, pow and hypot from the functions that a tree may contain
-#
-# For example, sec(x) gets the same tree as 1/cos(x).
-
-
-RECIPROCALS: Final = {"sec": "cos", "csc": "sin", "cot": "tan"}
-_OPERATORS: Final[dict[str, Operator]] = {
-    "pow": "^", "quotient": "/", "sum": "+", "product": "*",
-}  # fmt: skip
-
-
-def build_function(name: str, arguments: Sequence[Node], start: int, end: int) -> Node:
-    """Return the tree of a function such as sec. The number of arguments must be correct."""
-    if name in RECIPROCALS:
-        one = Number(1.0, "1", start, start)
-        return Binary("/", one, Call(RECIPROCALS[name], tuple(arguments), start, end), start, end)
-    if name == "hypot":
-        squares = [
-            Binary("^", side, Number(2.0, "2", side.end, side.end), side.start, side.end)
-            for side in arguments
-        ]
-        total = Binary("+", squares[0], squares[1], start, end)
-        return Call("sqrt", (total,), start, end)
-    whole = arguments[0]
-    for argument in arguments[1:]:
-        whole = Binary(_OPERATORS[name], whole, argument, start, end)
-    return whole
-
-
-# --- Refuse ambiguous degree signs: π/2° may mean π/2 or 90°
-
-
-# With one of these numbers, π belongs to a conversion, as in (q*180/π)°.
-_HALF_TURNS: Final = frozenset({180.0, 360.0})
-_AMBIGUOUS_UNITS_MOST_PARTS: Final = 64
-
-
-def check_unit(operand: Node, span: Span) -> None:
-    """Raise UnreadableError if ``operand``, which has a degree sign, contains π."""
-    if _is_of_pi(operand):
-        inside = (operand.start, operand.end)
-        raise UnreadableError("ambiguous_unit", span, opens=False, of_pi=True, inside=inside)
-
-
-def check_divisor(left: Node, right: Unit) -> None:
-    """Raise UnreadableError for a quotient in which only the divisor is in degrees: 180/2°."""
-    inside = right.operand
-    # The unit of deg2rad(2) belongs to the divisor.
-    if right.unit != "deg" or inside.start != right.start or _has(left, Unit):
-        return
-    raise UnreadableError(
-        "ambiguous_unit",
-        (left.start, right.end),
-        opens=False,
-        of_pi=_is_of_pi(left),
-        inside=(left.start, inside.end),
-    )
-
-
-def _is_of_pi(node: Node) -> bool:
-    return _has(node, Pi) and not any(
-        type(part) is Number and part.value in _HALF_TURNS for part in _ambiguous_units_parts(node)
-    )
-
-
-def _has(node: Node, kind: type[Node]) -> bool:
-    return any(type(part) is kind for part in _ambiguous_units_parts(node))
-
-
-def _ambiguous_units_parts(node: Node) -> list[Node]:
-    found = [node]
-    for part in found:
-        if len(found) > _AMBIGUOUS_UNITS_MOST_PARTS:
-            break
-        found += children(part)
-    return found

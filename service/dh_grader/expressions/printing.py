@@ -35,7 +35,7 @@ from dh_grader.regex import regex
 
 _LOWERED: Final = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 # A word followed by an index: θ_1, th1, q₁; not LaTeX and not q[0].
-_SPELLING_INDEXED: Final = regex(rf"([A-Za-z{characters.CLASS}]+_?)([0-9]+|[₀-₉]+)")
+_INDEXED_NAME: Final = regex(rf"([A-Za-z{characters.CLASS}]+_?)([0-9]+|[₀-₉]+)")
 _NAME: Final = regex(rf"[A-Za-z{characters.CLASS}][A-Za-z0-9_₀-₉{characters.CLASS}]*")
 _SHORT: Final = regex(r"[cs](?:_?[0-9]+|_\{[0-9]+\}|[₀-₉]+)")
 _SHORT_NAME: Final = regex(r"[cs][0-9]+")
@@ -120,7 +120,7 @@ def _added_joints(node: Node) -> list[int]:
             return []
 
 
-# --- the spelling that formulas have in common
+# --- The spelling that formulas have in common
 
 
 class Habits(NamedTuple):
@@ -138,7 +138,7 @@ class Habits(NamedTuple):
 def habits_of(formula: TypedFormula, vocabulary: Vocabulary) -> Habits:
     """Return how a formula writes angles, names and shorthand."""
     has_shorthand = any(_is_short(node, formula) for node in _nodes(formula.tree))
-    return Habits(_spelling_unit(formula), _names(formula, vocabulary), has_shorthand)
+    return Habits(_unit_of(formula), _names(formula, vocabulary), has_shorthand)
 
 
 def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: bool) -> Spelling:
@@ -167,7 +167,7 @@ def spelling_of(formulas: Iterable[Habits], vocabulary: Vocabulary, *, degrees: 
 
 def spelling_for(formula: TypedFormula, common: Spelling, vocabulary: Vocabulary) -> Spelling:
     """Return the common spelling, but with the names and the angle unit that ``formula`` uses."""
-    unit = _spelling_unit(formula)
+    unit = _unit_of(formula)
     common = replace(common, names={**common.names, **_names(formula, vocabulary)})
     if unit is None:
         return common if common.degree or formula.degrees else replace(common, degree="deg")
@@ -180,7 +180,7 @@ def _with_unit(spelling: Spelling, unit: str, *, degrees: bool) -> Spelling:
     return replace(spelling, degree=unit, in_degrees=True)
 
 
-def _spelling_unit(formula: TypedFormula) -> str | None:
+def _unit_of(formula: TypedFormula) -> str | None:
     source, tree, degrees = formula
     if type(tree) is SymbolNode:  # as most are
         return None
@@ -248,7 +248,7 @@ def _names_by_analogy(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[
     for symbol in joints:
         if symbol.name in names:
             continue
-        for match in filter(None, map(_SPELLING_INDEXED.fullmatch, models)):
+        for match in filter(None, map(_INDEXED_NAME.fullmatch, models)):
             index = str(symbol.joint)
             typed = match[1] + (index.translate(_LOWERED) if match[2][0] >= "₀" else index)
             if symbol.name not in found and _is_name(typed, symbol, vocabulary):
@@ -256,7 +256,7 @@ def _names_by_analogy(names: Mapping[str, str], vocabulary: Vocabulary) -> dict[
     return found
 
 
-# --- Print a tree as plain text. Reading the text gives the same tree
+# --- Print a tree as plain text
 
 
 def to_text(node: Node, spelling: Spelling = PLAIN) -> str:
@@ -310,7 +310,7 @@ def _text_at(node: Node, place: int, spelling: Spelling, *, first: bool = False)
     return f"({text})" if needs_brackets(node, place, signed=signed, drawn=False) else text
 
 
-# --- Print a tree as LaTeX, without rearranging the formula
+# --- Print a tree as LaTeX
 
 
 _FUNCTIONS: Final = {
@@ -380,110 +380,10 @@ def _latex_at(node: Node, place: int, *, first: bool = False) -> str:
     return rf"\left({latex}\right)" if needs_brackets(node, place, signed=signed) else latex
 
 
-# --- Split a symbol's name into stem and index: theta1 is θ with index 1
+# --- Print a tree as presentation MathML
 
 
-_SYMBOL_NAMES_INDEXED: Final = regex(r"([A-Za-z]+?)_?([0-9]+)")
-_UNDERSCORED: Final = regex(r"([A-Za-z0-9]+)_([A-Za-z0-9_]+)")
-
-
-def stem_and_index(name: str) -> tuple[str, str]:
-    """Return the stem and the index of ``name``; the index may be empty."""
-    match = _SYMBOL_NAMES_INDEXED.fullmatch(name) or _UNDERSCORED.fullmatch(name)
-    return (match[1], match[2].replace("_", "")) if match else (name, "")
-
-
-def symbol_latex(symbol: Symbol) -> str:
-    r"""Return the symbol in LaTeX: theta1 -> \theta_{1}."""
-    if symbol.latex is not None:
-        return symbol.latex
-    stem, index = stem_and_index(symbol.name)
-    if stem in characters.LETTERS:
-        stem = f"\\{stem}"
-    elif len(stem) > 1:
-        stem = f"\\mathrm{{{stem}}}"
-    if not index:
-        return stem
-    upright = len(index) > 1 and not index.isdigit()
-    return f"{stem}_{{\\mathrm{{{index}}}}}" if upright else f"{stem}_{{{index}}}"
-
-
-# --- The rule for brackets in formulas that are printed as text, LaTeX or MathML
-#
-# An operand needs brackets if it binds less tightly than the operator next to it, or if its sign
-# would follow that operator. In LaTeX and MathML, a fraction bar replaces brackets.
-#
-# A drawn formula needs more brackets than text for the base of a power, because ``90°`` and
-# ``1·10⁻³`` consist of several signs.
-
-
-# How tightly a node binds, and how tightly an operand must bind in a place.
-SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
-_BRACKETS_OPERATORS: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
-
-
-def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
-    """True if ``node`` needs brackets as an operand in a place of this precedence.
-
-    ``signed`` is True if a sign of ``node`` would follow an operator. ``drawn`` is True for LaTeX
-    and MathML.
-    """
-    precedence = ATOM
-    # Comparing types takes a third of the time of ``match``.
-    kind = type(node)
-    if kind is Binary:
-        operator = node.operator  # type: ignore[union-attr]
-        precedence = POWER if drawn and operator == "/" else _BRACKETS_OPERATORS[operator]
-    elif kind is Negation:
-        precedence = SIGNED
-    elif drawn and (kind is Unit or is_power_of_ten(node)):
-        precedence = POWER
-    return signed or precedence < place
-
-
-def is_power_of_ten(node: Node) -> bool:
-    """True if ``node`` is a number such as 1e-3, which LaTeX and MathML show as 1·10⁻³."""
-    return type(node) is Number and "e" in node.literal.lower()
-
-
-def needs_dot(left: Node, right: Node) -> bool:
-    """True if a product needs a dot in LaTeX and MathML, as 2·3 and θ1·(π + 1) do."""
-    if begins_with_digit(right):
-        return True
-    if type(right) is Pi:
-        return not _has_symbol(left) and _has_unit(left)
-    is_in_brackets = type(right) is Negation or (type(right) is Binary and right.operator in "+-*")
-    return is_in_brackets and not _has_symbol(right)
-
-
-def _has_unit(node: Node) -> bool:
-    return type(node) is Unit or any(map(_has_unit, children(node)))
-
-
-def _has_symbol(node: Node) -> bool:
-    return type(node) is SymbolNode or any(map(_has_symbol, children(node)))
-
-
-def begins_with_digit(node: Node) -> bool:
-    """True if ``node`` begins with a digit in LaTeX and MathML."""
-    match node:
-        case Number():
-            return True
-        case Unit(operand):
-            return begins_with_digit(operand)
-        case Binary("^" | "*", left):
-            return begins_with_digit(left)
-        case Binary("/", left):
-            # A product needs a dot before a fraction, too: 2½ is not read as a product.
-            return type(left) is not Negation
-        case _:
-            return False
-
-
-# --- Print a tree as presentation MathML, without rearranging the formula
-
-
-_NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
+_FUNCTION_NAMES: Final = {"asin": "arcsin", "acos": "arccos", "atan": "arctan"}
 _MATHML_OPERATORS: Final = {"+": "<mo>+</mo>", "-": "<mo>−</mo>"}
 # The LaTeX that a symbol may declare: a letter or a word, an index, and a superscript.
 _WORD: Final = r"\\(?:mathrm|text|mathit|operatorname)\{([^{}]*)\}"
@@ -593,7 +493,7 @@ def _mathml_call(function: str, arguments: list[str]) -> str:
     if function == "abs":
         return _mrow(f"<mo>|</mo>{arguments[0]}<mo>|</mo>")
     inside = "<mo>,</mo>".join(arguments)
-    name = f"<mi>{_NAMES.get(function, function)}</mi>"
+    name = f"<mi>{_FUNCTION_NAMES.get(function, function)}</mi>"
     return _mrow(f"{name}{_APPLY}{_mrow(f'<mo>(</mo>{inside}<mo>)</mo>')}")
 
 
@@ -608,3 +508,103 @@ def _begins_with_sign(node: Node) -> bool:
     while type(node) is Binary and node.operator != "^":
         node = node.left
     return type(node) is Negation
+
+
+# --- The rule for brackets in formulas that are printed as text, LaTeX or MathML
+#
+# An operand needs brackets if it binds less tightly than the operator next to it, or if its sign
+# would follow that operator. In LaTeX and MathML, a fraction bar replaces brackets.
+#
+# A drawn formula needs more brackets than text for the base of a power, because ``90°`` and
+# ``1·10⁻³`` consist of several signs.
+
+
+# How tightly a node binds, and how tightly an operand must bind in a place.
+SUM, PRODUCT, SIGNED, POWER, ATOM = range(5)
+_PRECEDENCES: Final = {"+": SUM, "-": SUM, "*": PRODUCT, "/": PRODUCT, "^": POWER}
+
+
+def needs_brackets(node: Node, place: int, *, signed: bool, drawn: bool = True) -> bool:
+    """True if ``node`` needs brackets as an operand in a place of this precedence.
+
+    ``signed`` is True if a sign of ``node`` would follow an operator. ``drawn`` is True for LaTeX
+    and MathML.
+    """
+    precedence = ATOM
+    # Comparing types takes a third of the time of ``match``.
+    kind = type(node)
+    if kind is Binary:
+        operator = node.operator  # type: ignore[union-attr]
+        precedence = POWER if drawn and operator == "/" else _PRECEDENCES[operator]
+    elif kind is Negation:
+        precedence = SIGNED
+    elif drawn and (kind is Unit or is_power_of_ten(node)):
+        precedence = POWER
+    return signed or precedence < place
+
+
+def is_power_of_ten(node: Node) -> bool:
+    """True if ``node`` is a number such as 1e-3, which LaTeX and MathML show as 1·10⁻³."""
+    return type(node) is Number and "e" in node.literal.lower()
+
+
+def needs_dot(left: Node, right: Node) -> bool:
+    """True if a product needs a dot in LaTeX and MathML, as 2·3 and θ1·(π + 1) do."""
+    if begins_with_digit(right):
+        return True
+    if type(right) is Pi:
+        return not _has_symbol(left) and _has_unit(left)
+    is_in_brackets = type(right) is Negation or (type(right) is Binary and right.operator in "+-*")
+    return is_in_brackets and not _has_symbol(right)
+
+
+def _has_unit(node: Node) -> bool:
+    return type(node) is Unit or any(map(_has_unit, children(node)))
+
+
+def _has_symbol(node: Node) -> bool:
+    return type(node) is SymbolNode or any(map(_has_symbol, children(node)))
+
+
+def begins_with_digit(node: Node) -> bool:
+    """True if ``node`` begins with a digit in LaTeX and MathML."""
+    match node:
+        case Number():
+            return True
+        case Unit(operand):
+            return begins_with_digit(operand)
+        case Binary("^" | "*", left):
+            return begins_with_digit(left)
+        case Binary("/", left):
+            # A product needs a dot before a fraction, too: 2½ is not read as a product.
+            return type(left) is not Negation
+        case _:
+            return False
+
+
+# --- Split a symbol's name into stem and index: theta1 is θ with index 1
+
+
+_INDEXED: Final = regex(r"([A-Za-z]+?)_?([0-9]+)")
+_UNDERSCORED: Final = regex(r"([A-Za-z0-9]+)_([A-Za-z0-9_]+)")
+
+
+def stem_and_index(name: str) -> tuple[str, str]:
+    """Return the stem and the index of ``name``; the index may be empty."""
+    match = _INDEXED.fullmatch(name) or _UNDERSCORED.fullmatch(name)
+    return (match[1], match[2].replace("_", "")) if match else (name, "")
+
+
+def symbol_latex(symbol: Symbol) -> str:
+    r"""Return the symbol in LaTeX: theta1 -> \theta_{1}."""
+    if symbol.latex is not None:
+        return symbol.latex
+    stem, index = stem_and_index(symbol.name)
+    if stem in characters.LETTERS:
+        stem = f"\\{stem}"
+    elif len(stem) > 1:
+        stem = f"\\mathrm{{{stem}}}"
+    if not index:
+        return stem
+    upright = len(index) > 1 and not index.isdigit()
+    return f"{stem}_{{\\mathrm{{{index}}}}}" if upright else f"{stem}_{{{index}}}"

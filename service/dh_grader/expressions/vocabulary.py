@@ -1,4 +1,7 @@
-"""The names that a formula may use (functions, units, symbols), and the tree that has them."""
+"""The names that a formula may use (functions, units, symbols), and the tree that has them.
+
+It knows every spelling of a whole name, but not how a text is split into names.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
@@ -55,8 +58,8 @@ MODULES: Final = frozenset({
     "MathF", "std", "numbers", "torch", "tf", "casadi", "ca", "symengine",
 })  # fmt: skip
 
-# Functions that are built from other functions (see ``parsing/built``), with their number of
-# arguments; 0 for any number.
+# Functions that are built from other functions (see ``build_function`` in ``parser.py``), with
+# their number of arguments; 0 for any number.
 BUILT: Final = {
     "sec": 1, "csc": 1, "cot": 1, "pow": 2, "hypot": 2, "quotient": 2, "sum": 0, "product": 0,
     "value": 1,
@@ -102,7 +105,7 @@ REFUSED: Final = frozenset({
 RESERVED: Final = frozenset({*SPELLINGS, *UNITS, *PI})
 
 
-# --- The names that an expression may use
+# --- The symbols that an exercise declares
 
 
 Kind = Literal["angle", "length", "number"]

@@ -1,25 +1,28 @@
 """Split a run of letters and digits into names, functions and units.
 
-It knows the spellings of programs, indices, letter case and open brackets.
+It knows the spellings of programs, indices and letter case, but no sentence around the run.
 """
 
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from itertools import pairwise
 from string import ascii_letters, digits
-from typing import Any, Final, Literal, NamedTuple
+from typing import Final, Literal, NamedTuple
 
-from dh_grader.expressions import characters
-from dh_grader.expressions import vocabulary as functions
-from dh_grader.expressions.characters import BREAKS, CLOSE, OPEN, Characters
-from dh_grader.expressions.errors import LIMITS, Note, Span, UnreadableError, quoted
+from dh_grader.expressions.characters import CLASS
 from dh_grader.expressions.vocabulary import (
+    ALONE,
     CAPITALS,
     CONSTANTS,
     IN_DEGREES,
+    MODULES,
     OF_DEGREES,
+    PI,
     PI_CAPITALS,
+    REFUSED,
     RESERVED,
+    SPELLINGS,
+    UNITS,
     Binary,
     Call,
     Node,
@@ -28,11 +31,9 @@ from dh_grader.expressions.vocabulary import (
     Pi,
     PieceKind,
     Symbol,
-    SymbolNode,
     Vocabulary,
 )
 from dh_grader.regex import regex
-from dh_grader.translations import say
 
 # --- Split a run of letters and digits into names, functions and units
 #
@@ -41,200 +42,19 @@ from dh_grader.translations import say
 # two digits, so q12 is not q1·2.
 
 
-# --- Tokens, and a writer that adds the missing product sign in texts such as 2q1
-
-
-# A token: its terminal, its value, and its [start, end) in the text as typed. The value is a node
-# for NUMBER and NAME, the name and its power for FUNCTION, the unit for UNIT, None for the others.
-Token = tuple[str, Any, int, int]
-END: Final = "$END"
-
-# An operand ends with one of these; it begins with NUMBER, NAME, FUNCTION, ROOT, LEFT or OPEN.
-OPERAND_ENDS: Final = frozenset({"NUMBER", "NAME", "RIGHT", "CLOSE", "UNIT"})
-_TIGHT_STARTS: Final = frozenset({"NAME", "LEFT", "OPEN"})
-
-
-class TokenWriter:
-    """Collects the tokens of one text and their positions in ``source``."""
-
-    __slots__ = (
-        "brackets", "degrees", "ends", "fraction_end", "from_one", "has_separators", "indices",
-        "last", "notes", "partners", "source", "starts", "symbols", "text", "tokens", "vocabulary",
-    )  # fmt: skip
-
-    def __init__(
-        self,
-        source: str,
-        characters: Characters,
-        vocabulary: Vocabulary,
-        *,
-        degrees: bool,
-        notes: list[Note],
-    ) -> None:
-        self.source = source
-        self.text = characters.text.rstrip().removesuffix(";").rstrip()
-        self.starts = characters.starts
-        self.ends = characters.ends
-        self.vocabulary = vocabulary
-        self.degrees = degrees
-        self.notes = WordNotes(source, vocabulary, notes)
-        self.tokens: list[Token] = []
-        # The canonical names of the symbols so far.
-        self.symbols: set[str] = set()
-        self.last = ""
-        self.brackets = Brackets()
-        self.has_separators = not source.isprintable()
-        # The index of the CLOSE of a fraction of numbers right after a function: sin ½q1.
-        self.fraction_end = -1
-        self.indices: list[tuple[Indexed, str, Span]] = []
-        # Computed on first use.
-        self.partners: dict[int, int] | None = None
-        self.from_one: bool | None = None
-
-    def _span(self, start: int, end: int) -> Span:
-        if self.starts is None or self.ends is None:
-            return start, end
-        return self.starts[start], self.ends[end - 1]
-
-    def _emit(self, terminal: str, value: Any, start: int, end: int) -> None:
-        self.tokens.append((terminal, value, start, end))
-        self.last = terminal
-
-    def _operand(self, terminal: str, value: Any, start: int, end: int) -> None:
-        if self.last in OPERAND_ENDS:
-            tokens = self.tokens
-            before = tokens[-1]
-            if terminal == "NUMBER" or (
-                self.has_separators and not BREAKS.isdisjoint(self.source[before[3] : start])
-            ):
-                glued = before[0] == "NUMBER" and before[3] == start
-                raise UnreadableError("values", (before[2], end), number=glued)
-            tight = terminal in _TIGHT_STARTS and (
-                (self.last == "NUMBER" and len(tokens) > 1 and tokens[-2][0] == "FUNCTION")
-                or self.fraction_end == len(tokens) - 1
-            )
-            tokens.append(("TIGHT" if tight else "JOIN", None, start, start))
-        self.tokens.append((terminal, value, start, end))
-        self.last = terminal
-
-    def _is_joint(self) -> bool:
-        value = self.tokens[-1][1] if self.last == "NAME" else None
-        return type(value) is SymbolNode and value.symbol.joint is not None
-
-
-# --- Words in the notation of programs: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi
-
-
-MEMBER: Final = regex(r"(?:\.|::)(?=[^\W\d_])")
-_RADIANS: Final = regex(r"(?:radians|toRadians|rad)(?=\()")
-# More than a turn in radians, so probably degrees, which ``rad`` converts in SymPy.
-_MANY: Final = regex(r"\(\s*[-+]?\s*(?:[7-9]|\d\d+)(?:\.\d*)?\s*\)")
-ZERO_IN_BRACKETS: Final = regex(r"\(\s*[-+]?\s*0+(?:\.0*)?\s*\)")
-_SUBSCRIPT: Final = regex(rf"\[\s*([A-Za-z{characters.CLASS}]+)\s*,\s*([A-Za-z0-9]{{1,12}})\s*\]")
-# Mathematica and Maxima count from 1, and write an index in square brackets.
-_COUNTS_FROM_ONE: Final = regex(r"(?:Sin|Cos|Tan|Sqrt|ArcSin|ArcCos|ArcTan|Subscript)\s*\[|%pi")
-
-
-def degrees_function_end(text: str, at: int) -> int | None:
-    """Return the end of a function such as sympy.rad, which converts degrees, or None."""
-    found = _RADIANS.match(text, at)
-    return found and found.end()
-
-
-def is_more_than_a_turn(text: str, at: int) -> bool:
-    """True if the number in brackets at ``text[at]`` is more than a full turn in radians."""
-    return _MANY.match(text, at) is not None
-
-
-def subscripted(text: str, at: int) -> tuple[str, int] | None:
-    """Return the name in ``Subscript[name, index]``, and its end; ``at`` is the position of [."""
-    found = _SUBSCRIPT.match(text, at)
-    return found and (f"{found[1]}{found[2]}", found.end())
-
-
-def counts_from_one(text: str) -> bool:
-    """True if ``text`` is from a program in which an index in square brackets counts from 1."""
-    return _COUNTS_FROM_ONE.search(text) is not None
-
-
-def constant(name: str, start: int, end: int) -> Node:
-    """Return the tree of a constant of C: π/2 for M_PI_2."""
-    form, value = CONSTANTS[name]
-    number = Number(float(value), str(value), start, end)
-    if form == "pi":
-        return Binary("/", Pi(start, end), number, start, end)
-    root = Call("sqrt", (number,), start, end)
-    if form == "sqrt":
-        return root
-    return Binary("/", Number(1.0, "1", start, end), root, start, end)
-
-
-# --- The star after a joint variable: the marker that tables print, or a product
-#
-# Followed by nothing    θ1*, (d3*), atan2(q1*, k)    the marker
-# Followed by +          θ1* + 90°, d3*+l1            the marker: nobody writes a product like this
-# Followed by -          θ1* - 90°, θ1*-π/2           the marker, with a note
-#                        d3*-l1                       a product, with a note
-# Followed by other text q1*k                         a product
-#
-# A raised star is always the marker.
-#
-# A marked variable is the first factor of its term. If another factor precedes it (k*q1*+s1), a
-# star before + or before a subtracted angle is ambiguous. If a blank precedes the star (q1 * + k),
-# a star before + is ambiguous.
-
-
-# How a star was read; "noted" if the sign after it allows another reading.
-Star = Literal["marker", "noted_marker", "product", "noted_product", "ambiguous"]
-
-# An angle is subtracted from a marked joint variable as often as added: θ1*-π/2, θ1*-90°,
-# θ1*-\frac{\pi}{2}.
-_ANGLE_SUBTRACTED: Final = (
-    rf"\s*-[\s({{{OPEN}]*(?:pi\b|π|[0-9.]+\s*+\*?+\s*+(?:pi\b|π)|[0-9.]+\s*(?:°|deg)|"
-    rf"[0-9{{}}/ ]+{CLOSE}\s*+\*?+\s*+(?:pi\b|π))|\s*-\s*[0-9]{{2,}}\s*$"
-)
-_NOTHING: Final = regex(r"\s*(?:[)\]},]|$)")
-_PLUS: Final = regex(r"\s*\+")
-_MINUS: Final = regex(r"\s*-")
-_SUBTRACTED: Final = regex(rf"\s+-\s|{_ANGLE_SUBTRACTED}")
-# These are read as stars, but are never the marker.
-_DOTS: Final = frozenset({"·", "⋅", "×", r"\cdot", r"\times"})
-
-
-def read_star(text: str, start: int, end: int, typed: str, *, first: bool) -> Star:
-    """Return how to read the * at text[start:end], which follows a joint variable.
-
-    ``typed`` is the sign as typed. ``first`` is True if the variable is the first factor of its
-    term.
-    """
-    # A dot always multiplies.
-    if typed in _DOTS:
-        return "product"
-    spaced = text[start - 1].isspace()
-    if _NOTHING.match(text, end):
-        return "marker" if first else "product"
-    if _PLUS.match(text, end):
-        return "marker" if first and not spaced else "ambiguous"
-    if spaced or not _MINUS.match(text, end):
-        return "product"
-    if _SUBTRACTED.match(text, end):
-        return "noted_marker" if first else "ambiguous"
-    return "noted_product"
-
-
-RUN: Final = rf"[A-Za-z{characters.CLASS}](?:_?[A-Za-z0-9{characters.CLASS}])*"
+RUN: Final = rf"[A-Za-z{CLASS}](?:_?[A-Za-z0-9{CLASS}])*"
 
 _SHORTHAND: Final = regex(r"(?P<function>cos|sin|[cCsS])(?P<angle>theta|th|θ|q)?(?P<index>[0-9]+)")
 _SHORT: Final = {"c": "cos", "s": "sin", "C": "cos", "S": "sin"}
 _DIGITS: Final = regex(r"[0-9]+")
 _WORDS: Final[dict[str, tuple[PieceKind, str]]] = {
-    **{spelling: ("function", name) for spelling, name in functions.CAPITALS.items()},
-    **dict.fromkeys(functions.PI_CAPITALS, ("pi", "pi")),
-    **{spelling: ("function", name) for spelling, name in functions.SPELLINGS.items()},
-    **{spelling: ("unit", name) for spelling, name in functions.UNITS.items()},
-    **dict.fromkeys(functions.PI, ("pi", "pi")),
+    **{spelling: ("function", name) for spelling, name in CAPITALS.items()},
+    **dict.fromkeys(PI_CAPITALS, ("pi", "pi")),
+    **{spelling: ("function", name) for spelling, name in SPELLINGS.items()},
+    **{spelling: ("unit", name) for spelling, name in UNITS.items()},
+    **dict.fromkeys(PI, ("pi", "pi")),
 }
-_WHOLE: Final = functions.ALONE | _WORDS
+_WHOLE: Final = ALONE | _WORDS
 # An underscore after one of these does not begin a new factor: a_b is not a product.
 _NAMES: Final = frozenset({"symbol", "pi", "shorthand", "invalid_shorthand", "number", "unit"})
 # The memoized operands of one vocabulary; they are its names and shorthands in all spellings.
@@ -242,7 +62,7 @@ _MOST_OPERANDS: Final = 512
 # A longer run is not a formula.
 LONGEST_RUN: Final = 80
 # sind30 might mean sin(d30), so these functions need a bracket or a space before a number.
-_NOT_BEFORE_NUMBERS: Final = frozenset({*functions.OF_DEGREES, *functions.IN_DEGREES})
+_NOT_BEFORE_NUMBERS: Final = frozenset({*OF_DEGREES, *IN_DEGREES})
 
 
 @dataclass(frozen=True, slots=True)
@@ -274,7 +94,7 @@ def split(run: str, vocabulary: Vocabulary) -> tuple[Piece, ...] | None:
         return (Piece("symbol", 0, len(run), symbols=(symbol,)),)
     if (word := _WHOLE.get(run)) is not None:
         return (Piece(word[0], 0, len(run), word[1]),)
-    if run in functions.REFUSED or len(run) > LONGEST_RUN:
+    if run in REFUSED or len(run) > LONGEST_RUN:
         return None
     if "_" not in run:
         short = _shorthand(run, 0, vocabulary) if run[0] in _SHORT else None
@@ -295,7 +115,7 @@ def sole_operand(run: str, vocabulary: Vocabulary) -> Operand | None:
     """Return the meaning of ``run`` if it is one symbol or a shorthand such as c12; else None."""
     # None also if ``run`` is the name of a module, or if its shorthand may get a note. A meaning
     # that is found is stored in ``vocabulary``.
-    pieces = None if run in functions.MODULES else split(run, vocabulary)
+    pieces = None if run in MODULES else split(run, vocabulary)
     if pieces is None or len(pieces) > 1:
         return None
     piece = pieces[0]
@@ -436,118 +256,6 @@ def _joints(index: str, vocabulary: Vocabulary) -> tuple[int, ...]:
     return (whole,) if whole in vocabulary.joints else digits
 
 
-# --- Add notes on single words that could also mean something else
-
-
-_MARKER: Final = say("The * after the joint variable was read as its mark, not as a product.")
-_PRODUCT: Final = say(
-    "The * after the joint variable was read as a product. If it marks the variable, delete it."
-)
-
-
-class WordNotes:
-    """Collects the notes on the words of one text."""
-
-    __slots__ = ("notes", "source", "vocabulary")
-
-    def __init__(self, source: str, vocabulary: Vocabulary, notes: list[Note]) -> None:
-        self.source = source
-        self.vocabulary = vocabulary
-        self.notes = notes
-
-    def _add(self, code: str, message: str, span: Span) -> None:
-        if len(self.notes) < LIMITS.notes:
-            self.notes.append(Note(code, message, span))
-
-    def star(self, star: Star, span: Span) -> None:
-        """Add a note on a star that may mark a joint variable, as in θ1*."""
-        if star == "product":
-            return
-        code = "joint_marker" if star == "marker" else "marker_or_product"
-        self._add(code, _PRODUCT if star == "noted_product" else _MARKER, span)
-
-    def index(self, style: str, symbol: Symbol, span: Span) -> None:
-        """Add a note that the index of q[0] or q(1) was counted from 0 or from 1."""
-        if style == "[":
-            message = say(
-                "This was read as {name}, counting from 0 as Python does. If you count from 1, "
-                "write the index without brackets.",
-                name=symbol.name,
-            )
-            self._add("zero_based_index", message, span)
-            return
-        message = say("This was read as {name}, counting from 1.", name=symbol.name)
-        self._add("one_based_index", message, span)
-
-    def shorthand(self, piece: Piece, a: int, b: int) -> None:
-        """Add a note on a shorthand that could also mean something else: sin12, C1."""
-        if piece.ambiguous or self.source[a] in "CS":
-            names = "+".join(symbol.name for symbol in piece.symbols)
-            message = say(
-                "This was read as {function}({angles}).", function=piece.word, angles=names
-            )
-            self._add("shorthand", message, (a, b))
-
-    def product(self, letter: str, angle: Symbol, a: int, b: int) -> None:
-        """Add a note on a product that looks like the cosine or sine of an angle."""
-        if letter in {"c", "C"}:
-            message = say(
-                "This was read as {letter}*{angle}. For the cosine, write cos({angle}).",
-                letter=letter,
-                angle=angle.name,
-            )
-            self._add("shorthand", message, (a, b))
-        elif letter in {"s", "S"}:
-            message = say(
-                "This was read as {letter}*{angle}. For the sine, write sin({angle}).",
-                letter=letter,
-                angle=angle.name,
-            )
-            self._add("shorthand", message, (a, b))
-
-    def other_capitals(self, name: str, a: int, b: int) -> None:
-        """Add a note on a name in another letter case: l1 if only L1 is declared."""
-        message = say("{written} was read as {name}.", written=quoted(self.source[a:b]), name=name)
-        self._add("letter_case", message, (a, b))
-
-    def pi(self, a: int, b: int) -> None:
-        """Add a note that Pi or PI was read as the number π."""
-        of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 2] == "()"
-        if self.source[a:b] in PI_CAPITALS and not of_program:
-            self._add("letter_case", say("This was read as the number pi."), (a, b))
-
-    def function(self, name: str, a: int, b: int) -> None:
-        """Add a note on a function in capitals, or on a function of degrees such as sind."""
-        # If ``a`` is a symbol, also add one on acos, which could mean a·cos.
-        written = self.source[a:b]
-        # Mathematica writes Cos[q1], and C# Math.Cos(q1).
-        of_program = self.source[a - 1 : a] in {".", ":"} or self.source[b : b + 1] == "["
-        if written in CAPITALS and not of_program:
-            message = say("This was read as the function {name}.", name=name)
-            self._add("letter_case", message, (a, b))
-        if name in OF_DEGREES:
-            message = say(
-                "A number without a unit inside {name} was read in degrees; the symbol of an "
-                "angle keeps its own unit.",
-                name=name,
-            )
-            self._add("degrees_function", message, (a, b))
-        if name in IN_DEGREES:
-            message = say(
-                "{name} gives degrees: its value was read as an angle in degrees.", name=name
-            )
-            self._add("degrees_function", message, (a, b))
-        inverted, a_is_known = name[1:], "a" in self.vocabulary.by_name
-        if written[0] == "a" and inverted in {"sin", "cos", "tan"} and a_is_known:
-            message = say(
-                "This was read as the inverse function {name}, not as a times {function}; "
-                "for the product write a*{function}.",
-                name=name,
-                function=inverted,
-            )
-            self._add("function_name", message, (a, b))
-
-
 # --- Names in another letter case than declared: l1 if only L1 is declared
 #
 # Such a name is accepted if it has no other meaning and fits only one symbol.
@@ -585,7 +293,7 @@ def _with_other_capitals(vocabulary: Vocabulary) -> Vocabulary:
     for name, symbol in vocabulary.by_name.items():
         for other in {name.lower(), name.upper(), name[0].swapcase() + name[1:]}:
             # A capital alpha is not accepted, because it looks like an A.
-            if not set(other) - set(characters.CLASS) <= _PLAIN:
+            if not set(other) - set(CLASS) <= _PLAIN:
                 continue
             owners.setdefault(other, {})[symbol.name] = symbol
     names: dict[str, tuple[str, ...]] = {}
@@ -608,7 +316,7 @@ Style = Literal["[", "("]
 
 INDEX: Final = regex(r"\s?(?:\[\s*([0-9]{1,3})\s*\]|\(\s*([0-9]{1,3})\s*\)|"
                           r"\{\s*([0-9]{1,3})\s*\})")  # fmt: skip
-_STEM: Final = regex(rf"[A-Za-z{characters.CLASS}]+$")
+_STEM: Final = regex(rf"[A-Za-z{CLASS}]+$")
 
 
 class Indexed(NamedTuple):
@@ -659,56 +367,48 @@ def _first(run: str, vocabulary: Vocabulary) -> int:
     return 1
 
 
-# --- The stack of open brackets while a text is read
+# --- Words in the notation of programs: np.cos, std::cos, M_PI_2, Subscript[θ, 1], 0.5f, %pi
 
 
-PARTNERS: Final = {"(": ")", "[": "]", "{": "}", "|": "|", OPEN: CLOSE}
-_ROUND: Final = regex("[()]")
-# The token index of redundant braces around round brackets, which have no token.
-WRAPPING: Final = -1
+MEMBER: Final = regex(r"(?:\.|::)(?=[^\W\d_])")
+_RADIANS: Final = regex(r"(?:radians|toRadians|rad)(?=\()")
+# More than a turn in radians, so probably degrees, which ``rad`` converts in SymPy.
+_MANY: Final = regex(r"\(\s*[-+]?\s*(?:[7-9]|\d\d+)(?:\.\d*)?\s*\)")
+ZERO_IN_BRACKETS: Final = regex(r"\(\s*[-+]?\s*0+(?:\.0*)?\s*\)")
+_SUBSCRIPT: Final = regex(rf"\[\s*([A-Za-z{CLASS}]+)\s*,\s*([A-Za-z0-9]{{1,12}})\s*\]")
+# Mathematica and Maxima count from 1, and write an index in square brackets.
+_COUNTS_FROM_ONE: Final = regex(r"(?:Sin|Cos|Tan|Sqrt|ArcSin|ArcCos|ArcTan|Subscript)\s*\[|%pi")
 
 
-class Brackets:
-    """A stack of opening brackets, each with its position in the text as typed."""
-
-    __slots__ = ("opened",)
-
-    def __init__(self) -> None:
-        self.opened: list[tuple[str, Span, int]] = []
-
-    def open(self, bracket: str, span: Span, token: int) -> None:
-        """Add an opening bracket, which is the token at index ``token``.
-
-        Raises UnreadableError if the bracket is nested too deep.
-        """
-        if len(self.opened) >= LIMITS.depth:
-            raise UnreadableError("beyond", span, limit="depth")
-        self.opened.append((bracket, span, token))
-
-    def close(self, bracket: str, span: Span) -> int | None:
-        """Close the innermost bracket; return its token's index, or None if no bracket is open.
-
-        Raises UnreadableError if ``bracket`` does not fit the innermost bracket.
-        """
-        if not self.opened:
-            return None
-        opener, place, token = self.opened.pop()
-        if PARTNERS[opener] != bracket:
-            raise UnreadableError("mismatch", span, opener=place, wanted=PARTNERS[opener])
-        return token
-
-    def in_bars(self) -> bool:
-        """True if the innermost bracket is a bar, as in |x|."""
-        return bool(self.opened) and self.opened[-1][0] == "|"
+def degrees_function_end(text: str, at: int) -> int | None:
+    """Return the end of a function such as sympy.rad, which converts degrees, or None."""
+    found = _RADIANS.match(text, at)
+    return found and found.end()
 
 
-def partners(text: str) -> dict[int, int]:
-    """Map the position of each opening round bracket to that of its closing bracket, if any."""
-    found: dict[int, int] = {}
-    opened: list[int] = []
-    for match in _ROUND.finditer(text):
-        if match.group() == "(":
-            opened.append(match.start())
-        elif opened:
-            found[opened.pop()] = match.start()
-    return found
+def is_more_than_a_turn(text: str, at: int) -> bool:
+    """True if the number in brackets at ``text[at]`` is more than a full turn in radians."""
+    return _MANY.match(text, at) is not None
+
+
+def subscripted(text: str, at: int) -> tuple[str, int] | None:
+    """Return the name in ``Subscript[name, index]``, and its end; ``at`` is the position of [."""
+    found = _SUBSCRIPT.match(text, at)
+    return found and (f"{found[1]}{found[2]}", found.end())
+
+
+def counts_from_one(text: str) -> bool:
+    """True if ``text`` is from a program in which an index in square brackets counts from 1."""
+    return _COUNTS_FROM_ONE.search(text) is not None
+
+
+def constant(name: str, start: int, end: int) -> Node:
+    """Return the tree of a constant of C: π/2 for M_PI_2."""
+    form, value = CONSTANTS[name]
+    number = Number(float(value), str(value), start, end)
+    if form == "pi":
+        return Binary("/", Pi(start, end), number, start, end)
+    root = Call("sqrt", (number,), start, end)
+    if form == "sqrt":
+        return root
+    return Binary("/", Number(1.0, "1", start, end), root, start, end)

@@ -153,7 +153,7 @@ _WIDTHS: Final = {
     **dict.fromkeys("acdeghknopqrsuvxyzbfθφψαβγδω023456789", 0.56),
     **dict.fromkeys("+−=", 0.72),
 }
-_NAMES_WIDEST: Final = 0.86
+_WIDEST: Final = 0.86
 # Signs, numbers and names of frames are upright.
 _UPRIGHT: Final = regex(r"[ +,]*|[0-9.]+|\{.*")
 
@@ -231,7 +231,7 @@ def _run(name: str) -> tuple[str, str]:
 
 
 def _width(text: str) -> float:
-    return sum(_WIDTHS.get(character, _NAMES_WIDEST) for character in text)
+    return sum(_WIDTHS.get(character, _WIDEST) for character in text)
 
 
 # --- Keep track of the taken room in a picture, and find the best place for each label
@@ -443,7 +443,7 @@ def _farther(wanted: list[Numbers]) -> Iterator[Numbers]:
 # --- Arrows that show how a joint moves: around its axis, or along it
 
 
-_MOTION_ARROWS_HEAD = 8.0
+_HEAD = 8.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -476,10 +476,10 @@ class MotionArrow:
             step = tip - before
             direction = step / max(float(np.linalg.norm(step)), 1e-9)
             yield arrowhead(
-                tip + 0.5 * _MOTION_ARROWS_HEAD * direction,
+                tip + 0.5 * _HEAD * direction,
                 direction,
                 "motion-head",
-                _MOTION_ARROWS_HEAD,
+                _HEAD,
             )
 
 
@@ -731,7 +731,6 @@ def _surface(
 
 
 _SAME = 1e-6
-_FRAME_AXES_HEAD = 8.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -772,9 +771,9 @@ def frame_axes(camera: Camera, drawn: DrawnFrames, length: float, room: TakenRoo
         svg.append(polyline(axis.line, "frame-halo"))
     for axis in axes:
         svg.append(polyline(axis.line, f"frame frame-{axis.letter}"))
-        if float(np.linalg.norm(axis.line[1] - axis.line[0])) > _FRAME_AXES_HEAD:
-            tip = axis.line[1] + 0.5 * _FRAME_AXES_HEAD * axis.ahead
-            svg.append(arrowhead(tip, axis.ahead, f"head-{axis.letter}", _FRAME_AXES_HEAD))
+        if float(np.linalg.norm(axis.line[1] - axis.line[0])) > _HEAD:
+            tip = axis.line[1] + 0.5 * _HEAD * axis.ahead
+            svg.append(arrowhead(tip, axis.ahead, f"head-{axis.letter}", _HEAD))
     for axis in axes:
         label, tip = list_label(axis.names), axis.line[1]
         wanted = [_beyond(tip, axis.ahead, label), *around(tip, 0.9 * SIZE)]
@@ -838,9 +837,7 @@ def _axes(camera: Camera, drawn: DrawnFrames, length: float) -> list[_Axis]:
 def _beyond(tip: Numbers, ahead: Numbers, label: Label) -> Numbers:
     # Right in front of an arrow's tip.
     room = Rectangle.of(label, 0.0, 0.0)
-    near = (
-        abs(ahead[0]) * room.half_width + abs(ahead[1]) * room.half_height + 0.7 * _FRAME_AXES_HEAD
-    )
+    near = abs(ahead[0]) * room.half_width + abs(ahead[1]) * room.half_height + 0.7 * _HEAD
     return np.asarray(tip + near * ahead)
 
 
@@ -849,7 +846,7 @@ def _beyond(tip: Numbers, ahead: Numbers, label: Label) -> Numbers:
 
 # The possible distances of a dimension line from its piece, as shares of the mechanism's extent.
 _DISTANCES = (0.12, 0.16, 0.21, 0.27, 0.34, 0.42)
-_DIMENSIONS_HEAD = 7.0
+_SMALL_HEAD = 7.0
 # Shorter lines have their arrowheads outside.
 _SHORT = 26.0
 _PLAIN_ANGLE = 0.5
@@ -954,7 +951,7 @@ def _drawn(line: _Line) -> Iterator[str]:
         yield arrowhead(line.ends[1], -flat, "dimension-head")
 
 
-def arrowhead(tip: Numbers, direction: Numbers, kind: str, size: float = _DIMENSIONS_HEAD) -> str:
+def arrowhead(tip: Numbers, direction: Numbers, kind: str, size: float = _SMALL_HEAD) -> str:
     """Return the SVG of an arrowhead that points along the unit vector ``direction``."""
     aside = np.array([-direction[1], direction[0]])
     back = tip - size * direction

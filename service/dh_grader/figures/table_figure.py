@@ -1,4 +1,8 @@
-"""The figure of a student's table, right or wrong: its frames over the mechanism or alone."""
+"""The figure of a student's table, right or wrong: its frames over the mechanism or alone.
+
+It also computes what the 3D view shows of a table: frames, formulas and lost freedoms. Whether the
+table is right is for the grading.
+"""
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
@@ -77,7 +81,109 @@ from dh_grader.translations import listed
 
 # --- The figure of a student's table: its frames, drawn over the mechanism or alone
 #
-# The figure replaces the 3D view in browsers without 3D graphics.
+# The figure replaces the 3D view in browsers without 3D graphics. It shows one configuration. It
+# contains no text from the student: its only texts are the names of axes, x0 to z12.
+
+
+# The view of a table without a mechanism; the 3D view begins with the same view.
+_PLAIN: Final = View(-60, 25)
+_UP: Final = np.array([0.0, 0.0, 1.0])
+_ONE_POINT: Final = 1e-5
+# The length of frame axes as a share of the parts' size, and the minimum length in pixels.
+_FRAME: Final = 0.2
+_LEAST: Final = 30.0
+_CAPTION: Final = Caption(
+    "table", "The robot as the table says", "The frames of the table; x is red, y green, z blue."
+)
+
+
+@dataclass(frozen=True, slots=True)
+class WrittenChain:
+    """A table at some joint values: its frames ``(frames, 4, 4)``, the base frame first.
+
+    ``row_joints`` has the joint of each row, or None for a row without a joint.
+    """
+
+    frames: Matrices
+    row_joints: tuple[Joint | None, ...]
+    convention: Convention
+
+    @property
+    def links(self) -> list[Numbers]:
+        """The line ``(3, 3)`` of each row, through three points: along z and along x."""
+        # In the convention's order.
+        return [
+            np.array([before[:3, 3], before[:3, 3] + self._first(before, after), after[:3, 3]])
+            for before, after in pairwise(self.frames)
+        ]
+
+    def _first(self, before: Numbers, after: Numbers) -> Numbers:
+        axis = before[:3, 2 if self.convention is Convention.STANDARD else 0]
+        return np.asarray(axis * (axis @ (after[:3, 3] - before[:3, 3])))
+
+    @property
+    def axes(self) -> Iterator[tuple[Joint, Numbers]]:
+        """The joints, each with the frame ``(4, 4)`` whose z axis is the joint axis."""
+        for joint, frame in zip(
+            self.row_joints, joint_frames(self.frames, self.convention), strict=True
+        ):
+            if joint is not None:
+                yield joint, frame
+
+
+@dataclass(frozen=True, slots=True)
+class SeenMechanism:
+    """The mechanism of an exercise, its configuration and its view."""
+
+    mechanism: MovableMechanism
+    shown: Configuration
+    view: View
+
+
+def table_figure(
+    written: WrittenChain | None, seen: SeenMechanism | None, theme: Theme = Theme.AUTO
+) -> str:
+    """Return the SVG of a table, of a mechanism, or of both; at least one must be given."""
+    links = [] if written is None else written.links
+    corners = [np.zeros((1, 3)), *links]
+    if seen is not None:
+        corners += [*seen.shown.links, seen.shown.base[None]]
+    points = np.concatenate(corners)
+    extent = float(np.linalg.norm(np.ptp(points, axis=0)))
+    if extent < _ONE_POINT:
+        # A table whose frames all coincide is drawn as large as its parts.
+        points, extent = np.concatenate([points, _UP[None]]), 1.0
+    size = seen.mechanism.size if seen else 0.9 * extent
+    sheet = Sheet(
+        camera_for(points, seen.view if seen else _PLAIN, LARGE_ROOM), size, TakenRoom(hasty=True)
+    )
+    if seen is not None:
+        solids = mechanism_solids(sheet, seen.shown, seen.mechanism, _CAPTION.name)
+        for line in links:
+            drawn = sheet.camera.seen(line)
+            sheet.above.append(polyline(drawn, "chain"))
+            sheet.take(drawn, 1.3)
+    else:
+        solids = _solids(sheet, written, links) if written else []
+    if written is not None:
+        length = max(_FRAME * size, _LEAST / sheet.camera.scale)
+        names = [str(i) for i in range(len(written.frames))]
+        frames = DrawnFrames(written.frames, names, ["xyz"] * len(names))
+        sheet.above += frame_axes(sheet.camera, frames, length, sheet.room)
+    return sheet.svg(solids, _CAPTION, theme)
+
+
+def _solids(sheet: Sheet, written: WrittenChain, links: list[Numbers]) -> list[str]:
+    joints = [
+        joint_solid(
+            sheet, frame[:3, 3], frame[:3, 2], f"{_CAPTION.name}-{i}", slides=joint.prismatic
+        )
+        for i, (joint, frame) in enumerate(written.axes)
+    ]
+    lines = [line for line in map(distinct, links) if len(line) > 1]
+    rods = [link_solid(sheet, line, line) for line in lines]
+    floor = ground_solid(sheet, np.zeros(3), _UP)
+    return [floor.svg, *(solid.svg for solid in back_to_front(sheet.camera, [*joints, *rods]))]
 
 
 # --- The pose of a table, multiplied out as text: sums of products of sines and cosines
@@ -426,6 +532,10 @@ def _pose(
 
 # The number of random configurations that represent a generic one.
 _GENERIC = 4
+_NOTHING = reading_error("missing", "Nothing is written here; if the value is zero, write 0.")
+_NO_NUMBER_HERE = reading_error(
+    "undefined", "This has no value at these joint values, or one too large to draw."
+)
 # Larger numbers (metres or radians) are not drawn.
 LARGEST = 1e6
 
@@ -544,22 +654,12 @@ def _unread(
         for j, entry in enumerate(row.entries):
             place = str(i + 1), COLUMNS[j]
             if entry.expression is None:
-                yield CellWithoutNumber(
-                    *place, entry.findings[0] if entry.findings else _TABLE_FRAMES_NOTHING
-                )
+                yield CellWithoutNumber(*place, entry.findings[0] if entry.findings else _NOTHING)
             elif absent := sorted(entry.expression.symbols - names):
                 message = f"This robot has no {absent[0]}."
                 yield CellWithoutNumber(*place, reading_error("unknown_joint", message))
             elif not is_number[i, j]:
-                yield CellWithoutNumber(*place, _TABLE_FRAMES_NO_NUMBER)
-
-
-_TABLE_FRAMES_NOTHING = reading_error(
-    "missing", "Nothing is written here; if the value is zero, write 0."
-)
-_TABLE_FRAMES_NO_NUMBER = reading_error(
-    "undefined", "This has no value at these joint values, or one too large to draw."
-)
+                yield CellWithoutNumber(*place, _NO_NUMBER_HERE)
 
 
 def _freedoms(
@@ -601,6 +701,10 @@ def _one_axis(together: Sequence[int], scope: DrawingScope) -> FreedomLoss:
 
 
 # --- The frames that a student places on joint axes, right or wrong, to be drawn on the robot
+
+
+_NO_NUMBER: Final = reading_error("undefined", "This has no value, or one too large to draw.")
+_PARALLEL: Final = reading_error("undefined", "x and z are parallel, so they make no frame.")
 
 
 @dataclass(frozen=True, slots=True)
@@ -666,19 +770,19 @@ def _frame(label: str, frame: StudentFrame, home: Samples) -> Matrices | CellWit
     # x is drawn as it is written, even if it is not perpendicular to z.
     for cell, entry in _entries(frame):
         if cell != FRAME_CELLS[0] and not entry.readable:
-            finding = entry.findings[0] if entry.findings else _PLACED_FRAMES_NO_NUMBER
+            finding = entry.findings[0] if entry.findings else _NO_NUMBER
             return CellWithoutNumber(label, cell, finding)
     drawn = np.eye(4)
     for column, cell, direction in ((2, "z", frame.z), (0, "x", frame.x)):
         values = direction.values(home)
         length = 0.0 if values is None else float(np.linalg.norm(values[0]))
         if values is None or not NO_ROTATION < length < np.inf:
-            return CellWithoutNumber(label, cell, _PLACED_FRAMES_NO_NUMBER)
+            return CellWithoutNumber(label, cell, _NO_NUMBER)
         drawn[:3, column] = values[0] / length
     origin = entry_values(frame.origin, ("length",) * 3, home)[:, 0]
     for cell, value in zip(FRAME_CELLS[2:5], origin, strict=True):
         if not abs(value) <= LARGEST:
-            return CellWithoutNumber(label, cell, _PLACED_FRAMES_NO_NUMBER)
+            return CellWithoutNumber(label, cell, _NO_NUMBER)
     drawn[:3, 3] = origin
     drawn[:3, 1] = np.cross(drawn[:3, 2], drawn[:3, 0])
     across = float(np.linalg.norm(drawn[:3, 1]))
@@ -698,114 +802,3 @@ def _link_motions(exercise: Exercise, numbers: Mapping[str, float], amounts: Num
     return np.asarray(
         reached @ inverse(robot.all_frames(at_home(exercise.joints, still, count), count)[1:])
     )
-
-
-_PLACED_FRAMES_NO_NUMBER: Final = reading_error(
-    "undefined", "This has no value, or one too large to draw."
-)
-_PARALLEL: Final = reading_error("undefined", "x and z are parallel, so they make no frame.")
-
-
-# It shows one configuration. It contains no text from the student: its only texts are the names of
-# axes, x0 to z12.
-
-
-# The view of a table without a mechanism; the 3D view begins with the same view.
-_PLAIN: Final = View(-60, 25)
-_UP: Final = np.array([0.0, 0.0, 1.0])
-_TABLE_FIGURE_NOTHING: Final = 1e-5
-# The length of frame axes as a share of the parts' size, and the minimum length in pixels.
-_FRAME: Final = 0.2
-_LEAST: Final = 30.0
-_CAPTION: Final = Caption(
-    "table", "The robot as the table says", "The frames of the table; x is red, y green, z blue."
-)
-
-
-@dataclass(frozen=True, slots=True)
-class WrittenChain:
-    """A table at some joint values: its frames ``(frames, 4, 4)``, the base frame first.
-
-    ``row_joints`` has the joint of each row, or None for a row without a joint.
-    """
-
-    frames: Matrices
-    row_joints: tuple[Joint | None, ...]
-    convention: Convention
-
-    @property
-    def links(self) -> list[Numbers]:
-        """The line ``(3, 3)`` of each row, through three points: along z and along x."""
-        # In the convention's order.
-        return [
-            np.array([before[:3, 3], before[:3, 3] + self._first(before, after), after[:3, 3]])
-            for before, after in pairwise(self.frames)
-        ]
-
-    def _first(self, before: Numbers, after: Numbers) -> Numbers:
-        axis = before[:3, 2 if self.convention is Convention.STANDARD else 0]
-        return np.asarray(axis * (axis @ (after[:3, 3] - before[:3, 3])))
-
-    @property
-    def axes(self) -> Iterator[tuple[Joint, Numbers]]:
-        """The joints, each with the frame ``(4, 4)`` whose z axis is the joint axis."""
-        for joint, frame in zip(
-            self.row_joints, joint_frames(self.frames, self.convention), strict=True
-        ):
-            if joint is not None:
-                yield joint, frame
-
-
-@dataclass(frozen=True, slots=True)
-class SeenMechanism:
-    """The mechanism of an exercise, its configuration and its view."""
-
-    mechanism: MovableMechanism
-    shown: Configuration
-    view: View
-
-
-def table_figure(
-    written: WrittenChain | None, seen: SeenMechanism | None, theme: Theme = Theme.AUTO
-) -> str:
-    """Return the SVG of a table, of a mechanism, or of both; at least one must be given."""
-    links = [] if written is None else written.links
-    corners = [np.zeros((1, 3)), *links]
-    if seen is not None:
-        corners += [*seen.shown.links, seen.shown.base[None]]
-    points = np.concatenate(corners)
-    extent = float(np.linalg.norm(np.ptp(points, axis=0)))
-    if extent < _TABLE_FIGURE_NOTHING:
-        # A table whose frames all coincide is drawn as large as its parts.
-        points, extent = np.concatenate([points, _UP[None]]), 1.0
-    size = seen.mechanism.size if seen else 0.9 * extent
-    sheet = Sheet(
-        camera_for(points, seen.view if seen else _PLAIN, LARGE_ROOM), size, TakenRoom(hasty=True)
-    )
-    if seen is not None:
-        solids = mechanism_solids(sheet, seen.shown, seen.mechanism, _CAPTION.name)
-        for line in links:
-            drawn = sheet.camera.seen(line)
-            sheet.above.append(polyline(drawn, "chain"))
-            sheet.take(drawn, 1.3)
-    else:
-        solids = _solids(sheet, written, links) if written else []
-    if written is not None:
-        length = max(_FRAME * size, _LEAST / sheet.camera.scale)
-        names = [str(i) for i in range(len(written.frames))]
-        frames = DrawnFrames(written.frames, names, ["xyz"] * len(names))
-        sheet.above += frame_axes(sheet.camera, frames, length, sheet.room)
-    return sheet.svg(solids, _CAPTION, theme)
-
-
-def _solids(sheet: Sheet, written: WrittenChain, links: list[Numbers]) -> list[str]:
-    joints = [
-        joint_solid(
-            sheet, frame[:3, 3], frame[:3, 2], f"{_CAPTION.name}-{i}", slides=joint.prismatic
-        )
-        for i, (joint, frame) in enumerate(written.axes)
-    ]
-    lines = [line for line in map(distinct, links) if len(line) > 1]
-    rods = [link_solid(sheet, line, line) for line in lines]
-    floor = ground_solid(sheet, np.zeros(3), _UP)
-    return [floor.svg, *(solid.svg for solid in back_to_front(sheet.camera, [*joints, *rods]))]

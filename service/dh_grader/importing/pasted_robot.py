@@ -32,8 +32,8 @@ from dh_grader.translations import Sentence, joined, listed, say
 
 # --- The rows of an imported DH table, and the robot that they describe
 #
-# A table is a chain of factors X_0 Z_1 X_1 … Z_n X_n (see ``kinematics.chain``). Z and X are turned
-# over and joined here without solving any equation, so the poses stay the same.
+# A table is a chain of factors X_0 Z_1 X_1 … Z_n X_n. Z and X are turned over and joined here
+# without solving any equation, so the poses stay the same.
 
 
 _MEAN_LENGTHS = {A: 0.5, D: 0.3}

@@ -1,6 +1,6 @@
-"""Transforms, rotations, screws, DH links, chains, Jacobians; tolerances with their reasons.
+"""Transforms, screws, rotations, DH links, chains, Jacobians; tolerances with their reasons.
 
-All is numpy on batches. Nothing here knows exercises or students.
+All is numpy on batches. Nothing here knows exercises, formulas or students.
 """
 
 from collections.abc import Sequence
@@ -354,9 +354,10 @@ def other_triple(sequence: str, angles: Numbers) -> Numbers:
 
 
 def is_singular(sequence: str, rotation: Matrices, *, fixed: bool = False) -> NDArray[np.bool_]:
-    """True for rotations whose first and last angle are not unique."""
-    # Only the sum or difference of these angles is determined.
-    # The result is (...).
+    """True for rotations whose first and last angle are not unique: ``(...)``.
+
+    Only the sum or difference of these angles is determined.
+    """
     middle = to_angles(sequence, rotation, fixed=fixed)[..., 1]
     outer = np.sin(middle) if sequence[2] == sequence[0] else np.cos(middle)
     return np.asarray(np.abs(outer) < OUTER_AXES_ALIGNED)
@@ -485,7 +486,6 @@ def dh2_residual(transform: Matrices, convention: Convention) -> Numbers:
 def row(transform: Matrices, convention: Convention) -> Numbers:
     """Return the row (a, α, d, θ) ``(..., 4, L)`` of transforms ``(..., L, 4, 4)`` at L samples.
 
-    >>> from dh_grader.kinematics import modified_link
     >>> row(modified_link(0.5, 0.2, 0.3, 0.7)[None], Convention.MODIFIED)[:, 0]
     array([0.5, 0.2, 0.3, 0.7])
     """

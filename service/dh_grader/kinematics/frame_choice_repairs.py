@@ -1,4 +1,8 @@
-"""Repair the pose or the axes of a table by other values of few cells, or of one row."""
+"""Repair the pose or the axes of a table by other values of few cells, or of one row.
+
+Lengths are in a unit that suits the robot, so that one tolerance serves lengths and angles; angles
+are in radians. L is the number of samples. Whether a repaired table is right is for the caller.
+"""
 
 from collections.abc import Iterator, Sequence, Set
 from dataclasses import dataclass
@@ -28,10 +32,9 @@ from dh_grader.kinematics import (
 
 # --- Repair the pose of a table by changing one or two cells
 #
-# Shapes: L samples, C pairs of cells; a pose is ``(L, 4, 4)``. Lengths are in a unit that suits the
-# robot; angles are in radians.
+# Shapes: C pairs of cells; a pose is ``(L, 4, 4)``.
 #
-# The pose is a product of factors, screws about x and z in turn (factors). If one factor alone is
+# The pose is a product of ``Factors``, screws about x and z in turn. If one factor alone is
 # wrong, it has to be F = P⁻¹ T S⁻¹, where P is the product before it, S the product after it and T
 # the true pose. If F is a screw about that factor's axis, the shift and the turn of F are the right
 # values of the two cells. If one of these values is as written, the other cell alone repairs the
@@ -42,8 +45,6 @@ from dh_grader.kinematics import (
 # or a shift, and B is a turn or a shift. A turn leaves the points and the direction of its axis
 # unchanged, a shift leaves all directions unchanged. So A(x) takes the points or directions that B
 # leaves unchanged from M to N, which determines x. The remaining motion must then be a B(y).
-#
-# The unit of length lets one tolerance serve lengths and angles.
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,11 +88,10 @@ def two_factor_repairs(factors: Factors, pose: Matrices) -> Iterator[CellRepair]
 
 
 def repaired_values(factors: Factors, pose: Matrices, cells: Sequence[CellIndex]) -> Numbers | None:
-    """Return the values of one or two cells that correct the pose, or None.
+    """Return the values ``(k, L)`` of one or two cells that correct the pose, or None.
 
-    The values are ``(k, L)`` for k cells at L samples.
+    This gives the values of a ``CellRepair`` at other samples than those where it was found.
     """
-    # For the values of a CellRepair at other samples.
     positions = [factors.position(cell) for cell in cells]
     (a, kind_a), (b, kind_b) = min(positions), max(positions)
     if a != b:
@@ -186,13 +186,9 @@ def _shift_of_a(
 
 # --- Repair the pose of a table by changing one row
 #
-# Shapes: L samples; a pose is ``(L, 4, 4)``. Lengths are in a unit that suits the robot; angles are
-# in radians.
-#
 # The pose is a product of link transforms. If one row alone is wrong, it has to be A = P⁻¹ T S⁻¹,
-# where P is the product before it, S the product after it and T the true pose. If A is a link
-# transform, its four numbers are the right row. The unit of length lets one tolerance serve lengths
-# and angles.
+# where P is the product before it, S the product after it and T the true pose, ``(L, 4, 4)``. If A
+# is a link transform, its four numbers are the right row.
 
 
 def one_row_repairs(
@@ -236,8 +232,7 @@ def _changed(values: Numbers, written: Numbers) -> NDArray[np.bool_]:
 
 # --- Repair the joint axes of a table by changing one cell
 #
-# Shapes: L samples, K factors (``factors``), n joints. Lengths are in a unit that suits the robot;
-# angles are in radians.
+# Shapes: K ``Factors``, n joints.
 #
 # The base or the tool is free. If one cell is wrong, the factors before and after that cell's
 # factor form two rigid bodies with fixed joint axes. The pose of the first body is known from a

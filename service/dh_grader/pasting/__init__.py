@@ -1,7 +1,7 @@
 """Read a pasted table or matrix as a grid of cells.
 
-This package knows nothing about robots. The package imports only spans, errors and function names
-from ``dh_grader.expressions``.
+This package knows how scripts describe robots, but nothing of kinematics. It imports only spans,
+errors and function names from ``dh_grader.expressions``.
 """
 
 import re
@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 from itertools import islice
 from typing import Final
 
-from dh_grader.pasting import latex
 from dh_grader.pasting.around import (
     ASSIGNMENT,
     check_script,
@@ -22,7 +21,7 @@ from dh_grader.pasting.around import (
     without_titles,
     without_tuples,
 )
-from dh_grader.pasting.latex import FORMAT as LATEX
+from dh_grader.pasting.latex import LATEX, named_matrices
 from dh_grader.pasting.matrices import (
     BRACKETED,
     DRAWN_MATRIX,
@@ -42,7 +41,6 @@ from dh_grader.pasting.named_columns import (
 from dh_grader.pasting.program import (
     MAKERS,
     TAIL,
-    RobotTable,
     session_outputs,
     with_own_symbols,
     without_function,
@@ -60,8 +58,8 @@ from dh_grader.pasting.source import (
     GridError,
     GridFormat,
     GridLimits,
+    RobotTable,
     SourceText,
-    joined,
     remembers,
     split,
     strict_pairs,
@@ -170,10 +168,10 @@ def read_robot(text: str) -> RobotTable | None:
 
     Raises GridError if the table is not certain. Takes linear time.
     """
-    if describes_print(text) and not describes_robot(text):
-        return read_print(_limited(text))
     if describes_robot(text):
         return read_script(_limited(text))
+    if describes_print(text):
+        return read_print(_limited(text))
     return read_columns(_limited(text)) if describes_columns(text) else None
 
 
@@ -288,7 +286,8 @@ def read_grids(text: str) -> tuple[NamedGrid, ...]:
     Raises GridError if the text cannot be split into matrices. Takes linear time.
     """
     source = pasted_source(text, named=True)
-    pieces = latex.several(source) if latex.FORMAT.matches(source.text) else _several(source)
+    is_latex = LATEX.matches(source.text)
+    pieces = named_matrices(source) if is_latex else _named_pieces(source)
     # Names and products alone are no matrix: let the reader of a matrix refuse the text.
     pieces = pieces or [(source.cut(0, 0), source)]
     if len(pieces) > GRID_LIMITS.matrices:
@@ -313,7 +312,7 @@ def _read(piece: SourceText) -> Grid | GridError:
         return error
 
 
-def _several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
+def _named_pieces(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     source = without_remarks(_headings_out_of_comments(source))
     source = without_harmless_lines(source)
     nameless = source.cut(0, 0)
@@ -326,11 +325,7 @@ def _several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
 
 def _headings_out_of_comments(source: SourceText) -> SourceText:
     """Return the text with each comment line ``% A1`` replaced by the heading ``A1``."""
-    pieces, start = [], 0
-    for comment in _COMMENT.finditer(source.text):
-        pieces += [source.cut(start, comment.start()), source.cut(*comment.span(1))]
-        start = comment.end()
-    return joined([*pieces, source.cut(start, len(source.text))], source.whole[0])
+    return source.replaced(_COMMENT, lambda text, comment: [text.cut(*comment.span(1))])
 
 
 def _masked(source: SourceText) -> str:

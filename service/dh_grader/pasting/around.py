@@ -14,11 +14,11 @@ from typing import Final
 from dh_grader.expressions.errors import Note, Span
 from dh_grader.pasting.program import begins_as_matrix, text_around, without_remarks
 from dh_grader.pasting.remarks import may_change
-from dh_grader.pasting.source import GridError, SourceText, joined, split_blanks
+from dh_grader.pasting.source import BARS, GridError, SourceText, joined, split_blanks
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# --- Remove sentences and code fences around a pasted table or matrix
+# --- Remove sentences around a pasted table or matrix
 #
 # A line with words but without a separator of cells is a sentence. A sentence that names a unit is
 # an error, because the unit may apply to the table. So is a sentence that may correct the table.
@@ -26,9 +26,8 @@ from dh_grader.translations import say
 
 _QUOTED: Final = regex(r"^[ \t]{0,3}>(?!>)(?=[ \t|]) ?", re.MULTILINE)
 _FENCE: Final = regex(r"[ \t]*(?:```|~~~)[`~]{0,3}[ \t]*[\w+-]{0,20}[ \t]*")
-_BARS: Final = "|│┃║"
 # The separators of rows; the first that at least two lines have is the one of the table.
-_SEPARATORS: Final = (_BARS, "\t", "&", ";", ",")
+_SEPARATORS: Final = (BARS, "\t", "&", ";", ",")
 # A bracket that is not the unit in a header.
 _PROGRAM: Final = regex(r"\[(?!(?:in )?(?:[cm]?m|deg|rad|°)\])|■|<<|(?<!\w)(?:dict|np|sp)(?!\w)")
 _ENVIRONMENT: Final = regex(r"\\(?:begin|end) ?\{(?!document\})|\\[\[\]]|\$\$")
@@ -58,7 +57,7 @@ _CALL: Final = regex(r"\w\(")
 # Signs of a row with several values.
 _SEVERAL: Final = regex(r"[\s,;\[\]]")
 # Signs of a formula, a row or a program.
-_SIGNS: Final = regex(rf"[{_BARS}\t&;=\\\[\]{{}}@■<>]")
+_SIGNS: Final = regex(rf"[{BARS}\t&;=\\\[\]{{}}@■<>]")
 # A name in a sentence of Markdown or LaTeX, a reference, or an escaped star.
 _INLINE: Final = regex(
     r"\$[^$=\n]{1,60}\$|\\\([^=\n]{1,60}?\\\)|~?\\(?:(?:eq)?ref|label|cite)\{[^{}]{0,40}\}|\\(?=[*_#])"
@@ -103,64 +102,6 @@ _CORRECTS: Final = regex(
 )
 
 
-def without_fence(source: SourceText) -> SourceText:
-    """Return the text inside a code fence that has only sentences around it."""
-    # The marks of a quotation, a > before each line, are removed, too.
-    if all(map(_QUOTED.match, filter(str.strip, source.text.splitlines()))):
-        source = joined(source.split(_QUOTED), source.at)
-    if "```" not in source.text and "~~~" not in source.text:
-        return source
-    lines = source.lines()
-    fences = [i for i, line in enumerate(lines) if _FENCE.fullmatch(line.text)]
-    if len(fences) != 2:
-        return source
-    first, last = fences
-    around = [*lines[:first], *lines[last + 1 :]]
-    if first + 1 == last or any(
-        line.text.strip() and not is_sentence(line.text) for line in around
-    ):
-        return source
-    check_sentences(lines[:first], lines[last + 1 :])
-    return _between(source, lines[first + 1], lines[last - 1])
-
-
-# An image on a line of its own: in Markdown, HTML or LaTeX, or where a document had one.
-_IMAGE: Final = (
-    r"[ \t]*(?:!\[[^]\n]{0,200}\][(\[][^)\]\n]{0,400}[)\]]|!\[\[[^]\n]{1,200}\]\]"
-    r"|<img\b[^<>\n]{0,400}>|\\includegraphics(?:\[[^]\n]{0,200}\])?\{[^{}\n]{1,200}\})[ \t]*"
-)
-# A product of named matrices, such as A_i = Rot_z(theta_i) Trans_z(d_i): it gives no value to a
-# letter of a cell. Its arguments are plain names.
-_INDEX: Final = r"(?:[_^](?:\{(?:[\w\\, ]|i[-−]1){1,20}\}|\w|[-−]))"
-_FACTOR: Final = (
-    rf"(?:\{{\}}{_INDEX}{{0,2}})?(?:\\(?:text|mathrm|mathbf|operatorname)\{{[A-Z][a-z]{{0,6}}\}}"
-    rf"|[A-Z][a-z]{{0,6}}\d{{0,2}}){_INDEX}{{0,2}}"
-    r"(?:\((?:[a-z]\w{0,8}|\\[a-z]{1,8}|0|_\{?(?:\w{1,3}|i[-−]1)\}?|[, ]){1,12}\))?"
-)
-_BETWEEN: Final = r"[ \t]{0,3}(?:(?:\*|·|@|\\cdot|\\,|\\;|\\cdots|\.\.\.|…)[ \t]{0,3}){0,3}"
-_PRODUCT: Final = (
-    rf"[ \t]*(?P<open>\$\$|\$|\\\[|\\\()?\s{{0,4}}{_FACTOR}[ \t]{{0,3}}="
-    rf"[ \t]{{0,3}}{_FACTOR}(?:{_BETWEEN}{_FACTOR}){{1,12}}\s{{0,4}}"
-    r"(?(open)(?:\$\$?|\\\]|\\\)))[.,]?[ \t]*"
-)
-# The number of a page: "Page 3 of 4", "Seite 2", "- 3 -", "第 3 页".
-_PAGE: Final = (
-    r"[ \t]*(?:(?:page|seite|blatt|página|pagina|p\.|s\.)[ \t]?\d{1,3}"
-    r"(?:[ \t]?(?:of|von|sur|de|di|/)[ \t]?\d{1,3})?|-[ \t]?\d{1,3}[ \t]?-"
-    r"|第[ \t]?\d{1,3}[ \t]?页(?:.{0,3}共[ \t]?\d{1,3}[ \t]?页)?)[ \t]*"
-)
-_PICTURE: Final = regex(rf"^(?:{_IMAGE}|{_PRODUCT}|(?i:{_PAGE}))\r?$\n?", re.MULTILINE)
-
-
-def without_pictures(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
-    """Return the text without lines that are an image, a product of matrices or a page number."""
-    found = _PICTURE.search(source.text)
-    rest = joined(source.split(_PICTURE), source.at) if found else source
-    if found is None or not rest.text.strip():
-        return source, ()
-    return rest, (left_aside(source.span(*found.span())),)
-
-
 def without_titles(
     source: SourceText, *, of_table: bool = False
 ) -> tuple[SourceText, tuple[Note, ...]]:
@@ -186,30 +127,6 @@ def without_titles(
 def _is_aside(line: SourceText) -> bool:
     text = line.text.strip(_PADDING)
     return is_sentence(text) or _ASIDE.fullmatch(text) is not None
-
-
-def without_docstrings(source: SourceText) -> SourceText:
-    """Return a script of Python without its docstrings. Raises GridError if one names a unit."""
-    found = list(_docstrings(source.text))
-    starts = [0, *(end for _, end in found)]
-    ends = [*(start for start, _ in found), len(source.text)]
-    rest = joined(map(source.cut, starts, ends), source.at)
-    if not found or not rest.text.strip():
-        return source
-    for start, end in found:
-        for line in source.cut(start, end).lines():
-            check_units(line)
-    return rest
-
-
-def _docstrings(text: str) -> Iterator[Span]:
-    at = 0
-    while opening := _DOCSTRING.search(text, at):
-        closing = text.find(opening[1], opening.end())
-        at = closing + len(opening[1])
-        if closing < 0 or text[at:].partition("\n")[0].strip():
-            return
-        yield opening.start(), at
 
 
 def left_aside(place: Span) -> Note:
@@ -349,6 +266,94 @@ def _between(source: SourceText, first: SourceText, last: SourceText) -> SourceT
     return source.cut(start, end)
 
 
+# --- Remove code fences and docstrings that have only sentences in or around them
+
+
+def without_fence(source: SourceText) -> SourceText:
+    """Return the text inside a code fence that has only sentences around it."""
+    # The marks of a quotation, a > before each line, are removed, too.
+    if all(map(_QUOTED.match, filter(str.strip, source.text.splitlines()))):
+        source = joined(source.split(_QUOTED), source.at)
+    if "```" not in source.text and "~~~" not in source.text:
+        return source
+    lines = source.lines()
+    fences = [i for i, line in enumerate(lines) if _FENCE.fullmatch(line.text)]
+    if len(fences) != 2:
+        return source
+    first, last = fences
+    around = [*lines[:first], *lines[last + 1 :]]
+    if first + 1 == last or any(
+        line.text.strip() and not is_sentence(line.text) for line in around
+    ):
+        return source
+    check_sentences(lines[:first], lines[last + 1 :])
+    return _between(source, lines[first + 1], lines[last - 1])
+
+
+def without_docstrings(source: SourceText) -> SourceText:
+    """Return a script of Python without its docstrings. Raises GridError if one names a unit."""
+    found = list(_docstrings(source.text))
+    starts = [0, *(end for _, end in found)]
+    ends = [*(start for start, _ in found), len(source.text)]
+    rest = joined(map(source.cut, starts, ends), source.at)
+    if not found or not rest.text.strip():
+        return source
+    for start, end in found:
+        for line in source.cut(start, end).lines():
+            check_units(line)
+    return rest
+
+
+def _docstrings(text: str) -> Iterator[Span]:
+    at = 0
+    while opening := _DOCSTRING.search(text, at):
+        closing = text.find(opening[1], opening.end())
+        at = closing + len(opening[1])
+        if closing < 0 or text[at:].partition("\n")[0].strip():
+            return
+        yield opening.start(), at
+
+
+# --- Remove lines that are an image, a product of matrices or the number of a page
+
+
+# An image on a line of its own: in Markdown, HTML or LaTeX, or where a document had one.
+_IMAGE: Final = (
+    r"[ \t]*(?:!\[[^]\n]{0,200}\][(\[][^)\]\n]{0,400}[)\]]|!\[\[[^]\n]{1,200}\]\]"
+    r"|<img\b[^<>\n]{0,400}>|\\includegraphics(?:\[[^]\n]{0,200}\])?\{[^{}\n]{1,200}\})[ \t]*"
+)
+# A product of named matrices, such as A_i = Rot_z(theta_i) Trans_z(d_i): it gives no value to a
+# letter of a cell. Its arguments are plain names.
+_INDEX: Final = r"(?:[_^](?:\{(?:[\w\\, ]|i[-−]1){1,20}\}|\w|[-−]))"
+_FACTOR: Final = (
+    rf"(?:\{{\}}{_INDEX}{{0,2}})?(?:\\(?:text|mathrm|mathbf|operatorname)\{{[A-Z][a-z]{{0,6}}\}}"
+    rf"|[A-Z][a-z]{{0,6}}\d{{0,2}}){_INDEX}{{0,2}}"
+    r"(?:\((?:[a-z]\w{0,8}|\\[a-z]{1,8}|0|_\{?(?:\w{1,3}|i[-−]1)\}?|[, ]){1,12}\))?"
+)
+_BETWEEN: Final = r"[ \t]{0,3}(?:(?:\*|·|@|\\cdot|\\,|\\;|\\cdots|\.\.\.|…)[ \t]{0,3}){0,3}"
+_PRODUCT: Final = (
+    rf"[ \t]*(?P<open>\$\$|\$|\\\[|\\\()?\s{{0,4}}{_FACTOR}[ \t]{{0,3}}="
+    rf"[ \t]{{0,3}}{_FACTOR}(?:{_BETWEEN}{_FACTOR}){{1,12}}\s{{0,4}}"
+    r"(?(open)(?:\$\$?|\\\]|\\\)))[.,]?[ \t]*"
+)
+# The number of a page: "Page 3 of 4", "Seite 2", "- 3 -", "第 3 页".
+_PAGE: Final = (
+    r"[ \t]*(?:(?:page|seite|blatt|página|pagina|p\.|s\.)[ \t]?\d{1,3}"
+    r"(?:[ \t]?(?:of|von|sur|de|di|/)[ \t]?\d{1,3})?|-[ \t]?\d{1,3}[ \t]?-"
+    r"|第[ \t]?\d{1,3}[ \t]?页(?:.{0,3}共[ \t]?\d{1,3}[ \t]?页)?)[ \t]*"
+)
+_PICTURE: Final = regex(rf"^(?:{_IMAGE}|{_PRODUCT}|(?i:{_PAGE}))\r?$\n?", re.MULTILINE)
+
+
+def without_pictures(source: SourceText) -> tuple[SourceText, tuple[Note, ...]]:
+    """Return the text without lines that are an image, a product of matrices or a page number."""
+    found = _PICTURE.search(source.text)
+    rest = joined(source.split(_PICTURE), source.at) if found else source
+    if found is None or not rest.text.strip():
+        return source, ()
+    return rest, (left_aside(source.span(*found.span())),)
+
+
 # --- Assignments above the matrix of a MATLAB script, such as ``a1 = 0.4``
 
 
@@ -370,7 +375,6 @@ _PLAIN_NUMBER: Final = regex(r"[-+]?(?:\d{1,30}\.?\d{0,30}|\.\d{1,30})(?:[eE][-+
 _HARMLESS: Final = regex(
     r"[ \t\r]*(?:(?:syms|clc|clear|close|format|pkg|load|import|from)\b[^;\n]*)?(?:[;,\n]|\Z)"
 )
-# A name that is not the left side of an assignment.
 # A line above or below a table: "where d1 = 0.135 m, a2 = 0.4 m".
 _DEFINITION: Final = (
     r"(?:[^\W\d_]{1,5}_?\d{1,2}|[^\W\d_]_\{\d\}|[^\W\d_][₀-₉])\s{0,4}[=:]\s{0,4}"
@@ -382,6 +386,7 @@ _DEFINITIONS: Final = regex(
     re.IGNORECASE,
 )
 _DEFINED: Final = regex(r"[^\W\d]\w*(?=\s{0,4}[=:])")
+# A name that is not the left side of an assignment.
 _READ: Final = regex(r"(?<!\w)[^\WA-Za-z]*([A-Za-z]\w*)(?!\w|[ \t]*=(?!=))")
 # A last statement that shows a matrix or counts its rows: disp(T), print(T), T, n = size(T, 1).
 _SHOWS: Final = regex(
@@ -483,9 +488,8 @@ def given_numbers_note(given: Sequence[GivenValue], read: Set[str]) -> tuple[Not
     """Return the note on numbers that a script assigns to letters.
 
     ``read`` are the letters in the cells. Raises GridError if the value of such a letter is not a
-    number.
+    plain number.
     """
-    # That is, a value that is not a plain number.
     for each in given:
         is_known = each.is_number or not _without_shorthands(f"{each.name} = {each.value}")
         if each.name in read and not is_known:

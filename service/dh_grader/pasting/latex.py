@@ -19,6 +19,9 @@ from dh_grader.pasting.source import (
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
+# --- One matrix or table in LaTeX
+
+
 # The number of arguments in braces after \begin{…}.
 ARGUMENTS: Final = {
     "tabular": 1, "longtable": 1, "array": 1, "tabular*": 2, "tabularx": 2,
@@ -120,14 +123,7 @@ def _parse(source: SourceText) -> Grid:
 
 def without_comments(source: SourceText) -> SourceText:
     r"""Return the text without its comments; \% does not begin a comment."""
-    text = source.text
-    pieces: list[SourceText] = []
-    start = 0
-    for found in _COMMENT.finditer(text):
-        if found[0].startswith("%"):
-            pieces.append(source.cut(start, found.start()))
-            start = found.end()
-    return joined([*pieces, source.cut(start, len(text))], source.whole[0])
+    return source.replaced(_COMMENT, lambda _, found: [] if found[0].startswith("%") else None)
 
 
 def _body(source: SourceText) -> SourceText:
@@ -288,7 +284,7 @@ def _without_sizes(cell: SourceText) -> SourceText:
     return joined(cell.split(_SIZES), cell.at) if _SIZES.search(cell.text) else cell
 
 
-FORMAT: Final = GridFormat(_matches, _parse)
+LATEX: Final = GridFormat(_matches, _parse)
 
 
 # --- Several matrices in one LaTeX text, each with its name: ``A_1 = \begin{bmatrix} … A_2 = …``
@@ -312,7 +308,7 @@ _PRODUCTS: Final = regex(r"[\s$,.;&\\(){}\[\]A-Za-z0-9_^]*=[\s$,.;&\\(){}\[\]A-Z
 _BLANKS: Final = " \t\r\n&,.:"
 
 
-def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
+def named_matrices(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     """Return the matrices of a text as pairs (name, matrix); the name may be empty.
 
     Raises GridError for an environment without an end, or for text that may change a matrix.
@@ -320,7 +316,7 @@ def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     source = without_comments(source)
     found: list[tuple[SourceText, SourceText]] = []
     after = 0
-    innermost = _innermost(source)
+    innermost = sorted([*_environments(source), *_plain(source)])
     if len(innermost) > GRID_LIMITS.matrices:
         raise too_many_matrices(source.whole)
     for start, end in innermost:
@@ -338,11 +334,8 @@ def several(source: SourceText) -> list[tuple[SourceText, SourceText]]:
     return found
 
 
-def _innermost(source: SourceText) -> list[tuple[int, int]]:
-    return sorted([*_environments(source), *_plain(source)])
-
-
 def _environments(source: SourceText) -> Iterator[tuple[int, int]]:
+    """Yield where each environment without another one inside begins and ends."""
     begun: list[re.Match[str]] = []
     innermost = False
     for mark in BEGIN.finditer(source.text):

@@ -1,4 +1,7 @@
-"""Matrices in pasted texts: one reader for each format, from Word to lists of lists."""
+"""Matrices in pasted texts: one reader for each format, in the order in which they are tried.
+
+LaTeX is in ``latex.py``; texts with several matrices are split in ``__init__.py``.
+"""
 
 import re
 from itertools import pairwise, zip_longest
@@ -70,11 +73,80 @@ def identity(source: SourceText) -> Grid | None:
     return Grid("identity" if stated else ANY_SIZE, tuple(map(tuple, cells)))
 
 
+# --- Matrices of Eigen in C++: ``R << 1, 0, 0, 1;``, with or without the declaration of ``R``
+
+
+_COMMENT: Final = regex(r"//[^\n]*")
+_EIGEN_MATRIX: Final = regex(
+    r"(?:\s*(?:#include|using)\b[^\n]{0,80}\n)*"
+    r"(?:\s*(?:Eigen::)?Matrix(?:(?P<size>[2-6])[df]|X[df]|"
+    r"<\w{1,12}, ?(?P<rows>\d), ?(?P<columns>\d)>)"
+    r"\s+(?P<declared>\w{1,40})(?: ?\((?P<height>\d), ?(?P<width>\d)\))?\s*;)?"
+    r"\s*(?P<name>[A-Za-z]\w{0,40})\s*<<(?P<values>[^;<>=]+)"
+)
+_SHOWN: Final = r"[\s;]*(?:(?:std::)?cout\s?<<\s?{name}(?:\s?<<[^;<=]{{1,20}})?[\s;]*)?"
+
+
+def _eigen_found(text: str) -> re.Match[str] | None:
+    found = _EIGEN_MATRIX.match(text) if "<<" in text else None
+    return found if found and "," in found["values"] else None
+
+
+def _eigen_parse(source: SourceText) -> Grid:
+    plain = joined(source.split(_COMMENT), source.at)
+    found = _eigen_found(plain.text)
+    if found is None or (found["declared"] or found["name"]) != found["name"]:
+        raise text_around(plain)
+    rest = plain.cut(found.end(), len(plain.text))
+    if not re.fullmatch(_SHOWN.format(name=found["name"]), rest.text):
+        raise text_around(rest.strip(" \n;"))
+    content = plain.cut(*found.span("values"))
+    height = found["size"] or found["rows"] or found["height"]
+    width = found["size"] or found["columns"] or found["width"]
+    if height:
+        # Eigen fills row by row, wherever the lines end.
+        rows = _flat_list(content, WrittenMatrix((), shape=(int(height), int(width))))
+    else:
+        rows = _list_rows([line for line in content.lines() if line.text.strip()])
+    return grid("Eigen", rows, source.whole)
+
+
+EIGEN: Final = GridFormat(
+    lambda text: _eigen_found(_COMMENT.sub("", text)) is not None, _eigen_parse
+)
+
+
+# --- Maple's matrices in angle brackets: by rows <<a|b>, <c|d>>, by columns <<a, c>|<b, d>>
+
+
+_MAPLE_MATRIX: Final = regex(
+    r"<\s*<[^<>,;]{1,800}>(?:\s*[,;]\s*<[^<>,;]{1,800}>){1,12}\s*>"
+    r"|(?P<columns><\s*<[^<>|]{1,800}>(?:\s*\|\s*<[^<>|]{1,800}>){1,12}\s*>)"
+)
+_LINE: Final = regex(r"<([^<>]+)>")
+
+
+def _maple_found(text: str) -> re.Match[str] | None:
+    return _MAPLE_MATRIX.fullmatch(text[after_names(text) :].strip(TAIL)) if "<" in text else None
+
+
+def _maple_parse(source: SourceText) -> Grid:
+    found = _maple_found(source.text)
+    by_columns = found is not None and found["columns"] is not None
+    lines = [source.cut(*line.span(1)) for line in _LINE.finditer(source.text)]
+    rows = [split(line, ",;" if by_columns else "|") for line in lines]
+    if by_columns:
+        rows = [list(row) for row in zip_longest(*rows, fillvalue=source.cut(0, 0))]
+    return grid("Maple", rows, source.whole)
+
+
+MAPLE: Final = GridFormat(lambda text: _maple_found(text) is not None, _maple_parse)
+
+
 # --- Matrices as Word writes them in one line: ``T=[■(a&b@c&d)]``, also ``■8(…)``, ``\matrix(…)``
 #
-# The sign @ separates rows and & separates values.
-#
-# Source: M. Sargent, UnicodeMath, Unicode Technical Note 28.
+# The sign @ separates rows and & separates values. Source: M. Sargent, UnicodeMath, Unicode
+# Technical Note 28.
 
 
 # ⓢ and ⒨ are matrices in [ ] and in ( ).
@@ -146,76 +218,6 @@ def _check_around(front: SourceText, rest: SourceText) -> None:
 WORD: Final = GridFormat(_word_matches, _word_parse)
 
 
-# --- Maple's matrices in angle brackets: by rows <<a|b>, <c|d>>, by columns <<a, c>|<b, d>>
-
-
-_MAPLE_MATRIX: Final = regex(
-    r"<\s*<[^<>,;]{1,800}>(?:\s*[,;]\s*<[^<>,;]{1,800}>){1,12}\s*>"
-    r"|(?P<columns><\s*<[^<>|]{1,800}>(?:\s*\|\s*<[^<>|]{1,800}>){1,12}\s*>)"
-)
-_LINE: Final = regex(r"<([^<>]+)>")
-
-
-def _maple_found(text: str) -> re.Match[str] | None:
-    return _MAPLE_MATRIX.fullmatch(text[after_names(text) :].strip(TAIL)) if "<" in text else None
-
-
-def _maple_parse(source: SourceText) -> Grid:
-    found = _maple_found(source.text)
-    by_columns = found is not None and found["columns"] is not None
-    lines = [source.cut(*line.span(1)) for line in _LINE.finditer(source.text)]
-    rows = [split(line, ",;" if by_columns else "|") for line in lines]
-    if by_columns:
-        rows = [list(row) for row in zip_longest(*rows, fillvalue=source.cut(0, 0))]
-    return grid("Maple", rows, source.whole)
-
-
-MAPLE: Final = GridFormat(lambda text: _maple_found(text) is not None, _maple_parse)
-
-
-# --- Matrices of Eigen in C++: ``R << 1, 0, 0, 1;``, with or without the declaration of ``R``
-
-
-_COMMENT: Final = regex(r"//[^\n]*")
-_EIGEN_MATRIX: Final = regex(
-    r"(?:\s*(?:#include|using)\b[^\n]{0,80}\n)*"
-    r"(?:\s*(?:Eigen::)?Matrix(?:(?P<size>[2-6])[df]|X[df]|"
-    r"<\w{1,12}, ?(?P<rows>\d), ?(?P<columns>\d)>)"
-    r"\s+(?P<declared>\w{1,40})(?: ?\((?P<height>\d), ?(?P<width>\d)\))?\s*;)?"
-    r"\s*(?P<name>[A-Za-z]\w{0,40})\s*<<(?P<values>[^;<>=]+)"
-)
-_SHOWN: Final = r"[\s;]*(?:(?:std::)?cout\s?<<\s?{name}(?:\s?<<[^;<=]{{1,20}})?[\s;]*)?"
-
-
-def _eigen_found(text: str) -> re.Match[str] | None:
-    found = _EIGEN_MATRIX.match(text) if "<<" in text else None
-    return found if found and "," in found["values"] else None
-
-
-def _eigen_parse(source: SourceText) -> Grid:
-    plain = joined(source.split(_COMMENT), source.at)
-    found = _eigen_found(plain.text)
-    if found is None or (found["declared"] or found["name"]) != found["name"]:
-        raise text_around(plain)
-    rest = plain.cut(found.end(), len(plain.text))
-    if not re.fullmatch(_SHOWN.format(name=found["name"]), rest.text):
-        raise text_around(rest.strip(" \n;"))
-    content = plain.cut(*found.span("values"))
-    height = found["size"] or found["rows"] or found["height"]
-    width = found["size"] or found["columns"] or found["width"]
-    if height:
-        # Eigen fills row by row, wherever the lines end.
-        rows = _flat_list(content, WrittenMatrix((), shape=(int(height), int(width))))
-    else:
-        rows = _list_rows([line for line in content.lines() if line.text.strip()])
-    return grid("Eigen", rows, source.whole)
-
-
-EIGEN: Final = GridFormat(
-    lambda text: _eigen_found(_COMMENT.sub("", text)) is not None, _eigen_parse
-)
-
-
 # --- Matrices drawn over several lines: SymPy's and Octave's ⎡…⎤, Maxima's [ … ], MATLAB's / … \
 #
 # A row is one line, followed by an empty line of the drawing. A matrix whose cells take several
@@ -231,13 +233,13 @@ _SLASHES: Final = regex(r"^[ \t]*/[^\n]*\\[ \t]*\r?\n[ \t]*\|", re.MULTILINE)
 _GAP: Final = regex(r"[ \t]{2,}")
 
 
-def _drawn_matrix_matches(text: str) -> bool:
+def _drawn_matches(text: str) -> bool:
     if not _PIECES.isdisjoint(text):
         return True
     return _SPACER.search(text) is not None or _SLASHES.search(text) is not None
 
 
-def _drawn_matrix_parse(source: SourceText) -> Grid:
+def _drawn_parse(source: SourceText) -> Grid:
     drawing = source.cut(after_names(source.text), len(source.text)).strip(TAIL)
     lines = [line for line in map(SourceText.strip, drawing.lines()) if line.text]
     rows: list[SourceText | None] = []
@@ -260,9 +262,7 @@ def _drawn_matrix_parse(source: SourceText) -> Grid:
 def _cells(row: SourceText) -> list[SourceText]:
     """Split a row at commas, or at two or more blanks if it has no comma."""
     commas = [*outside(row.text, ",")]
-    if not commas:
-        return row.split(_GAP)
-    return [row.cut(a + 1, b) for a, b in pairwise([-1, *commas, len(row.text)])]
+    return row.cut_at(commas) if commas else row.split(_GAP)
 
 
 def _refusal(line: SourceText) -> GridError:
@@ -276,98 +276,7 @@ def _refusal(line: SourceText) -> GridError:
     )
 
 
-DRAWN_MATRIX: Final = GridFormat(_drawn_matrix_matches, _drawn_matrix_parse)
-
-
-# --- Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks
-
-
-def rows_in_matlab(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
-    """Return the values of each row, with notes if the text is ambiguous.
-
-    Raises GridError if splitting at commas and splitting at blanks give different matrices.
-    """
-    lines = split(content, ";\r\n")
-    lines = [line.strip() for line in lines if line.text.strip(" \t,")]
-    by_commas = [_without_last_empty(split(line, ",")) for line in lines]
-    by_blanks, signs = _by_blanks(by_commas)
-    if list(map(len, by_commas)) == list(map(len, by_blanks)):
-        return by_commas, ()
-    if all(len(row) == 1 for row in by_commas) or not _is_rectangle(by_commas):
-        return by_blanks, _sign_notes(signs)
-    if _is_rectangle(by_blanks):
-        raise _ambiguous(by_commas, by_blanks)
-    message = say(
-        "Commas separate the values here, so spaces inside a value were read as products and sums."
-    )
-    return by_commas, (Note("commas_separate", message, content.whole),)
-
-
-def _by_blanks(
-    by_commas: list[list[SourceText]],
-) -> tuple[list[list[SourceText]], list[SourceText]]:
-    found: list[list[SourceText]] = []
-    signs: list[SourceText] = []
-    for row in by_commas:
-        elements: list[SourceText] = []
-        for piece in row:
-            separated = split_blanks(piece)
-            elements += separated.elements or (piece,)
-            signs += separated.signs
-        found.append(elements)
-    return found, signs
-
-
-def _without_last_empty(row: list[SourceText]) -> list[SourceText]:
-    return row[:-1] if len(row) > 1 and not row[-1].text.strip() else row
-
-
-def _is_rectangle(found: list[list[SourceText]]) -> bool:
-    return len({len(row) for row in found}) == 1
-
-
-def _sign_notes(signs: list[SourceText]) -> tuple[Note, ...]:
-    if not signs:
-        return ()
-    sign = signs[0]
-    message = say(
-        "The space before {value} begins a new value, as in MATLAB; a difference has spaces on "
-        "both sides of the sign, or none.",
-        value=sign.text[:20],
-    )
-    return (Note("blank_before_sign", message, sign.whole),)
-
-
-def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceText]]) -> GridError:
-    at = next(i for i, row in enumerate(by_commas) if len(row) != len(by_blanks[i]))
-    row, longer = by_commas[at], by_blanks[at]
-    return GridError(
-        "mixed_separators",
-        say(
-            "This row has {few} values if only commas separate them, and {many} if spaces do, too. "
-            "Write commas between all values.",
-            few=len(row),
-            many=len(longer),
-        ),
-        (row[0].whole[0], row[-1].whole[1]),
-    )
-
-
-# --- MATLAB rows without brackets: each line ends with a semicolon
-
-
-def _matlab_rows_matches(text: str) -> bool:
-    lines = [line.strip() for line in text.strip().splitlines() if line.strip()]
-    inside = any(";" in line[:-1] for line in lines)
-    return len(lines) > 1 and not inside and all(line.endswith(";") for line in lines[:-1])
-
-
-def _matlab_rows_parse(source: SourceText) -> Grid:
-    rows, notes = rows_in_matlab(source)
-    return grid("rows with semicolons", rows, source.whole, notes)
-
-
-MATLAB_ROWS: Final = GridFormat(_matlab_rows_matches, _matlab_rows_parse)
+DRAWN_MATRIX: Final = GridFormat(_drawn_matches, _drawn_parse)
 
 
 # --- Matrices in brackets: MATLAB's, and lists of lists from Python, NumPy, SymPy and JSON
@@ -514,3 +423,94 @@ def _values(line: SourceText) -> list[SourceText]:
     if not pieces[-1].text.strip():
         pieces.pop()
     return pieces
+
+
+# --- MATLAB rows without brackets: each line ends with a semicolon
+
+
+def _matlab_rows_matches(text: str) -> bool:
+    lines = [line.strip() for line in text.strip().splitlines() if line.strip()]
+    inside = any(";" in line[:-1] for line in lines)
+    return len(lines) > 1 and not inside and all(line.endswith(";") for line in lines[:-1])
+
+
+def _matlab_rows_parse(source: SourceText) -> Grid:
+    rows, notes = rows_in_matlab(source)
+    return grid("rows with semicolons", rows, source.whole, notes)
+
+
+MATLAB_ROWS: Final = GridFormat(_matlab_rows_matches, _matlab_rows_parse)
+
+
+# --- Split a MATLAB matrix into rows at semicolons or line ends, and rows at commas or blanks
+
+
+def rows_in_matlab(content: SourceText) -> tuple[list[list[SourceText]], tuple[Note, ...]]:
+    """Return the values of each row, with notes if the text is ambiguous.
+
+    Raises GridError if splitting at commas and splitting at blanks give different matrices.
+    """
+    lines = split(content, ";\r\n")
+    lines = [line.strip() for line in lines if line.text.strip(" \t,")]
+    by_commas = [_without_last_empty(split(line, ",")) for line in lines]
+    by_blanks, signs = _by_blanks(by_commas)
+    if list(map(len, by_commas)) == list(map(len, by_blanks)):
+        return by_commas, ()
+    if all(len(row) == 1 for row in by_commas) or not _is_rectangle(by_commas):
+        return by_blanks, _sign_notes(signs)
+    if _is_rectangle(by_blanks):
+        raise _ambiguous(by_commas, by_blanks)
+    message = say(
+        "Commas separate the values here, so spaces inside a value were read as products and sums."
+    )
+    return by_commas, (Note("commas_separate", message, content.whole),)
+
+
+def _by_blanks(
+    by_commas: list[list[SourceText]],
+) -> tuple[list[list[SourceText]], list[SourceText]]:
+    found: list[list[SourceText]] = []
+    signs: list[SourceText] = []
+    for row in by_commas:
+        elements: list[SourceText] = []
+        for piece in row:
+            separated = split_blanks(piece)
+            elements += separated.elements or (piece,)
+            signs += separated.signs
+        found.append(elements)
+    return found, signs
+
+
+def _without_last_empty(row: list[SourceText]) -> list[SourceText]:
+    return row[:-1] if len(row) > 1 and not row[-1].text.strip() else row
+
+
+def _is_rectangle(found: list[list[SourceText]]) -> bool:
+    return len({len(row) for row in found}) == 1
+
+
+def _sign_notes(signs: list[SourceText]) -> tuple[Note, ...]:
+    if not signs:
+        return ()
+    sign = signs[0]
+    message = say(
+        "The space before {value} begins a new value, as in MATLAB; a difference has spaces on "
+        "both sides of the sign, or none.",
+        value=sign.text[:20],
+    )
+    return (Note("blank_before_sign", message, sign.whole),)
+
+
+def _ambiguous(by_commas: list[list[SourceText]], by_blanks: list[list[SourceText]]) -> GridError:
+    at = next(i for i, row in enumerate(by_commas) if len(row) != len(by_blanks[i]))
+    row, longer = by_commas[at], by_blanks[at]
+    return GridError(
+        "mixed_separators",
+        say(
+            "This row has {few} values if only commas separate them, and {many} if spaces do, too. "
+            "Write commas between all values.",
+            few=len(row),
+            many=len(longer),
+        ),
+        (row[0].whole[0], row[-1].whole[1]),
+    )

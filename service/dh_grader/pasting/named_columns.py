@@ -1,4 +1,7 @@
-"""Tables of dictionaries or objects, and what robotics toolboxes print for a robot."""
+"""Tables of dictionaries or objects, and what robotics toolboxes print for a robot.
+
+Scripts that build a robot from links are in ``robots.py``.
+"""
 
 import re
 from collections.abc import Mapping
@@ -7,11 +10,10 @@ from itertools import islice
 from typing import Final
 
 from dh_grader.expressions.errors import Note
-from dh_grader.pasting import matrices
 from dh_grader.pasting.around import UNIT
+from dh_grader.pasting.matrices import rows_in_matlab
 from dh_grader.pasting.program import (
     MAKERS,
-    RobotTable,
     arguments,
     excerpt,
     split_call,
@@ -20,10 +22,11 @@ from dh_grader.pasting.program import (
     unquoted,
     unread_script,
 )
-from dh_grader.pasting.robots import too_many_robots
+from dh_grader.pasting.robots import PARAMETERS, too_many_robots
 from dh_grader.pasting.source import (
     CLOSES,
     GRID_LIMITS,
+    RobotTable,
     SourceText,
     grid,
     joined,
@@ -42,142 +45,16 @@ from dh_grader.translations import say, say_count
 # l2]``.
 
 
-# --- Read the table that P. Corke's Robotics Toolboxes print for a robot, in MATLAB and in Python
-#
-# The first line names the convention: ``arm:: 3 axis, RRR, stdDH, slowRNE`` or ``DHRobot: arm, 3
-# joints (RRR), standard DH parameters``.
-#
-# Angles without a unit are in radians.
-
-
-_FIRST_LINE: Final = regex(
-    r"(?:::[ \t]{0,4}|\()(?P<axes>\d{1,2}) axis, [RP]{1,12}, (?P<matlab>std|mod)DH"
-    r"|(?P<joints>\d{1,2}) joints? \([RP]{1,12}\),[^\n]{0,80}?"
-    r"(?P<python>standard|modified) DH parameters"
-)
-# The headers that the toolbox for MATLAB prints, if the first line is missing.
-_BOX: Final = regex(
-    r"^[ \t]*\|[ \t]*j[ \t]*\|[ \t]*theta[ \t]*\|[ \t]*d[ \t]*\|[ \t]*a[ \t]*\|[ \t]*alpha[ \t]*"
-    r"\|[ \t]*offset[ \t]*\|",
-    re.MULTILINE,
-)
-_BARS: Final = regex(r"[|│┃║]")
-_HEADERS: Final[Mapping[str, str]] = {
-    "theta": "theta", "θ": "theta", "d": "d", "a": "a", "alpha": "alpha", "⍺": "alpha",
-    "α": "alpha", "offset": "offset",
-}  # fmt: skip
-_CONVENTIONS: Final = {"std": "standard", "sta": "standard", "mod": "modified"}
-_INDEX: Final = " ⱼ₋₁"
-_TOOLBOX_PRINT_COLUMNS: Final = ("a", "alpha", "d", "theta")
-# A line below the headers without values, as Markdown draws it.
-_RULE: Final = regex(r"[\s|│┃║:=\-]+")
-_INDEXED: Final = r"[ _]?\{?[\d₁-₉]"
-# The joint variable, as the toolbox prints it or as a student writes it into the table.
-_VARIABLE: Final = regex(rf"[$\\]{{0,2}}(?:q|th|theta|θ|ϑ){_INDEXED}", re.IGNORECASE)
-_SLIDING: Final = regex(rf"\$?q{_INDEXED}", re.IGNORECASE)
-_ZERO: Final = regex(r"-?0(?:\.0*)?°?")
-_TOOLBOX_PRINT_FRAME: Final = regex(r"(?<![^\W\d_])(?:tool|base)(?![^\W\d_])")
-_NUMBER: Final = regex(r"(?<![\w.])-?\d{1,12}(?:\.\d{0,12})?(?![\w.])")
-# The numbers of two unit matrices side by side, as older versions print base and tool.
-_UNIT_MATRICES: Final = [[float(i == j) for j in range(4)] * 2 for i in range(4)]
-
-
-def describes_print(text: str) -> bool:
-    """True if a text contains a robot as P. Corke's Robotics Toolbox prints it."""
-    return _FIRST_LINE.search(text) is not None or _BOX.search(text) is not None
-
-
-def read_print(source: SourceText) -> RobotTable:
-    """Return the table of the printed robot. Raises GridError if the table is not certain."""
-    # GridError if there are several robots, if the table is incomplete, or if the robot has a base
-    # or a tool.
-    found = list(_FIRST_LINE.finditer(source.text))
-    if len(found) > 1 or len(_BOX.findall(source.text)) > 1:
-        raise too_many_robots(source)
-    rows, rest = _table(source.cut(found[0].end() if found else 0, len(source.text)))
-    columns = [_HEADERS.get(cell.text.strip(_INDEX)) for cell in rows[0]] if rows else []
-    count = int(found[0]["axes"] or found[0]["joints"]) if found else len(rows) - 1
-    is_whole = len(rows) - 1 == count > 0 and (bool(found) or _BARS.search(rest) is None)
-    if not is_whole or any(columns.count(name) != 1 for name in _TOOLBOX_PRINT_COLUMNS):
-        raise unread_script(
-            say("The table below this line is not complete. Paste it with its line of headers."),
-            source,
-        )
-    if _has_frames(rest):
-        raise unread_script(
-            say(
-                "The robot has a base or a tool, which this table does not show. Write the "
-                "DH table with its headers, without the rest."
-            ),
-            source,
-        )
-    for row in rows[1:]:
-        if len(row) != len(columns):
-            raise unread_script(
-                say("This row is not complete. Copy the whole table again."), row[0]
-            )
-    cells = [_cells(row, columns) for row in rows[1:]]
-    names = [first["matlab"] or first["python"] for first in found]
-    convention = _CONVENTIONS[names[0][:3]] if names else None
-    return RobotTable(grid("toolbox", cells, source.whole), convention)
-
-
-def _table(source: SourceText) -> tuple[list[list[SourceText]], str]:
-    rows: list[list[SourceText]] = []
-    lines = source.lines()
-    for i, line in enumerate(lines):
-        plain = line.strip()
-        if _BARS.match(plain.text) and _RULE.fullmatch(plain.text):
-            continue
-        if _BARS.match(plain.text):
-            rows.append([cell.strip() for cell in plain.split(_BARS)[1:-1]])
-        elif rows and plain.text[:1] not in {"+", "├", "┣", "╠"}:
-            return rows, "\n".join(line.text for line in lines[i:])
-    return rows, ""
-
-
-def _cells(row: list[SourceText], columns: list[str | None]) -> list[SourceText]:
-    named = {name: cell for name, cell in zip(columns, row, strict=True) if name}
-    offset = named.get("offset")
-    if offset is not None and not _ZERO.fullmatch(offset.text):
-        variable = "theta" if _VARIABLE.match(named["theta"].text) else "d"
-        if variable == "d" and not _SLIDING.match(named["d"].text):
-            message = say(
-                "This offset may belong to θ or to d. Add it to the value in one of them."
-            )
-            raise unread_script(message, offset)
-        cell = named[variable]
-        parts = [cell, cell.spelled(" + ("), offset, offset.spelled(")")]
-        named[variable] = joined(parts, cell.at)
-    return [named[name] for name in _TOOLBOX_PRINT_COLUMNS]
-
-
-def _has_frames(rest: str) -> bool:
-    """True if the robot has a base or a tool that is not the unit matrix."""
-    if not _TOOLBOX_PRINT_FRAME.search(rest):
-        return False
-    lines = [line for line in rest.splitlines() if line.strip()]
-    numbers = [[float(number) for number in _NUMBER.findall(line)] for line in lines]
-    if [each[-8:] for each in numbers[:4]] == _UNIT_MATRICES:
-        return any(map(_TOOLBOX_PRINT_FRAME.search, lines[4:]))
-    return any(
-        any(each)
-        for line, each in zip(lines, numbers, strict=True)
-        if _TOOLBOX_PRINT_FRAME.search(line)
-    )
-
-
 _DICTIONARY: Final = regex(
     r"\{\s{0,40}(?:'[^'\n]{1,40}'|\"[^\"\n]{1,40}\"|[A-Za-z]\w{0,20})\s?:"
     r"|(?<!\w)dict\(\s{0,40}\w{1,20}\s?="
 )
 _NAME: Final = regex(r"[A-Za-z]\w{0,60}[ \t]*=(?!=)[ \t]*")
 _KEY: Final = regex(r"(alpha|al|a|d|theta|th|q|α|θ)_?(\d{1,2})")
-_NAMED_COLUMNS_COLUMNS: Final = {
+_COLUMN_OF: Final = {
     "alpha": "alpha", "al": "alpha", "α": "alpha", "a": "a", "d": "d", "theta": "theta",
     "th": "theta", "θ": "theta", "q": "theta",
 }  # fmt: skip
-_PARAMETERS: Final = frozenset(_NAMED_COLUMNS_COLUMNS.values())
 # The beginning of a list with the name of a column, in a statement of its own.
 _LIST: Final = regex(
     r"(?:^|(?<=;))[ \t]{0,8}(?:[A-Za-z]\w{0,20}\.)?(alpha|al|a|d|theta|th|q|α|θ)[ \t]{0,8}="
@@ -188,7 +65,7 @@ _HARMLESS: Final = regex(
     r"(?:syms|import|from|clc|clear|close|format|pkg|class|def)\b"
     r"|\w+\s*=\s*(?:table|length|len|numel|size)\([\w, ]+\)\Z"
 )
-_NAMED_COLUMNS_FRAME: Final = "DataFrame"
+_DATA_FRAME: Final = "DataFrame"
 _UNIT: Final = regex(rf"{UNIT.pattern}|(?<!\w)m(?!\w)", re.IGNORECASE)
 _KEYWORDS: Final = frozenset({"data", "columns", "index", "dtype"})
 _TITLES: Final = frozenset({"robot", "name", "title", "model"})
@@ -207,11 +84,8 @@ def describes_columns(text: str) -> bool:
     # LaTeX has braces and colons, too.
     if "DataFrame(" in text:
         return True
-    names = {
-        _NAMED_COLUMNS_COLUMNS[found[1]]
-        for found in islice(_LIST.finditer(text), GRID_LIMITS.columns)
-    }
-    if len(names) == len(_PARAMETERS) or "VariableNames" in text:
+    names = {_COLUMN_OF[found[1]] for found in islice(_LIST.finditer(text), GRID_LIMITS.columns)}
+    if len(names) == len(PARAMETERS) or "VariableNames" in text:
         return True
     return (
         (":" in text or "dict(" in text)
@@ -247,11 +121,9 @@ def _table_in(statement: SourceText, source: SourceText) -> RobotTable | None:
     found = _items(statement)
     keys = [_KEY.fullmatch(item.key.text) for item in found]
     if found and all(keys):
-        return _by_index(
-            found, [(_NAMED_COLUMNS_COLUMNS[k[1]], int(k[2])) for k in keys if k], source
-        )
+        return _by_index(found, [(_COLUMN_OF[k[1]], int(k[2])) for k in keys if k], source)
     lists = [_list(item.value) for item in found]
-    if all(lists) and len(lists) >= len(_PARAMETERS):
+    if all(lists) and len(lists) >= len(PARAMETERS):
         return _by_column(found, [each for each in lists if each], source)
     return None
 
@@ -273,10 +145,9 @@ def _listed_rows(statement: SourceText) -> list[list[SourceText]]:
     Also return the rows of an object with one list of rows, such as ``{"dh": [[…], …]}``. Return []
     for any other text.
     """
-    name = _NAME.match(statement.text)
-    value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
+    value = _assigned(statement)
     call = split_call(value)
-    if call and call[0] == _NAMED_COLUMNS_FRAME:
+    if call and call[0] == _DATA_FRAME:
         return _frame_rows(arguments(call[1]))
     items = _items(value) if value.text.startswith("{") else []
     listed = [item.value for item in items if item.value.text[:1] in CLOSES]
@@ -307,12 +178,7 @@ def _frame_rows(given: list[SourceText]) -> list[list[SourceText]]:
 
 def _rows_of(value: SourceText) -> list[list[SourceText]]:
     """Return the values in a list of lists, or []."""
-    call = split_call(value)
-    if call and call[0] in MAKERS:
-        value = call[1].strip()
-    if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
-        return []
-    rows = [_list(each) for each in arguments(value.cut(1, len(value.text) - 1))]
+    rows = [_list(each) for each in _elements(value) or []]
     return [row for row in rows if row] if all(rows) else []
 
 
@@ -336,12 +202,16 @@ def _items(statement: SourceText) -> list[_Item]:
 
 def _value(statement: SourceText) -> SourceText:
     """Return the value of an assignment, without ``DataFrame(…)`` around it."""
-    name = _NAME.match(statement.text)
-    value = statement.cut(name.end() if name else 0, len(statement.text)).strip()
+    value = _assigned(statement)
     call = split_call(value)
-    if call and call[0] == _NAMED_COLUMNS_FRAME:
+    if call and call[0] == _DATA_FRAME:
         value = (arguments(call[1]) or [call[1]])[0]
     return value
+
+
+def _assigned(statement: SourceText) -> SourceText:
+    name = _NAME.match(statement.text)
+    return statement.cut(name.end() if name else 0, len(statement.text)).strip()
 
 
 def _table_call(statement: SourceText) -> tuple[list[_Item], list[list[SourceText]]] | None:
@@ -389,7 +259,7 @@ def _row_items(statement: SourceText) -> list[list[_Item]]:
     if len(pieces) > GRID_LIMITS.rows or not all(_OPENS_ITEMS.match(each.text) for each in pieces):
         return []
     found = [_items(piece) for piece in pieces]
-    return found if all(len(items) >= len(_PARAMETERS) for items in found) else []
+    return found if all(len(items) >= len(PARAMETERS) for items in found) else []
 
 
 def _dashed_rows(found: list[SourceText]) -> list[list[_Item]]:
@@ -401,7 +271,7 @@ def _dashed_rows(found: list[SourceText]) -> list[list[_Item]]:
         if dash
     ]
     is_list = len(rows) == len(found) < GRID_LIMITS.rows
-    return rows if is_list and all(len(items) >= len(_PARAMETERS) for items in rows) else []
+    return rows if is_list and all(len(items) >= len(PARAMETERS) for items in rows) else []
 
 
 def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
@@ -424,12 +294,17 @@ def _by_row(rows: list[list[_Item]], source: SourceText) -> RobotTable:
 
 def _list(value: SourceText) -> list[SourceText] | None:
     """Return the values in a list such as ``[1, 2]`` or ``np.array([1, 2])``, or None."""
+    elements = _elements(value)
+    return None if elements is None else [unquoted(each) for each in elements]
+
+
+def _elements(value: SourceText) -> list[SourceText] | None:
     call = split_call(value)
     if call and call[0] in MAKERS:
         value = call[1].strip()
     if value.text[:1] not in {"[", "("} or strict_pairs(value)[0] != len(value.text):
         return None
-    return [unquoted(each) for each in arguments(value.cut(1, len(value.text) - 1))]
+    return arguments(value.cut(1, len(value.text) - 1))
 
 
 def _named_lists(
@@ -446,15 +321,15 @@ def _named_lists(
             columns.append(column)
         elif not _HARMLESS.match(statement.text):
             return None
-    names = [_NAMED_COLUMNS_COLUMNS[item.key.text] for item in items]
-    return (items, columns) if sorted(names) == sorted(_PARAMETERS) else None
+    names = [_COLUMN_OF[item.key.text] for item in items]
+    return (items, columns) if sorted(names) == sorted(PARAMETERS) else None
 
 
 def _column(value: SourceText) -> list[SourceText] | None:
     """Return the values in a list of Python, or in a row or column of MATLAB."""
     if value.text[:1] != "[" or "," in value.text or strict_pairs(value)[0] != len(value.text):
         return _list(value)
-    found, _ = matrices.rows_in_matlab(value.cut(1, len(value.text) - 1))
+    found, _ = rows_in_matlab(value.cut(1, len(value.text) - 1))
     if len(found) == 1:
         return found[0]
     return [row[0] for row in found] if all(len(row) == 1 for row in found) else None
@@ -523,3 +398,125 @@ def _indexed_row(
         d or beside.spelled(f"d{number}"),
         theta or beside.spelled(f"q{number}"),
     ]
+
+
+# --- Read the table that P. Corke's Robotics Toolboxes print for a robot, in MATLAB and in Python
+#
+# The first line names the convention: ``arm:: 3 axis, RRR, stdDH, slowRNE`` or ``DHRobot: arm, 3
+# joints (RRR), standard DH parameters``.
+#
+# Angles without a unit are in radians.
+
+
+_FIRST_LINE: Final = regex(
+    r"(?:::[ \t]{0,4}|\()(?P<axes>\d{1,2}) axis, [RP]{1,12}, (?P<matlab>std|mod)DH"
+    r"|(?P<joints>\d{1,2}) joints? \([RP]{1,12}\),[^\n]{0,80}?"
+    r"(?P<python>standard|modified) DH parameters"
+)
+# The headers that the toolbox for MATLAB prints, if the first line is missing.
+_BOX: Final = regex(
+    r"^[ \t]*\|[ \t]*j[ \t]*\|[ \t]*theta[ \t]*\|[ \t]*d[ \t]*\|[ \t]*a[ \t]*\|[ \t]*alpha[ \t]*"
+    r"\|[ \t]*offset[ \t]*\|",
+    re.MULTILINE,
+)
+_BARS: Final = regex(r"[|│┃║]")
+_HEADERS: Final[Mapping[str, str]] = {
+    "theta": "theta", "θ": "theta", "d": "d", "a": "a", "alpha": "alpha", "⍺": "alpha",
+    "α": "alpha", "offset": "offset",
+}  # fmt: skip
+_CONVENTIONS: Final = {"std": "standard", "sta": "standard", "mod": "modified"}
+_INDEX: Final = " ⱼ₋₁"
+# A line below the headers without values, as Markdown draws it.
+_RULE: Final = regex(r"[\s|│┃║:=\-]+")
+_INDEXED: Final = r"[ _]?\{?[\d₁-₉]"
+# The joint variable, as the toolbox prints it or as a student writes it into the table.
+_VARIABLE: Final = regex(rf"[$\\]{{0,2}}(?:q|th|theta|θ|ϑ){_INDEXED}", re.IGNORECASE)
+_SLIDING: Final = regex(rf"\$?q{_INDEXED}", re.IGNORECASE)
+_ZERO: Final = regex(r"-?0(?:\.0*)?°?")
+_BASE_OR_TOOL: Final = regex(r"(?<![^\W\d_])(?:tool|base)(?![^\W\d_])")
+_NUMBER: Final = regex(r"(?<![\w.])-?\d{1,12}(?:\.\d{0,12})?(?![\w.])")
+# The numbers of two unit matrices side by side, as older versions print base and tool.
+_UNIT_MATRICES: Final = [[float(i == j) for j in range(4)] * 2 for i in range(4)]
+
+
+def describes_print(text: str) -> bool:
+    """True if a text contains a robot as P. Corke's Robotics Toolbox prints it."""
+    return _FIRST_LINE.search(text) is not None or _BOX.search(text) is not None
+
+
+def read_print(source: SourceText) -> RobotTable:
+    """Return the table of the printed robot. Raises GridError if the table is not certain."""
+    # GridError if there are several robots, if the table is incomplete, or if the robot has a base
+    # or a tool.
+    found = list(_FIRST_LINE.finditer(source.text))
+    if len(found) > 1 or len(_BOX.findall(source.text)) > 1:
+        raise too_many_robots(source)
+    rows, rest = _table(source.cut(found[0].end() if found else 0, len(source.text)))
+    columns = [_HEADERS.get(cell.text.strip(_INDEX)) for cell in rows[0]] if rows else []
+    count = int(found[0]["axes"] or found[0]["joints"]) if found else len(rows) - 1
+    is_whole = len(rows) - 1 == count > 0 and (bool(found) or _BARS.search(rest) is None)
+    if not is_whole or any(columns.count(name) != 1 for name in PARAMETERS):
+        raise unread_script(
+            say("The table below this line is not complete. Paste it with its line of headers."),
+            source,
+        )
+    if _has_frames(rest):
+        raise unread_script(
+            say(
+                "The robot has a base or a tool, which this table does not show. Write the "
+                "DH table with its headers, without the rest."
+            ),
+            source,
+        )
+    for row in rows[1:]:
+        if len(row) != len(columns):
+            raise unread_script(
+                say("This row is not complete. Copy the whole table again."), row[0]
+            )
+    cells = [_cells(row, columns) for row in rows[1:]]
+    names = [first["matlab"] or first["python"] for first in found]
+    convention = _CONVENTIONS[names[0][:3]] if names else None
+    return RobotTable(grid("toolbox", cells, source.whole), convention)
+
+
+def _table(source: SourceText) -> tuple[list[list[SourceText]], str]:
+    rows: list[list[SourceText]] = []
+    lines = source.lines()
+    for i, line in enumerate(lines):
+        plain = line.strip()
+        if _BARS.match(plain.text) and _RULE.fullmatch(plain.text):
+            continue
+        if _BARS.match(plain.text):
+            rows.append([cell.strip() for cell in plain.split(_BARS)[1:-1]])
+        elif rows and plain.text[:1] not in {"+", "├", "┣", "╠"}:
+            return rows, "\n".join(line.text for line in lines[i:])
+    return rows, ""
+
+
+def _cells(row: list[SourceText], columns: list[str | None]) -> list[SourceText]:
+    named = {name: cell for name, cell in zip(columns, row, strict=True) if name}
+    offset = named.get("offset")
+    if offset is not None and not _ZERO.fullmatch(offset.text):
+        variable = "theta" if _VARIABLE.match(named["theta"].text) else "d"
+        if variable == "d" and not _SLIDING.match(named["d"].text):
+            message = say(
+                "This offset may belong to θ or to d. Add it to the value in one of them."
+            )
+            raise unread_script(message, offset)
+        cell = named[variable]
+        parts = [cell, cell.spelled(" + ("), offset, offset.spelled(")")]
+        named[variable] = joined(parts, cell.at)
+    return [named[name] for name in PARAMETERS]
+
+
+def _has_frames(rest: str) -> bool:
+    """True if the robot has a base or a tool that is not the unit matrix."""
+    if not _BASE_OR_TOOL.search(rest):
+        return False
+    lines = [line for line in rest.splitlines() if line.strip()]
+    numbers = [[float(number) for number in _NUMBER.findall(line)] for line in lines]
+    if [each[-8:] for each in numbers[:4]] == _UNIT_MATRICES:
+        return any(map(_BASE_OR_TOOL.search, lines[4:]))
+    return any(
+        any(each) for line, each in zip(lines, numbers, strict=True) if _BASE_OR_TOOL.search(line)
+    )

@@ -23,7 +23,8 @@ def _words(latin: str, chinese: str = "") -> re.Pattern[str]:
     return regex(f"{pattern}|{chinese}" if chinese else pattern, re.IGNORECASE)
 
 
-# --- The places of a table ---
+# --- The places of a table
+
 
 _ORDINAL: Final = (
     r"(?:first|second|third|fourth|fifth|sixth|last|final|[1-9](?:st|nd|rd|th|\.|e|è?me|ère|ª|º)"
@@ -84,7 +85,8 @@ _TABLE: Final = _words(
     "表格?|答案|结果|文件",
 )
 
-# --- What is said about a place ---
+# --- What is said about a place
+
 
 _NOT: Final = r"(?:not|never|\w{2,6}n['’]?t|cannot)"
 # It is wrong.
@@ -194,7 +196,28 @@ _OPENING: Final = regex(
     re.IGNORECASE,
 )
 
-# --- What is said about the whole answer ---
+# A remark on a cell is short: "?", "zero!", "not 180", "doch 0".
+_DOUBTS_CELL: Final = regex(r"[?？¿]")
+_GIVES_CELL: Final = regex(
+    rf"\W{{0,5}}(?:(?:not|no|nicht|pas|doch|eher|besser|lieber|rather|better|now|jetzt|plutôt|mejor|ahora|要|改)"
+    rf"\s?)(?:{_VALUE}).{{0,9}}|\W{{0,5}}(?:zero|null|cero|zéro|negativ\w?|négati\w{{1,2}}|minus|menos|moins)\W{{0,5}}",
+    re.IGNORECASE,
+)
+# "0, not 180".
+_NOT_THIS: Final = regex(
+    rf"{_VALUE}\S?,?\s?(?:(?:und|and|y|et)\s)?(?:not|no|nicht|pas|non|不是)\s?{_VALUE}",
+    re.IGNORECASE,
+)
+# The number of a joint is no value.
+_PLACE_NUMBER: Final = regex(
+    rf"(?<![^\W_])(?:{_LINES}|{_LINKS}|{_ORDINAL})\s?(?:{_NUMBER})?|[xyz]_?\{{?\d"
+    r"|(?:fig|figure|abb)\w{0,6}\.?\s?\d",
+    re.IGNORECASE,
+)
+
+
+# --- What is said about the whole answer
+
 
 _WITHDRAWN: Final = _words(
     r"(?<!i\s)(?<!we\s)(?:do\snot|don['’]?t|please\snot|not\sto)\s(?:\w{1,12}\s){0,2}?"
@@ -249,7 +272,8 @@ _ADDED: Final = regex(
     re.IGNORECASE,
 )
 
-# --- What takes such words back ---
+# --- What takes such words back
+
 
 # "If anything is wrong, please write to me", "I hope there are no mistakes".
 _SUPPOSED: Final = _words(
@@ -278,6 +302,15 @@ _REASON: Final = _words(
     "因为|由于|所以|因此|故",
 )
 
+# --- Whether a sentence may change a table
+
+
+# What an explanation of the frames does not name.
+_SIGN: Final = _words(
+    r"signs?|vorzeichen|signos?|signes?|order|reihenfolge|orden|ordre|values?|werte?"
+    rf"|{_LINES}",
+    "符号|正负号|顺序",
+)
 # A longer sentence is judged in pieces, which overlap.
 _LONGEST: Final = 600
 _OVERLAP: Final = 200
@@ -335,13 +368,6 @@ def _of_cell(text: str) -> bool:
     return bool(_DOUBTS_CELL.search(text) or _GIVES_CELL.fullmatch(text))
 
 
-_SIGN: Final = _words(
-    r"signs?|vorzeichen|signos?|signes?|order|reihenfolge|orden|ordre|values?|werte?"
-    rf"|{_LINES}",
-    "符号|正负号|顺序",
-)
-
-
 def _is_request(text: str, *, in_cell: bool) -> bool:
     opening = _OPENING.match(text)
     start = opening.end() if opening else 0
@@ -356,15 +382,6 @@ def _is_request(text: str, *, in_cell: bool) -> bool:
     return False
 
 
-# A remark on a cell is short: "?", "zero!", "not 180", "doch 0".
-_DOUBTS_CELL: Final = regex(r"[?？¿]")
-_GIVES_CELL: Final = regex(
-    rf"\W{{0,5}}(?:(?:not|no|nicht|pas|doch|eher|besser|lieber|rather|better|now|jetzt|plutôt|mejor|ahora|要|改)"
-    rf"\s?)(?:{_VALUE}).{{0,9}}|\W{{0,5}}(?:zero|null|cero|zéro|negativ\w?|négati\w{{1,2}}|minus|menos|moins)\W{{0,5}}",
-    re.IGNORECASE,
-)
-
-
 def _should_be(text: str, *, in_cell: bool) -> bool:
     plain = _PLACE_NUMBER.sub(" ", text)
     given = filter(None, (_GIVES.match(plain, found.end()) for found in _MODAL.finditer(plain)))
@@ -372,22 +389,7 @@ def _should_be(text: str, *, in_cell: bool) -> bool:
     return any(in_cell or not _POSITIVE.match(each["value"]) for each in given)
 
 
-# "0, not 180".
-_NOT_THIS: Final = regex(
-    rf"{_VALUE}\S?,?\s?(?:(?:und|and|y|et)\s)?(?:not|no|nicht|pas|non|不是)\s?{_VALUE}",
-    re.IGNORECASE,
-)
-
-
-# The number of a joint is no value.
-_PLACE_NUMBER: Final = regex(
-    rf"(?<![^\W_])(?:{_LINES}|{_LINKS}|{_ORDINAL})\s?(?:{_NUMBER})?|[xyz]_?\{{?\d"
-    r"|(?:fig|figure|abb)\w{0,6}\.?\s?\d",
-    re.IGNORECASE,
-)
-
-
-# --- The values that a sentence gives to cells ---
+# --- The values that a sentence gives to cells
 
 
 @dataclass(frozen=True, slots=True)
@@ -442,6 +444,15 @@ _ROW_NUMBER: Final = regex(
     re.IGNORECASE,
 )
 
+_LOWERED: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
+_NEGATIVE: Final = regex("neg|nég|负|minus|menos|moins", re.IGNORECASE)
+_POSITIVE: Final = regex("pos|正", re.IGNORECASE)
+_ZERO: Final = regex("zero|null|cero|zéro|零", re.IGNORECASE)
+_FRACTION: Final = regex(
+    r"([-+−–]?)\s?(\d{1,9}(?:[.,]\d{1,9})?)?\s?\*?\s?(π|\\?pi)?(?:\s?/\s?(\d{1,3}))?\s?(?:°|deg\w*|grad\w*|rad\w*|度)?",
+    re.IGNORECASE,
+)
+
 
 def claims(sentence: str) -> Iterator[Claim]:
     """Yield the values that a sentence gives to cells of a table: "α₂ = 0", "in row 2, a is 0"."""
@@ -453,9 +464,6 @@ def claims(sentence: str) -> Iterator[Claim]:
         [row] = rows
         for found in _UNINDEXED.finditer(text):
             yield Claim(_column(found), row, found["value"])
-
-
-_LOWERED: Final = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789")
 
 
 def _column(found: re.Match[str]) -> str:
@@ -484,15 +492,6 @@ def contradicts(value: str, cell: str) -> bool:
     if not written:
         return False
     return not any(math.isclose(one, other, abs_tol=0.01) for one in said for other in written)
-
-
-_NEGATIVE: Final = regex("neg|nég|负|minus|menos|moins", re.IGNORECASE)
-_POSITIVE: Final = regex("pos|正", re.IGNORECASE)
-_ZERO: Final = regex("zero|null|cero|zéro|零", re.IGNORECASE)
-_FRACTION: Final = regex(
-    r"([-+−–]?)\s?(\d{1,9}(?:[.,]\d{1,9})?)?\s?\*?\s?(π|\\?pi)?(?:\s?/\s?(\d{1,3}))?\s?(?:°|deg\w*|grad\w*|rad\w*|度)?",
-    re.IGNORECASE,
-)
 
 
 def _numbers(text: str) -> set[float]:

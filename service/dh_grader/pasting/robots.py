@@ -1,4 +1,7 @@
-"""Scripts for robotics toolboxes: links, named values, and the DH table of the robot."""
+"""Scripts for robotics toolboxes: one link, the values of names, then the DH table of the robot.
+
+Tables of dictionaries, and what toolboxes print, are in ``named_columns.py``.
+"""
 
 import re
 from collections.abc import Callable, Mapping, Sequence, Sized
@@ -7,10 +10,9 @@ from enum import StrEnum
 from typing import Final
 
 from dh_grader.expressions.errors import Note
-from dh_grader.pasting import matrices
 from dh_grader.pasting.around import GivenValue, given_numbers_note
+from dh_grader.pasting.matrices import rows_in_matlab
 from dh_grader.pasting.program import (
-    RobotTable,
     arguments,
     excerpt,
     split_call,
@@ -22,6 +24,7 @@ from dh_grader.pasting.source import (
     CLOSES,
     GRID_LIMITS,
     GridError,
+    RobotTable,
     SourceText,
     grid,
     split,
@@ -93,8 +96,8 @@ _KEYWORD: Final = regex(r"([A-Za-z_]\w{0,20})\s*=(?!=)\s*")
 _ZERO: Final = regex(r"[-+]?0{1,20}(?:\.0{0,20})?")
 _TRUE: Final = frozenset({"1", "True", "true"})
 _FALSE: Final = frozenset({"0", "False", "false"})
-# A name. The names of constants and of functions of numbers are not joint variables.
-_ROBOT_LINKS_NAME: Final = regex(r"[^\W\d]\w*")
+_NAME: Final = regex(r"[^\W\d]\w*")
+# The names of constants and of functions of numbers are not joint variables.
 _CONSTANTS: Final = frozenset(
     {"pi", "Pi", "PI", "np", "numpy", "math", "sp", "sympy", "deg", "rad", "deg2rad", "radians"}
     | {"sym", "Rational", "sqrt", "S", "e", "E", "π"}
@@ -335,7 +338,7 @@ def _moved(link: RobotLink, variable: SourceText, column: str) -> SourceText:
 
 def has_variable(text: str) -> bool:
     """True if a text contains a name that is not the name of a constant."""
-    return any(name not in _CONSTANTS for name in _ROBOT_LINKS_NAME.findall(text))
+    return any(name not in _CONSTANTS for name in _NAME.findall(text))
 
 
 def _is_zero(value: SourceText) -> bool:
@@ -474,7 +477,7 @@ class ScriptNames:
         source = self._values.get(name, source)
         if source.text[:1] != "[" or strict_pairs(source)[0] != len(source.text):
             return None
-        rows, notes = matrices.rows_in_matlab(source.cut(1, len(source.text) - 1))
+        rows, notes = rows_in_matlab(source.cut(1, len(source.text) - 1))
         self.notes += notes
         stripped = [[cell.strip() for cell in row] for row in rows]
         if name in self._values:
@@ -551,7 +554,9 @@ def too_many_robots(source: SourceText) -> GridError:
 # The script may use ``SerialLink`` and links in MATLAB, ``DHRobot`` and links in Python, or joints
 # with ``setFixedTransform``. Nothing is run. A script whose table is not certain is refused.
 #
-# Lines that only show or move the robot are ignored. Sources: P. Corke, Robotics Toolbox for
+# Lines that only show or move the robot are ignored.
+#
+# Sources: P. Corke, Robotics Toolbox for
 # MATLAB, ``Link`` and ``SerialLink``; Robotics Toolbox for Python, ``DHRobot``; MathWorks, Robotics
 # System Toolbox, ``rigidBodyJoint/setFixedTransform``.
 
@@ -584,7 +589,7 @@ _ALTERED: Final = regex(
 _LINKS: Final = regex(r"links\s?=(?!=)\s*")
 _SHOWS: Final = frozenset({"print", "disp", "display"})
 _DECLARES: Final = regex(r"(?:\w{1,20}\.)?(?:symbols|Symbol|sym|syms|var)\s?\(")
-_ROBOT_SCRIPT_NAME: Final = regex(r"[A-Za-z]\w*")
+_LETTERS: Final = regex(r"[A-Za-z]\w*")
 # Properties that change a link or the robot; the others are limits, masses, plots.
 _CELLS: Final = frozenset({"a", "alpha", "d", "theta", "offset"})
 _FRAMES: Final = frozenset({"base", "tool"})
@@ -627,7 +632,7 @@ def read_script(source: SourceText) -> RobotTable | None:
             say("Some links are standard and some modified. Write all of them in one convention."),
             source,
         )
-    read = {name for row in rows for cell in row for name in _ROBOT_SCRIPT_NAME.findall(cell.text)}
+    read = {name for row in rows for cell in row for name in _LETTERS.findall(cell.text)}
     notes = [
         _note(links, added),
         *script.names.notes[:1],
@@ -662,8 +667,10 @@ class _Script:
     last_number: int = 0
 
     def take(self, statement: SourceText) -> None:
-        """Process one statement. Raises GridError for a statement that may change the table."""
-        # That is, in a way that this class cannot tell.
+        """Process one statement.
+
+        Raises GridError for a statement that may change the table in an unknown way.
+        """
         text = statement.text
         has_call = _WORD.search(text) is not None
         if _CONTROL.match(text):
@@ -763,8 +770,9 @@ class _Script:
             first = first.cut(keyword.end(), len(first.text))
         words = {unquoted(each).text for each in rest}
         names = {each.text.partition("=")[0].strip() for each in rest if "=" in each.text}
-        if frames := [each for each in rest if _names_frame(each)]:
-            raise _has_frames(frames[0])
+        for each in rest:
+            if unquoted(each).text.partition("=")[0].strip() in _FRAMES:
+                raise _has_frames(each)
         if "offset" in words | names:
             raise _unclear(source)
         links = self.names.links_of(first)
@@ -846,17 +854,13 @@ def _joint_type(inside: SourceText) -> JointType | None:
     return JointType(named) if named in set(JointType) else None
 
 
-def _names_frame(argument: SourceText) -> bool:
-    return unquoted(argument).text.partition("=")[0].strip() in _FRAMES
-
-
 def _squeezed(name: str) -> str:
     return "".join(name.split())
 
 
 def _is_declared(name: str, value: str) -> bool:
     """True if the value declares the letter as a symbol: ``a1 = symbols('a1 a2')``."""
-    return _DECLARES.match(value) is not None and name in _ROBOT_SCRIPT_NAME.findall(value)
+    return _DECLARES.match(value) is not None and name in _LETTERS.findall(value)
 
 
 def _has_frames(source: SourceText) -> GridError:

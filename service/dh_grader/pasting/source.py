@@ -1,6 +1,6 @@
 """A piece of text that knows where its characters were typed, cut into cells and pairs.
 
-It has the grid, the limits on its size, and the protocol of all formats.
+It has the grid, the limits on its size, and the protocol of all formats. It knows no format.
 """
 
 import re
@@ -18,63 +18,6 @@ from dh_grader.expressions.vocabulary import SPELLINGS
 from dh_grader.regex import regex
 from dh_grader.slices import checkpoint
 from dh_grader.translations import say
-
-# --- Search a pasted text for the same thing only once, though several formats ask for it
-
-
-P = ParamSpec("P")
-R = TypeVar("R")
-
-# To search a shorter text again costs no more than to remember what was found.
-_WORTH_IT: Final = 200
-
-# What was found in each text, while pasted texts are read.
-_found: ContextVar[dict[tuple[object, str], Any] | None] = ContextVar("found", default=None)
-
-
-@contextmanager
-def remembering(found: dict[tuple[object, str], Any]) -> Iterator[None]:
-    """Let each search ``once`` remember in ``found`` what it finds."""
-    token = _found.set(found)
-    try:
-        yield
-    finally:
-        _found.reset(token)
-
-
-def remembers(read: Callable[P, R]) -> Callable[P, R]:
-    """Let a function that reads a pasted text make each search ``once``."""
-
-    @wraps(read)
-    def reads(*args: P.args, **named: P.kwargs) -> R:
-        if _found.get() is not None:
-            return read(*args, **named)
-        with remembering({}):
-            return read(*args, **named)
-
-    return reads
-
-
-def once(search: Callable[[str], R]) -> Callable[[str], R]:
-    """Let a search remember what it finds in each text, until the pasted texts are read.
-
-    The search takes linear time and gives way before it begins. Nobody may change its result.
-    """
-
-    @wraps(search)
-    def searches(text: str) -> R:
-        checkpoint()
-        found = _found.get()
-        if found is None or len(text) < _WORTH_IT:
-            return search(text)
-        key = search, text
-        if key not in found:
-            found[key] = search(text)
-        result: R = found[key]
-        return result
-
-    return searches
-
 
 # --- A piece of text that knows where each of its characters was typed
 
@@ -151,9 +94,32 @@ class SourceText:
             start = match.end()
         return [*pieces, self.cut(start, len(self.text))]
 
+    def cut_at(self, places: Iterable[int]) -> list["SourceText"]:
+        """Return the pieces before, between and after the characters at these places."""
+        return [self.cut(a + 1, b) for a, b in pairwise([-1, *places, len(self.text)])]
+
+    def replaced(
+        self,
+        pattern: re.Pattern[str],
+        by: Callable[["SourceText", re.Match[str]], Sequence["SourceText"] | None],
+    ) -> "SourceText":
+        """Return the piece with each match of ``pattern`` replaced by other pieces.
+
+        ``by`` gets this piece and the match. The match stays if ``by`` returns None.
+        """
+        pieces: list[SourceText] = []
+        start = 0
+        for found in pattern.finditer(self.text):
+            instead = by(self, found)
+            if instead is not None:
+                pieces += [self.cut(start, found.start()), *instead]
+                start = found.end()
+        if not pieces:
+            return self
+        return joined([*pieces, self.cut(start, len(self.text))], self.whole[0])
+
     def spelled(self, text: str) -> "SourceText":
-        """Return a copy of the piece with this ``text``, at the same position."""
-        # Each of its characters has the place of this whole piece.
+        """Return a piece with this ``text``; each character has the place of this whole piece."""
         start, end = self.whole
         return SourceText(text, (start,) * len(text), (end,) * len(text), start, self.typed)
 
@@ -175,40 +141,6 @@ def joined(pieces: Iterable[SourceText], at: int) -> SourceText:
         at,
         kept[0].typed if kept else "",
     )
-
-
-# --- Tags and entities of HTML in a cell of Markdown: ``&theta;<sub>1</sub>`` is ``θ_{1}``
-
-
-_MARKUP: Final = regex(
-    r"<(?P<tag>su[bp])>(?P<inner>[^<>|]{1,20})</(?P=tag)>"
-    r"|&(?:#\d{1,6}|#x[0-9a-f]{1,5}|[a-z]{1,12});",
-    re.IGNORECASE,
-)
-_DEGREES: Final = frozenset({"o", "0", "°", "º"})
-
-
-def without_tags(cell: SourceText) -> SourceText:
-    """Return the cell with its tags and entities replaced by plain characters."""
-    if "<" not in cell.text and "&" not in cell.text:
-        return cell
-    pieces, start = [], 0
-    for found in _MARKUP.finditer(cell.text):
-        whole = cell.cut(*found.span())
-        pieces += [cell.cut(start, found.start()), whole.spelled(_plain(found))]
-        start = found.end()
-    return joined([*pieces, cell.cut(start, len(cell.text))], cell.at)
-
-
-def _plain(found: re.Match[str]) -> str:
-    if not found["tag"]:
-        return unescape(found[0])
-    inner = unescape(found["inner"]).strip()
-    if found["tag"].lower() == "sub":
-        return f"_{{{inner}}}"
-    if inner in _DEGREES:
-        return "°"
-    return inner if inner == "*" else f"^({inner})"
 
 
 # --- The limits on the size of a pasted text
@@ -236,6 +168,8 @@ GRID_LIMITS = GridLimits()
 # --- The grid that is read from a pasted text, and the protocol of all formats
 
 
+# The vertical bars between the cells of a line.
+BARS: Final = "|│┃║"
 GridCell = SourceText
 # Quotation marks of word processors around a whole cell.
 _QUOTED: Final = regex(r"„[^„“”]+[“”]|“[^“”]+”|«[^«»]+»|»[^«»]+«")
@@ -307,14 +241,24 @@ class Grid:
 class GridFormat:
     """One way to write a grid.
 
-    ``matches`` returns True if a text seems to be in this format. ``parse`` reads the text, or
-    raises GridError. Both take linear time.
+    ``matches`` returns True if a text seems to be in this format, and never raises. ``parse`` reads
+    the text, or raises GridError. Both take linear time.
     """
-
-    # ``matches`` never raises.
 
     matches: Callable[[str], bool]
     parse: Callable[[SourceText], Grid]
+
+
+@dataclass(frozen=True, slots=True)
+class RobotTable:
+    """The DH table of a robot, and the convention that the script names: standard or modified.
+
+    With ``has_headers``, the first row contains headers. Otherwise the columns are a, α, d, θ.
+    """
+
+    grid: Grid
+    convention: str | None = None
+    has_headers: bool = False
 
 
 def too_many_matrices(whole: Span) -> GridError:
@@ -404,6 +348,63 @@ def _without_empty_columns(rows: list[list[GridCell]]) -> list[list[GridCell]]:
     while len({len(row) for row in rows}) == 1 and not any(row[0].text for row in rows):
         rows = [row[1:] for row in rows]
     return rows
+
+
+# --- Search a pasted text for the same thing only once, though several formats ask for it
+
+
+P = ParamSpec("P")
+R = TypeVar("R")
+
+# To search a shorter text again costs no more than to remember what was found.
+_WORTH_IT: Final = 200
+
+# What was found in each text, while pasted texts are read.
+_found: ContextVar[dict[tuple[object, str], Any] | None] = ContextVar("found", default=None)
+
+
+@contextmanager
+def remembering(found: dict[tuple[object, str], Any]) -> Iterator[None]:
+    """Let each search ``once`` remember in ``found`` what it finds."""
+    token = _found.set(found)
+    try:
+        yield
+    finally:
+        _found.reset(token)
+
+
+def remembers(read: Callable[P, R]) -> Callable[P, R]:
+    """Let a function that reads a pasted text make each search ``once``."""
+
+    @wraps(read)
+    def reads(*args: P.args, **named: P.kwargs) -> R:
+        if _found.get() is not None:
+            return read(*args, **named)
+        with remembering({}):
+            return read(*args, **named)
+
+    return reads
+
+
+def once(search: Callable[[str], R]) -> Callable[[str], R]:
+    """Let a search remember what it finds in each text, until the pasted texts are read.
+
+    The search takes linear time and gives way before it begins. Nobody may change its result.
+    """
+
+    @wraps(search)
+    def searches(text: str) -> R:
+        checkpoint()
+        found = _found.get()
+        if found is None or len(text) < _WORTH_IT:
+            return search(text)
+        key = search, text
+        if key not in found:
+            found[key] = search(text)
+        result: R = found[key]
+        return result
+
+    return searches
 
 
 # --- Find pairs of brackets and quotes. A separator inside a pair does not split a cell
@@ -555,7 +556,7 @@ def split(source: SourceText, separators: str) -> list[SourceText]:
     if len(places) > GRID_LIMITS.separators:
         # Most of them are the commas of LaTeX's thin spaces.
         raise too_many_cells(source.whole)
-    return [source.cut(a + 1, b) for a, b in pairwise([-1, *places, len(text)])]
+    return source.cut_at(places)
 
 
 # --- Split a row into elements at blanks, by MATLAB's rule for square brackets
@@ -564,13 +565,13 @@ def split(source: SourceText, separators: str) -> list[SourceText]:
 # elements, ``[c1 - s1]`` has one.
 
 
-_BLANKS_SIGNS: Final = "+-−–"
+_SIGNS: Final = "+-−–"
 _BINARY: Final = "*/^×·⋅∙∗•÷="
 _UNIT: Final = regex(r"(?:deg|degrees?|rad|radians?)(?![A-Za-z0-9])|[°º˚]", re.IGNORECASE)
 # A function's name alone is not an element, so the blank after it separates nothing.
 _FUNCTION: Final = regex(rf"(?<![A-Za-z])(?:{'|'.join(SPELLINGS)})(?:(?:\^|\*\*)\d+)?$")
 # The number of characters at the end of an element that decide whether it continues.
-_BLANKS_END: Final = 16
+_DECISIVE: Final = 16
 # The rest of a longer row stays in one piece.
 _MAX_ELEMENTS: Final = 2 * GRID_LIMITS.columns
 
@@ -598,10 +599,10 @@ def split_blanks(row: SourceText) -> BlankSeparated:
         if len(elements) == _MAX_ELEMENTS:
             end = len(row.text.rstrip())
             break
-        left, right = row.text[max(start, end - _BLANKS_END) : end], row.text[next_start:next_end]
+        left, right = row.text[max(start, end - _DECISIVE) : end], row.text[next_start:next_end]
         if not continues(left, right):
             elements.append(row.cut(start, end))
-            if right[0] in _BLANKS_SIGNS:
+            if right[0] in _SIGNS:
                 signs.append(row.cut(next_start, next_end))
             start = next_start
         end = next_end
@@ -614,9 +615,9 @@ def continues(left: str, right: str) -> bool:
     if left[-1] == "*" and left[-2:-1].strip(" \t\r\n.*"):
         # ``d3* 0`` is a joint variable marked by a star, and a zero; it is not a product.
         return False
-    if left[-1] in _BLANKS_SIGNS or left[-1] in _BINARY:
+    if left[-1] in _SIGNS or left[-1] in _BINARY:
         return True
-    if right[0] in _BLANKS_SIGNS:
+    if right[0] in _SIGNS:
         return len(right) == 1
     if right[0] in _BINARY or right[:2] in {".*", "./", ".^"} or _UNIT.match(right):
         return True
@@ -632,9 +633,8 @@ def _words(text: str) -> Iterator[tuple[int, int]]:
 # --- Remove a separator after the last cell of a row, which separates nothing
 
 
-_LINE_ENDS_SIGNS: Final = "\t;,"
-_BARS: Final = "|│┃║"
-_LINE_ENDS_END: Final = regex(r"[\t;,](?=[ \t]*(?:[\r\n\x85\u2028\u2029]|\Z))")
+_SEPARATORS: Final = "\t;,"
+_LAST_SEPARATOR: Final = regex(r"[\t;,](?=[ \t]*(?:[\r\n\x85\u2028\u2029]|\Z))")
 # A list of values in lines has fewer values in a line than the smallest matrix.
 _FEWEST_CELLS: Final = 3
 
@@ -644,8 +644,8 @@ def without_last_signs(source: SourceText) -> SourceText:
 
     A sign stays if it may separate cells or if the text has no other separators.
     """
-    for sign in _LINE_ENDS_SIGNS:
-        ends = [end for end in _LINE_ENDS_END.finditer(source.text) if end[0] == sign]
+    for sign in _SEPARATORS:
+        ends = [end for end in _LAST_SEPARATOR.finditer(source.text) if end[0] == sign]
         if ends and len(ends) == source.text.count(sign):
             pieces = list(_without(source, ends))
             rest = joined(pieces, source.at)
@@ -665,10 +665,40 @@ def _without(source: SourceText, ends: list[re.Match[str]]) -> Iterator[SourceTe
 def _has_cells(rest: SourceText, sign: str) -> bool:
     lines = [line.strip() for line in rest.lines() if line.text.strip()]
     if any(
-        other != sign and any(other in line.text for line in lines)
-        for other in _LINE_ENDS_SIGNS + _BARS
+        other != sign and any(other in line.text for line in lines) for other in _SEPARATORS + BARS
     ):
         return True
     # MATLAB's rows in lines that end with semicolons have their own format.
     counts = {len(split_blanks(line).elements) for line in lines} if sign != ";" else {0}
     return len(counts) == 1 and min(counts) >= _FEWEST_CELLS
+
+
+# --- Tags and entities of HTML in a cell of Markdown: ``&theta;<sub>1</sub>`` is ``θ_{1}``
+
+
+_MARKUP: Final = regex(
+    r"<(?P<tag>su[bp])>(?P<inner>[^<>|]{1,20})</(?P=tag)>"
+    r"|&(?:#\d{1,6}|#x[0-9a-f]{1,5}|[a-z]{1,12});",
+    re.IGNORECASE,
+)
+_DEGREES: Final = frozenset({"o", "0", "°", "º"})
+
+
+def without_tags(cell: SourceText) -> SourceText:
+    """Return the cell with its tags and entities replaced by plain characters."""
+    if "<" not in cell.text and "&" not in cell.text:
+        return cell
+    return cell.replaced(_MARKUP, _plain)
+
+
+def _plain(cell: SourceText, found: re.Match[str]) -> list[SourceText]:
+    inner = unescape(found["inner"] or "").strip()
+    if not found["tag"]:
+        text = unescape(found[0])
+    elif found["tag"].lower() == "sub":
+        text = f"_{{{inner}}}"
+    elif inner in _DEGREES:
+        text = "°"
+    else:
+        text = inner if inner == "*" else f"^({inner})"
+    return [cell.cut(*found.span()).spelled(text)]

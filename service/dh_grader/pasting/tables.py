@@ -1,6 +1,9 @@
-"""Tables in pasted texts: one reader for each format, from CSV to HTML and data frames."""
+"""Tables in pasted texts: one reader for each format, in the order in which they are tried.
 
-import itertools
+LaTeX is in ``latex.py``, matrices are in ``matrices.py``, tables of scripts in ``robots.py`` and
+``named_columns.py``.
+"""
+
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -12,6 +15,7 @@ from dh_grader.expressions.errors import Note
 from dh_grader.pasting.around import UNIT, check_units
 from dh_grader.pasting.program import text_around, unquoted
 from dh_grader.pasting.source import (
+    BARS,
     GRID_LIMITS,
     Grid,
     GridCell,
@@ -30,118 +34,6 @@ from dh_grader.pasting.source import (
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# --- Decimal commas in a grid whose cells are separated by other signs: ``0,1625;90°;0,4``
-#
-# Spreadsheets of most European countries write numbers so. A comma is never guessed to be a decimal
-# comma: each comma after a digit must be one, and at least one number must have no other meaning.
-
-
-_NUMBER: Final = regex(r"(?<![\w.,])\d{1,15},\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII)
-# A number whose comma may stand between thousands: 1,000 or 12,500.
-_THOUSANDS: Final = regex(r"[1-9]\d{0,2},\d{3}", re.ASCII)
-# A point that may stand between thousands in the same language: 1.000 or 12.500,5.
-_POINT: Final = regex(r"(?<![\d.])[1-9]\d{0,2}\.\d{3}(?!\d)", re.ASCII)
-# A number with a sign between thousands and a decimal comma: 1.000,5. The reader of its cell names
-# the sign.
-_GROUPED: Final = regex(
-    r"(?<![\w.,])[1-9]\d{0,2}(?:[.'’ \u00a0\u202f]\d{3})+,\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII
-)
-# One line between semicolons may be several rows of a matrix.
-_FEWEST: Final = 2
-
-
-def with_decimal_points(grid: Grid) -> Grid:
-    """Return the grid with points for its decimal commas, and a note; unchanged if unsure.
-
-    Raises GridError if a point in another number may separate thousands.
-    """
-    if len(grid.rows) < _FEWEST or min(map(len, grid.rows)) < _FEWEST:
-        return grid
-    cells = [
-        cell
-        for cell in chain.from_iterable(grid.rows)
-        if "," in cell.text and not _GROUPED.search(cell.text)
-    ]
-    found = [_numbers(cell.text) for cell in cells]
-    numbers = [number for each in found for number in (each or {}).values()]
-    is_sure = all(each is not None for each in found) and any(
-        not _THOUSANDS.fullmatch(number) for number in numbers
-    )
-    if not is_sure:
-        return grid
-    for cell in chain.from_iterable(grid.rows):
-        if (point := _POINT.search(cell.text)) and not _GROUPED.search(cell.text):
-            raise _in_thousands(cell, point)
-    message = say(
-        "`{typed}` is read as {number}: the comma is a decimal comma.",
-        typed=numbers[0],
-        number=numbers[0].replace(",", "."),
-    )
-    first = next(cell for cell, each in zip(cells, found, strict=True) if each)
-    rows = tuple(tuple(map(_with_points, row)) for row in grid.rows)
-    note = Note("decimal_comma_read", message, first.whole)
-    return replace(grid, rows=rows, notes=(*grid.notes, note))
-
-
-def _in_thousands(cell: GridCell, number: re.Match[str]) -> GridError:
-    message = say(
-        "The point in `{typed}` may separate thousands, because other numbers here have a decimal "
-        "comma. Write {thousands} or {number}.",
-        typed=number[0],
-        thousands=number[0].replace(".", ""),
-        number=number[0].replace(".", ","),
-    )
-    return GridError("decimal_comma", message, cell.span(*number.span()))
-
-
-def _numbers(text: str) -> Mapping[int, str] | None:
-    # The numbers with a decimal comma outside brackets, by the place of the comma. None if another
-    # comma follows a digit.
-    found = {number.start() + number[0].index(","): number[0] for number in _NUMBER.finditer(text)}
-    after_digit = [i for i in outside(text, ",") if text[i - 1 : i].isdigit()]
-    if any(i not in found for i in after_digit):
-        return None
-    return {i: found[i] for i in after_digit}
-
-
-def _with_points(cell: GridCell) -> GridCell:
-    if "," not in cell.text or _GROUPED.search(cell.text):
-        return cell
-    places = _numbers(cell.text) or {}
-    letters = ["." if i in places else letter for i, letter in enumerate(cell.text)]
-    return replace(cell, text="".join(letters))
-
-
-# --- Cells one below the other, as PDF readers and chats copy a table: each line is one cell
-
-
-_HEADER: Final = regex(
-    r"\$?\\?(?:(?P<a>a)|(?P<alpha>alpha|α)|(?P<d>d)|(?P<theta>theta|θ|ϑ))_?\{?[ijᵢ]?\}?\$?",
-    re.IGNORECASE,
-)
-_COUNT: Final = 4
-_ROW: Final = regex(r"(?:[^\W\d_]{1,20} ?)?\d{1,2}")
-
-
-def _stacked_rows(source: SourceText) -> list[list[SourceText]]:
-    lines = [line for line in map(SourceText.strip, source.lines()) if line.text]
-    for width in (_COUNT, _COUNT + 1):
-        headers = [_HEADER.fullmatch(line.text) for line in lines[width - _COUNT : width]]
-        labels = [line.text for line in lines[width::width]] if width > _COUNT else []
-        is_whole = len(lines) > width and len(lines) % width == 0
-        if is_whole and len({name and name.lastgroup for name in headers} - {None}) == _COUNT:
-            rows = [lines[i : i + width] for i in range(0, len(lines), width)]
-            return rows if all(map(_ROW.fullmatch, labels)) else []
-    return []
-
-
-def _stacked_parse(source: SourceText) -> Grid:
-    return grid("stacked", _stacked_rows(source), source.whole)
-
-
-STACKED: Final = GridFormat(lambda text: bool(_stacked_rows(SourceText.of(text))), _stacked_parse)
-
-
 # --- Rows whose values have names: ``Link 1: a = l1, alpha = 90°, d = 0, theta = q1``
 #
 # The values may also be below each other, as in YAML, or arguments: ``DH('a', l1, 'alpha', 0, …)``.
@@ -149,7 +41,7 @@ STACKED: Final = GridFormat(lambda text: bool(_stacked_rows(SourceText.of(text))
 
 _COLUMNS: Final = ("a", "alpha", "d", "theta")
 _LETTERS: Final = {"α": "alpha", "alfa": "alpha", "θ": "theta", "ϑ": "theta", "th": "theta"}
-_NAMED_VALUES_NAME: Final = regex(
+_NAMED: Final = regex(
     # What the name begins with comes first, because most characters of a text begin none.
     r"(?=['\"\\vaαtθϑd])(?<![\w\\^\"'.])(?<![\w^]\{)(?P<quote>['\"]?)\\?(?:var)?(?P<name>alpha|alfa|α|theta|th|θ|ϑ|a|d)"
     r"_?\{?(?P<number>[\d₀-₉]{0,2}|[ijᵢ])\}?(?P=quote)[ \t]{0,20}(?P<sign>[=:,])(?!=)"
@@ -163,7 +55,7 @@ _LETTER: Final = regex(r"(?<!\w)\w{1,2}(?!\w)")
 _STOP: Final = frozenset(",;\n\r|)]}")
 _PADDING: Final = regex(r"[\s,;.:=→|()\[\]{}<>#*•·–—_-]+")
 # Words before a name, or the label of a row: "Link 1", "2. Joint 2 (revolute)", "T1 = DH(".
-_NAMED_VALUES_LABEL: Final = regex(
+_WORDS_BEFORE: Final = regex(
     r"(?:\d{1,2} (?=\D*\d))?(?:[^\W\d_]{1,20} ){0,3}(?:[^\W\d_]{0,20}(?P<number>\d{1,2}) )?"
     r"(?:[^\W\d_]{1,20} ){0,3}"
 )
@@ -210,9 +102,8 @@ def _spread(source: SourceText) -> SourceText:
     for group in _GROUP.finditer(text):
         opened, end = group.end(), ends.get(group.end(), 0)
         inside = source.cut(opened + 1, end - 1)
-        commas = [*outside(inside.text, ",")]
         names = source.cut(*group.span("names")).split(_COMMA)
-        values = [inside.cut(a + 1, b) for a, b in pairwise([-1, *commas, len(inside.text)])]
+        values = inside.cut_at(outside(inside.text, ","))
         is_whole = start <= opened < end and _AFTER.match(text, end)
         if not is_whole or len(values) != len(names):
             return source
@@ -227,7 +118,7 @@ def _items(source: SourceText) -> list[_Item]:
     text = _STYLE.sub(lambda mark: " " * len(mark[0]), source.text)
     source = _spread(replace(source, text=text))
     text = source.text
-    first = islice(_NAMED_VALUES_NAME.finditer(text), len(_COLUMNS) * GRID_LIMITS.rows + 1)
+    first = islice(_NAMED.finditer(text), len(_COLUMNS) * GRID_LIMITS.rows + 1)
     names = [name for name in first if name["sign"] != "," or name["quote"]]
     following = [*(name.start() for name in names), len(text)][1:]
     found: list[_Item] = []
@@ -237,7 +128,7 @@ def _items(source: SourceText) -> list[_Item]:
         gap = _AND.sub("", gap) if found else gap
         for i, ordinal in enumerate(_ORDINALS, 1):
             gap = ordinal.sub(str(i), gap)
-        label = None if UNIT.search(gap) else _NAMED_VALUES_LABEL.fullmatch(gap)
+        label = None if UNIT.search(gap) else _WORDS_BEFORE.fullmatch(gap)
         at = name.end()
         while at < end and text[at] not in _STOP:
             at = ends.get(at, at + 1)
@@ -292,14 +183,44 @@ def _named_values_matches(text: str) -> bool:
 NAMED_VALUES: Final = GridFormat(_named_values_matches, _named_values_parse)
 
 
+# --- Cells one below the other, as PDF readers and chats copy a table: each line is one cell
+
+
+_HEADER: Final = regex(
+    r"\$?\\?(?:(?P<a>a)|(?P<alpha>alpha|α)|(?P<d>d)|(?P<theta>theta|θ|ϑ))_?\{?[ijᵢ]?\}?\$?",
+    re.IGNORECASE,
+)
+_COUNT: Final = 4
+_ROW: Final = regex(r"(?:[^\W\d_]{1,20} ?)?\d{1,2}")
+
+
+def _stacked_rows(source: SourceText) -> list[list[SourceText]]:
+    lines = [line for line in map(SourceText.strip, source.lines()) if line.text]
+    for width in (_COUNT, _COUNT + 1):
+        headers = [_HEADER.fullmatch(line.text) for line in lines[width - _COUNT : width]]
+        labels = [line.text for line in lines[width::width]] if width > _COUNT else []
+        is_whole = len(lines) > width and len(lines) % width == 0
+        if is_whole and len({name and name.lastgroup for name in headers} - {None}) == _COUNT:
+            rows = [lines[i : i + width] for i in range(0, len(lines), width)]
+            return rows if all(map(_ROW.fullmatch, labels)) else []
+    return []
+
+
+def _stacked_parse(source: SourceText) -> Grid:
+    return grid("stacked", _stacked_rows(source), source.whole)
+
+
+STACKED: Final = GridFormat(lambda text: bool(_stacked_rows(SourceText.of(text))), _stacked_parse)
+
+
 # --- HTML: the source of a table on a web page
 #
-# This file has its own scanner, because html.parser does not give each character's place in the
-# pasted text, and does not take linear time for every text.
+# There is a scanner of its own for it, because html.parser does not give each character's place in
+# the pasted text, and does not take linear time for every text.
 
 
 _START: Final = regex(r"<(?:table|tbody|thead|tr)(?![A-Za-z0-9-])", re.IGNORECASE)
-_HTML_NAME: Final = regex(r"</?([A-Za-z][A-Za-z0-9-]{0,30})")
+_TAG: Final = regex(r"</?([A-Za-z][A-Za-z0-9-]{0,30})")
 _ENTITY: Final = regex(r"&(?:#[0-9]{1,7}|#[xX][0-9A-Fa-f]{1,6}|[A-Za-z][A-Za-z0-9]{1,31});")
 _SPAN: Final = regex(r"(?:col|row)span\s{0,4}=\s{0,4}[\"']?\s{0,4}([0-9]{1,4})", re.IGNORECASE)
 _STYLING: Final = frozenset({
@@ -337,7 +258,7 @@ def _html_parse(source: SourceText) -> Grid:
     table = _Table()
     i = 0
     while i < len(text):
-        if text[i] == "<" and (tag := _HTML_NAME.match(text, i)):
+        if text[i] == "<" and (tag := _TAG.match(text, i)):
             end = _after_tag(source, i)
             if table.cell_at is not None or tag[1].lower() in _CELLS:
                 _refuse_struck_out(source, i, end)
@@ -484,13 +405,10 @@ HTML: Final = GridFormat(_html_matches, _html_parse)
 # --- Cells between vertical bars: tables in Markdown and MediaWiki, and drawn tables
 
 
-_BARS: Final = "|│┃║"
-_BAR: Final = regex(rf"[{_BARS}]")
-_SEPARATOR: Final = regex(rf"(?<!\\)[{_BARS}]")
+_BAR: Final = regex(rf"[{BARS}]")
+_SEPARATOR: Final = regex(rf"(?<!\\)[{BARS}]")
 _DOUBLE: Final = regex(r"\|\|")
 _RULE: Final = regex(r"[\s|:+\-=_│┃║─━═┼╪╬┬┴├┤┌┐└┘╭╮╰╯┏┓┗┛┣┫┳┻╋╔╗╚╝╠╣╦╩╒╕╘╛╞╡╤╧╟╢┠┨┯┷]+")
-
-
 # MediaWiki: separators of cells, attributes of a cell, and marks of style.
 _WIKI_CELL: Final = regex(r"\|\||!!")
 _WIKI_ATTRIBUTES: Final = regex(
@@ -502,7 +420,7 @@ _WIKI_STYLE: Final = regex(r"'{2,3}|</?(?:math|nowiki)>")
 def _markdown_matches(text: str) -> bool:
     lines = [line.strip() for line in text.strip().splitlines() if line.strip()]
     barred = [line for line in lines if _BAR.search(line)]
-    return len(barred) > 1 or sum(text.count(bar) for bar in _BARS) > 2
+    return len(barred) > 1 or sum(text.count(bar) for bar in BARS) > 2
 
 
 def _markdown_parse(source: SourceText) -> Grid:
@@ -717,104 +635,6 @@ def _csv_parse(source: SourceText) -> Grid:
 CSV: Final = GridFormat(_csv_matches, _csv_parse)
 
 
-# --- Read data frames as pandas, R, Julia and MATLAB print them
-
-
-# The first line: "# A tibble: 3 × 4", "3×4 DataFrame", "3×4 table", "ans = 3×4", "shape: (3, 4)".
-_SIZE: Final = regex(
-    r"^[ \t]*(?:# A tibble: \d{1,3} [×x] \d{1,3}|\d{1,3} ?[×x] ?\d{1,3} (?:DataFrame|table"
-    r"|Matrix\{\w{1,20}\}:)|\w{1,20} = \d{1,3} ?[×x] ?\d{1,3}|shape: \(\d{1,3}, \d{1,3}\))"
-    r"[ \t]*\r?$",
-    re.MULTILINE,
-)
-# The line of types: <dbl> <chr>, or │ String Float64.
-_TYPES: Final = regex(
-    r"[ \t]*(?:<\w{1,9}>[ \t]*)+"
-    r"|[ \t]*│[ \t]*(?:(?:str|f64|f32|i64|i32|String|Float64|Int64|Any|Sym|Num)\d{0,2}\??"
-    r"[ \t…┆│]*)+"
-)
-_LINES: Final = regex(r"[\s┌┬┐├┼┤└┴┘╞╪╡│┆─═-]*")
-_QUOTES: Final = regex(r"[\"│┆{}]")
-# R numbers the columns and rows of a matrix: [,1] [,2], and [1,] before each row.
-_COLUMNS_OF_R: Final = regex(r"\s*(?:\[,\d{1,2}\]\s*)+")
-# The number of a row, alone or after a word: 1, Link 1, joint_1, J1; but not theta1.
-_WORD: Final = r"(?!theta|alpha)(?:[^\W\d_]{3,20}|[Jj]|[\u4e00-\u9fff]{2})"
-_INDEX: Final = regex(rf"(?P<name>(?:{_WORD}[ _.]?)?)(?P<number>\d{{1,2}})", re.IGNORECASE)
-_DATA_FRAME_LABEL: Final = regex(rf"(?P<word>{_WORD}) (?P<number>\d{{1,2}})", re.IGNORECASE)
-_ROW_OF_R: Final = regex(r"[ \t]*\[\d{1,2},\]")
-
-
-def without_frame(source: SourceText) -> SourceText:
-    """Return a printed data frame as columns separated by blanks; any other text unchanged."""
-    first, *lines = [line for line in source.lines() if line.text.strip()] or [source]
-    if _COLUMNS_OF_R.fullmatch(first.text):
-        rows = [line.cut(end.end(), len(line.text)) for line in lines if (end := _row_of_r(line))]
-        return _joined_lines(rows, source) if len(rows) == len(lines) else source
-    size = _SIZE.search(source.text)
-    if size is None or source.text[: size.start()].strip(" \t\r\n=abcdefghijklmnopqrstuvwxyz"):
-        return source
-    pieces = [
-        replace(line, text=_QUOTES.sub(" ", line.text))
-        for line in source.cut(size.end(), len(source.text)).lines()
-        if not _TYPES.fullmatch(line.text.rstrip()) and not _LINES.fullmatch(line.text)
-    ]
-    return _joined_lines(pieces, source)
-
-
-def _row_of_r(line: SourceText) -> re.Match[str] | None:
-    return _ROW_OF_R.match(line.text)
-
-
-def _joined_lines(lines: list[SourceText], source: SourceText) -> SourceText:
-    ended = [piece for line in lines for piece in (line, line.cut(0, 0).spelled("\n"))]
-    return joined(ended, source.at)
-
-
-def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    """Add the header above the row numbers, which pandas and R do not print."""
-    # The new header is empty, or the name of the index if pandas prints this name in the second
-    # line.
-    rows = _with_whole_labels(rows)
-    head, *body = rows
-    named = len(body) > 1 and len(body[0]) == 1 and len(head) > 1
-    label = body.pop(0)[0] if named else head[0].cut(0, 0)
-    if not body or any(len(row) != len(head) + 1 for row in body):
-        return rows
-    if any(any(map(str.isdigit, cell.text)) for cell in [label, *head]):
-        return rows
-    numbers = [_INDEX.fullmatch(row[0].text) for row in body]
-    names = {number["name"] for number in numbers if number}
-    counted = [number["number"] if number else "" for number in numbers]
-    if len(names) > 1 or counted not in (
-        [str(i + first) for i in range(len(body))] for first in (0, 1)
-    ):
-        return rows
-    return [[label, *head], *body]
-
-
-def _with_whole_labels(rows: list[list[SourceText]]) -> list[list[SourceText]]:
-    # Return the rows with each label, such as Link 1, in one cell.
-    # All rows below the headers must have a label, otherwise the rows do not change. A line with
-    # the name of the index may follow the headers.
-    for start in range(min(3, len(rows))):
-        body = rows[start:]
-        if min(map(len, body)) > 2 and _are_labelled(body):
-            return [*rows[:start], *map(_with_whole_label, body)]
-    return rows
-
-
-def _are_labelled(rows: list[list[SourceText]]) -> bool:
-    found = [_DATA_FRAME_LABEL.fullmatch(f"{word.text} {number.text}") for word, number, *_ in rows]
-    numbers = [int(each["number"]) for each in found if each]
-    words = {each["word"] for each in found if each}
-    return len(words) == 1 and numbers in [[*range(i, len(rows) + i)] for i in (0, 1)]
-
-
-def _with_whole_label(row: list[SourceText]) -> list[SourceText]:
-    word, number, *cells = row
-    return [joined([word, number.cut(0, 0).spelled(" "), number], word.at), *cells]
-
-
 # --- Columns separated by blanks; all lines have equally many values
 
 
@@ -879,7 +699,7 @@ def _columns_is_rule(line: str) -> bool:
 
 def _at_gaps(line: SourceText) -> list[SourceText]:
     pieces = line.split(_GAP)
-    halves = any(continues(left.text, right.text) for left, right in itertools.pairwise(pieces))
+    halves = any(continues(left.text, right.text) for left, right in pairwise(pieces))
     return [] if halves else pieces
 
 
@@ -903,3 +723,183 @@ def _uneven(lines: list[SourceText], rows: list[list[SourceText]]) -> GridError:
 
 
 COLUMNS: Final = GridFormat(_columns_matches, _columns_parse)
+
+
+# --- Read data frames as pandas, R, Julia and MATLAB print them
+
+
+# The first line: "# A tibble: 3 × 4", "3×4 DataFrame", "3×4 table", "ans = 3×4", "shape: (3, 4)".
+_SIZE: Final = regex(
+    r"^[ \t]*(?:# A tibble: \d{1,3} [×x] \d{1,3}|\d{1,3} ?[×x] ?\d{1,3} (?:DataFrame|table"
+    r"|Matrix\{\w{1,20}\}:)|\w{1,20} = \d{1,3} ?[×x] ?\d{1,3}|shape: \(\d{1,3}, \d{1,3}\))"
+    r"[ \t]*\r?$",
+    re.MULTILINE,
+)
+# The line of types: <dbl> <chr>, or │ String Float64.
+_TYPES: Final = regex(
+    r"[ \t]*(?:<\w{1,9}>[ \t]*)+"
+    r"|[ \t]*│[ \t]*(?:(?:str|f64|f32|i64|i32|String|Float64|Int64|Any|Sym|Num)\d{0,2}\??"
+    r"[ \t…┆│]*)+"
+)
+_LINES: Final = regex(r"[\s┌┬┐├┼┤└┴┘╞╪╡│┆─═-]*")
+_QUOTES: Final = regex(r"[\"│┆{}]")
+# R numbers the columns and rows of a matrix: [,1] [,2], and [1,] before each row.
+_COLUMNS_OF_R: Final = regex(r"\s*(?:\[,\d{1,2}\]\s*)+")
+# The number of a row, alone or after a word: 1, Link 1, joint_1, J1; but not theta1.
+_WORD: Final = r"(?!theta|alpha)(?:[^\W\d_]{3,20}|[Jj]|[\u4e00-\u9fff]{2})"
+_INDEX: Final = regex(rf"(?P<name>(?:{_WORD}[ _.]?)?)(?P<number>\d{{1,2}})", re.IGNORECASE)
+_DATA_FRAME_LABEL: Final = regex(rf"(?P<word>{_WORD}) (?P<number>\d{{1,2}})", re.IGNORECASE)
+_ROW_OF_R: Final = regex(r"[ \t]*\[\d{1,2},\]")
+
+
+def without_frame(source: SourceText) -> SourceText:
+    """Return a printed data frame as columns separated by blanks; any other text unchanged."""
+    first, *lines = [line for line in source.lines() if line.text.strip()] or [source]
+    if _COLUMNS_OF_R.fullmatch(first.text):
+        rows = [
+            line.cut(label.end(), len(line.text))
+            for line in lines
+            if (label := _ROW_OF_R.match(line.text))
+        ]
+        return _joined_lines(rows, source) if len(rows) == len(lines) else source
+    size = _SIZE.search(source.text)
+    if size is None or source.text[: size.start()].strip(" \t\r\n=abcdefghijklmnopqrstuvwxyz"):
+        return source
+    pieces = [
+        replace(line, text=_QUOTES.sub(" ", line.text))
+        for line in source.cut(size.end(), len(source.text)).lines()
+        if not _TYPES.fullmatch(line.text.rstrip()) and not _LINES.fullmatch(line.text)
+    ]
+    return _joined_lines(pieces, source)
+
+
+def _joined_lines(lines: list[SourceText], source: SourceText) -> SourceText:
+    ended = [piece for line in lines for piece in (line, line.cut(0, 0).spelled("\n"))]
+    return joined(ended, source.at)
+
+
+def with_row_numbers(rows: list[list[SourceText]]) -> list[list[SourceText]]:
+    """Add the header above the row numbers, which pandas and R do not print."""
+    # The new header is empty, or the name of the index if pandas prints this name in the second
+    # line.
+    rows = _with_whole_labels(rows)
+    head, *body = rows
+    named = len(body) > 1 and len(body[0]) == 1 and len(head) > 1
+    label = body.pop(0)[0] if named else head[0].cut(0, 0)
+    if not body or any(len(row) != len(head) + 1 for row in body):
+        return rows
+    if any(any(map(str.isdigit, cell.text)) for cell in [label, *head]):
+        return rows
+    numbers = [_INDEX.fullmatch(row[0].text) for row in body]
+    names = {number["name"] for number in numbers if number}
+    counted = [number["number"] if number else "" for number in numbers]
+    if len(names) > 1 or counted not in (
+        [str(i + first) for i in range(len(body))] for first in (0, 1)
+    ):
+        return rows
+    return [[label, *head], *body]
+
+
+def _with_whole_labels(rows: list[list[SourceText]]) -> list[list[SourceText]]:
+    # Return the rows with each label, such as Link 1, in one cell.
+    # All rows below the headers must have a label, otherwise the rows do not change. A line with
+    # the name of the index may follow the headers.
+    for start in range(min(3, len(rows))):
+        body = rows[start:]
+        if min(map(len, body)) > 2 and _are_labelled(body):
+            return [*rows[:start], *map(_with_whole_label, body)]
+    return rows
+
+
+def _are_labelled(rows: list[list[SourceText]]) -> bool:
+    found = [_DATA_FRAME_LABEL.fullmatch(f"{word.text} {number.text}") for word, number, *_ in rows]
+    numbers = [int(each["number"]) for each in found if each]
+    words = {each["word"] for each in found if each}
+    return len(words) == 1 and numbers in [[*range(i, len(rows) + i)] for i in (0, 1)]
+
+
+def _with_whole_label(row: list[SourceText]) -> list[SourceText]:
+    word, number, *cells = row
+    return [joined([word, number.cut(0, 0).spelled(" "), number], word.at), *cells]
+
+
+# --- Decimal commas in a grid whose cells are separated by other signs: ``0,1625;90°;0,4``
+#
+# Spreadsheets of most European countries write numbers so. A comma is never guessed to be a decimal
+# comma: each comma after a digit must be one, and at least one number must have no other meaning.
+
+
+_NUMBER: Final = regex(r"(?<![\w.,])\d{1,15},\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII)
+# A number whose comma may stand between thousands: 1,000 or 12,500.
+_THOUSANDS: Final = regex(r"[1-9]\d{0,2},\d{3}", re.ASCII)
+# A point that may stand between thousands in the same language: 1.000 or 12.500,5.
+_POINT: Final = regex(r"(?<![\d.])[1-9]\d{0,2}\.\d{3}(?!\d)", re.ASCII)
+# A number with a sign between thousands and a decimal comma: 1.000,5. The reader of its cell names
+# the sign.
+_GROUPED: Final = regex(
+    r"(?<![\w.,])[1-9]\d{0,2}(?:[.'’ \u00a0\u202f]\d{3})+,\d{1,15}(?![\w.,]*[.,]\d)", re.ASCII
+)
+# One line between semicolons may be several rows of a matrix.
+_FEWEST: Final = 2
+
+
+def with_decimal_points(grid: Grid) -> Grid:
+    """Return the grid with points for its decimal commas, and a note; unchanged if unsure.
+
+    Raises GridError if a point in another number may separate thousands.
+    """
+    if len(grid.rows) < _FEWEST or min(map(len, grid.rows)) < _FEWEST:
+        return grid
+    cells = [
+        cell
+        for cell in chain.from_iterable(grid.rows)
+        if "," in cell.text and not _GROUPED.search(cell.text)
+    ]
+    found = [_numbers(cell.text) for cell in cells]
+    numbers = [number for each in found for number in (each or {}).values()]
+    is_sure = all(each is not None for each in found) and any(
+        not _THOUSANDS.fullmatch(number) for number in numbers
+    )
+    if not is_sure:
+        return grid
+    for cell in chain.from_iterable(grid.rows):
+        if (point := _POINT.search(cell.text)) and not _GROUPED.search(cell.text):
+            raise _in_thousands(cell, point)
+    message = say(
+        "`{typed}` is read as {number}: the comma is a decimal comma.",
+        typed=numbers[0],
+        number=numbers[0].replace(",", "."),
+    )
+    first = next(cell for cell, each in zip(cells, found, strict=True) if each)
+    rows = tuple(tuple(map(_with_points, row)) for row in grid.rows)
+    note = Note("decimal_comma_read", message, first.whole)
+    return replace(grid, rows=rows, notes=(*grid.notes, note))
+
+
+def _in_thousands(cell: GridCell, number: re.Match[str]) -> GridError:
+    message = say(
+        "The point in `{typed}` may separate thousands, because other numbers here have a decimal "
+        "comma. Write {thousands} or {number}.",
+        typed=number[0],
+        thousands=number[0].replace(".", ""),
+        number=number[0].replace(".", ","),
+    )
+    return GridError("decimal_comma", message, cell.span(*number.span()))
+
+
+def _numbers(text: str) -> Mapping[int, str] | None:
+    # The numbers with a decimal comma outside brackets, by the place of the comma. None if another
+    # comma follows a digit.
+    found = {number.start() + number[0].index(","): number[0] for number in _NUMBER.finditer(text)}
+    after_digit = [i for i in outside(text, ",") if text[i - 1 : i].isdigit()]
+    if any(i not in found for i in after_digit):
+        return None
+    return {i: found[i] for i in after_digit}
+
+
+def _with_points(cell: GridCell) -> GridCell:
+    if "," not in cell.text or _GROUPED.search(cell.text):
+        return cell
+    places = _numbers(cell.text) or {}
+    letters = ["." if i in places else letter for i, letter in enumerate(cell.text)]
+    return replace(cell, text="".join(letters))

@@ -11,6 +11,9 @@ from dh_grader.pasting.program import without_remarks
 from dh_grader.pasting.source import BRACKET, GridError, SourceText, split, strict_pairs
 from dh_grader.regex import regex
 
+# --- Leave out the statements below a table that only use it
+
+
 # Signs of another unit or of another order.
 _TELLS: Final = regex(
     r"deg|rad|180|1000|57\.|1e-?3|\.001|(?<!\w)(?:a?(?:sin|cos|tan)d|[mc]m)(?!\w)"
@@ -49,23 +52,23 @@ _TABLE: Final = regex(
     r"(?:^|(?<=;))[ \t]*([A-Za-z]\w{0,40})[ \t]*=[ \t]*(?:[\w.]{1,40}\(\s{0,40})?[\[{]",
     re.MULTILINE,
 )
-_LATER_STATEMENTS_NAMES: Final = r"[A-Za-z]\w{0,40}"
+_NAME: Final = r"[A-Za-z]\w{0,40}"
 _LOOP: Final = regex(
-    rf"(?:par)?for\s{{1,4}}\(?(?P<names>{_LATER_STATEMENTS_NAMES}(?:,\s?\(?{_LATER_STATEMENTS_NAMES})?)\)?\s?(?:=|in\s|∈)\s?"
+    rf"(?:par)?for\s{{1,4}}\(?(?P<names>{_NAME}(?:,\s?\(?{_NAME})?)\)?\s?(?:=|in\s|∈)\s?"
     r"(?P<over>[^,;=]{1,60}?(?:\([^()]{0,20}\))?)\)?(?:[,:](?=\s|\Z)|\Z)\s?(?P<body>.*)",
     re.DOTALL,
 )
 _LISTED: Final = regex(
-    rf"\[(?P<value>[^\[\]]*(?:\[[^\[\]]*\][^\[\]]*)*)\sfor\s(?P<names>{_LATER_STATEMENTS_NAMES})\sin\s(?P<over>[^\[\]]*)\]"
+    rf"\[(?P<value>[^\[\]]*(?:\[[^\[\]]*\][^\[\]]*)*)\sfor\s(?P<names>{_NAME})\sin\s(?P<over>[^\[\]]*)\]"
 )
-_LATER_STATEMENTS_ASSIGNED: Final = regex(
-    rf"(?P<left>\[?{_LATER_STATEMENTS_NAMES}(?:\{{[\w+ -]{{1,20}}\}}|\([\w:,+ -]{{1,20}}\))?"
-    rf"(?:\s?,\s?{_LATER_STATEMENTS_NAMES}){{0,5}}\]?)\s?=(?!=)\s?(?P<right>.+)",
+_ASSIGNED: Final = regex(
+    rf"(?P<left>\[?{_NAME}(?:\{{[\w+ -]{{1,20}}\}}|\([\w:,+ -]{{1,20}}\))?"
+    rf"(?:\s?,\s?{_NAME}){{0,5}}\]?)\s?=(?!=)\s?(?P<right>.+)",
     re.DOTALL,
 )
-_LATER_STATEMENTS_SHOWN: Final = regex(
+_SHOWN: Final = regex(
     r"(?:\w{1,12}\.)?(?:disp|display|print|println|pprint|pretty|fprintf|printf)\(.*\)"
-    rf"|{_LATER_STATEMENTS_NAMES}(?:\{{\d{{1,2}}\}})?(?:\s?[*@]\s?{_LATER_STATEMENTS_NAMES}(?:\{{\d{{1,2}}\}})?){{0,12}}"
+    rf"|{_NAME}(?:\{{\d{{1,2}}\}})?(?:\s?[*@]\s?{_NAME}(?:\{{\d{{1,2}}\}})?){{0,12}}"
     r"|(?:import|from|syms|clc|format|end\w{0,6})(?!\w)[^=]*|if __name__ == '':",
     re.DOTALL,
 )
@@ -138,6 +141,122 @@ def first_change(later: Sequence[SourceText], table: str) -> SourceText | None:
         if not is_harmless and not _is_use(each.text, table, rows, set()):
             return each
     return None
+
+
+def _is_echo(written: str, later: str, name: str) -> bool:
+    """True if the text after a table is only its output by an interpreter."""
+    echo = _ECHO.match(later)
+    if echo is None or (echo["name"] or name) != name:
+        return False
+    tokens, shown = _TOKEN.findall(written), _TOKEN.findall(later[echo.end() :])
+    return len(tokens) == len(shown) and all(map(_is_equal, tokens, shown))
+
+
+def _is_equal(written: str, shown: str) -> bool:
+    # A program shows -pi/2 as -1.5708.
+    if written == shown:
+        return True
+    if not _NUMBER.fullmatch(shown) or set(_WORD.findall(written)) - {"pi"}:
+        return False
+    if _NUMBER.fullmatch(written):
+        return float(written) == float(shown)
+    return "pi" in written and (written[0] == "-") == (shown[0] == "-") and float(shown) != 0
+
+
+def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool:
+    """True if a statement cannot change the table; ``rows`` gets the names of its rows."""
+    # ``taken`` are the words in the table and before it.
+    if len(statement) > _LONGEST_WRITTEN:
+        return False
+    text = _IN_ORDER.sub(_ROW, re.sub(_COUNTED.format(table=table), "1", statement))
+    if not text or text == f"return {table}":
+        return True
+    is_set = not taken.isdisjoint(_SET.findall(text))
+    if is_set or len(text) > _LONGEST or _TOOLBOX.search(text) or tells(text):
+        return False
+    text = _STRING.sub("''", text)
+    if loop := _LOOP.match(text):
+        return _iterates(loop, table, rows, taken) and _is_use(loop["body"], table, rows, taken)
+    assigned = _ASSIGNED.fullmatch(text)
+    if assigned is None:
+        return _SHOWN.fullmatch(text) is not None and _is_argument(text, table, rows)
+    names, right = set(_WORD.findall(assigned["left"])), assigned["right"]
+    if names & (taken | rows - {_ROW}) or any(map(_IS_TABLE.search, names)):
+        return False
+    if listed := _LISTED.search(right):
+        if not _iterates(listed, table, rows, taken):
+            return False
+        right = f"{right[: listed.start()]}({listed['value']}){right[listed.end() :]}"
+    elif row := _use_of(table).fullmatch(right):
+        rows |= names
+        return row["row"] is not None
+    return _is_argument(right, table, rows)
+
+
+def _iterates(loop: re.Match[str], table: str, rows: set[str], taken: set[str]) -> bool:
+    names, over = _WORD.findall(loop["names"]), loop["over"].strip()
+    if set(names) & taken:
+        return False
+    if re.fullmatch(rf"(?:(?:enumerate|eachrow)\()?{table}(?:,\s?\w)?\)?", over):
+        rows.add(names[-1])
+        # In MATLAB, a loop over a matrix takes its columns.
+        return " in " in loop[0]
+    return re.fullmatch(r"[\w(),:+ -]{1,60}", over) is not None and table not in over
+
+
+def _use_of(*names: str) -> re.Pattern[str]:
+    return re.compile(
+        rf"(?<![\w.])(?:{'|'.join(sorted(names))})(?!\w)"
+        r"(?P<row>\[[\w +-]{1,12}(?:,\s?:)?\]|\([\w +-]{1,12},\s?:\)|\.row\([\w +-]{1,12}\))?"
+    )
+
+
+def _is_argument(text: str, table: str, rows: set[str]) -> bool:
+    """True if the table and its rows are only arguments of functions, or are shown."""
+    if _LITERAL.search(text):
+        return False
+    for use in _use_of(table, *rows).finditer(text):
+        before, after = text[: use.start()].rstrip(), text[use.end() :].lstrip()
+        is_within = before.removesuffix("*")[-1:] in {"(", ","} and after[:1] in {")", ","}
+        if (before or after) and not is_within:
+            return False
+    return True
+
+
+# --- Find a statement after a table, such as one in a later cell of a notebook, that may change it
+
+
+_MOST_NAMES: Final = 2
+_RUNS_TEXT: Final = regex(r"(?:exec|eval|assignin)\(")
+# A column of a table gets the name of a parameter: theta = DH[i, 3], theta = DH[i][3].
+_ELEMENT: Final = regex(
+    r"(?<![\w.])((?i:a|alpha|al|d|theta|th)(?:_?i)?)\s?=\s?\w{1,40}"
+    r"(?:\[[\w:]{1,12},\s?|\[\w{1,12}\]\[)([0-3])\]"
+)
+_COMPARES: Final = ("=", "!", "<", ">", "~")
+# A statement in a loop over the rows of a table.
+_OVER_ROWS: Final = regex(
+    r"(?:async\s)?for\s(?P<names>[\w, ()]{1,60}?)\sin\s(?:enumerate\()?(?P<table>\w{1,40})"
+    r"[^:\n]{0,60}:(?P<body>.*)",
+    re.DOTALL,
+)
+# A row or a view of a table gets a name: alpha = DH[:, 1].
+_GIVES_ROW: Final = regex(
+    r"(?P<name>\w{1,40})\s?=\s?(?P<table>\w{1,40})(?:\[[^\]]{1,40}\])*(?:\.T)?"
+)
+# The same values in another type: DH = np.array(DH, dtype=float).
+_IS_COPY: Final = regex(
+    r"(?:[A-Za-z]\w{0,20}\.)?(?:array|asarray|Matrix|ImmutableMatrix|DataFrame|list|tuple|simplify|N"
+    r"|nsimplify|deepcopy|copy|float)\(\w{1,40}(?:,\s?dtype\s?=\s?[\w.]{1,20})?\)|\w{1,40}\.copy\(\)"
+)
+# A function or a method that shows a table, or only returns something.
+_SHOWS: Final = regex(
+    r"(?:disp|display|print|println|pprint|pretty|fprintf|printf|show|head|tail|to_\w+|info|describe"
+    r"|plot\w*|scatter|imshow|table|uitable|latex|tabulate|savetxt|save|savemat|dump|dumps|len|shape"
+    r"|size|copy|tolist|round|sum|mean|min|max|transpose|reshape|astype|assert\w*|type|isinstance"
+    r"|fk\w*|forward\w*|check\w*|test\w*|teach|view|visuali\w+|draw\w*|animate\w*)"
+)
+_BARE_CALL: Final = regex(r"(?:[A-Za-z_]\w{0,40}\.){0,3}([A-Za-z_]\w{0,40})\(")
 
 
 def changing_statement(table: str, later: str) -> str:
@@ -222,118 +341,3 @@ def _left_side(statement: str) -> tuple[str, bool, str]:
                 return "", False, ""
             return statement[:i], True, statement[i + 1 :].strip()
     return "", False, ""
-
-
-_MOST_NAMES: Final = 2
-_RUNS_TEXT: Final = regex(r"(?:exec|eval|assignin)\(")
-# A column of a table gets the name of a parameter: theta = DH[i, 3], theta = DH[i][3].
-_ELEMENT: Final = regex(
-    r"(?<![\w.])((?i:a|alpha|al|d|theta|th)(?:_?i)?)\s?=\s?\w{1,40}"
-    r"(?:\[[\w:]{1,12},\s?|\[\w{1,12}\]\[)([0-3])\]"
-)
-_COMPARES: Final = ("=", "!", "<", ">", "~")
-# A statement in a loop over the rows of a table.
-_OVER_ROWS: Final = regex(
-    r"(?:async\s)?for\s(?P<names>[\w, ()]{1,60}?)\sin\s(?:enumerate\()?(?P<table>\w{1,40})"
-    r"[^:\n]{0,60}:(?P<body>.*)",
-    re.DOTALL,
-)
-# A row or a view of a table gets a name: alpha = DH[:, 1].
-_GIVES_ROW: Final = regex(
-    r"(?P<name>\w{1,40})\s?=\s?(?P<table>\w{1,40})(?:\[[^\]]{1,40}\])*(?:\.T)?"
-)
-# The same values in another type: DH = np.array(DH, dtype=float).
-_IS_COPY: Final = regex(
-    r"(?:[A-Za-z]\w{0,20}\.)?(?:array|asarray|Matrix|ImmutableMatrix|DataFrame|list|tuple|simplify|N"
-    r"|nsimplify|deepcopy|copy|float)\(\w{1,40}(?:,\s?dtype\s?=\s?[\w.]{1,20})?\)|\w{1,40}\.copy\(\)"
-)
-# A function or a method that shows a table, or only returns something.
-_SHOWS: Final = regex(
-    r"(?:disp|display|print|println|pprint|pretty|fprintf|printf|show|head|tail|to_\w+|info|describe"
-    r"|plot\w*|scatter|imshow|table|uitable|latex|tabulate|savetxt|save|savemat|dump|dumps|len|shape"
-    r"|size|copy|tolist|round|sum|mean|min|max|transpose|reshape|astype|assert\w*|type|isinstance"
-    r"|fk\w*|forward\w*|check\w*|test\w*|teach|view|visuali\w+|draw\w*|animate\w*)"
-)
-_BARE_CALL: Final = regex(r"(?:[A-Za-z_]\w{0,40}\.){0,3}([A-Za-z_]\w{0,40})\(")
-
-
-def _is_echo(written: str, later: str, name: str) -> bool:
-    """True if the text after a table is only its output by an interpreter."""
-    echo = _ECHO.match(later)
-    if echo is None or (echo["name"] or name) != name:
-        return False
-    tokens, shown = _TOKEN.findall(written), _TOKEN.findall(later[echo.end() :])
-    return len(tokens) == len(shown) and all(map(_is_equal, tokens, shown))
-
-
-def _is_equal(written: str, shown: str) -> bool:
-    # A program shows -pi/2 as -1.5708.
-    if written == shown:
-        return True
-    if not _NUMBER.fullmatch(shown) or set(_WORD.findall(written)) - {"pi"}:
-        return False
-    if _NUMBER.fullmatch(written):
-        return float(written) == float(shown)
-    return "pi" in written and (written[0] == "-") == (shown[0] == "-") and float(shown) != 0
-
-
-def _is_use(statement: str, table: str, rows: set[str], taken: set[str]) -> bool:
-    """True if a statement cannot change the table; ``rows`` gets the names of its rows."""
-    # ``taken`` are the words in the table and before it.
-    if len(statement) > _LONGEST_WRITTEN:
-        return False
-    text = _IN_ORDER.sub(_ROW, re.sub(_COUNTED.format(table=table), "1", statement))
-    if not text or text == f"return {table}":
-        return True
-    is_set = not taken.isdisjoint(_SET.findall(text))
-    if is_set or len(text) > _LONGEST or _TOOLBOX.search(text) or tells(text):
-        return False
-    text = _STRING.sub("''", text)
-    if loop := _LOOP.match(text):
-        return _iterates(loop, table, rows, taken) and _is_use(loop["body"], table, rows, taken)
-    assigned = _LATER_STATEMENTS_ASSIGNED.fullmatch(text)
-    if assigned is None:
-        return _LATER_STATEMENTS_SHOWN.fullmatch(text) is not None and _is_argument(
-            text, table, rows
-        )
-    names, right = set(_WORD.findall(assigned["left"])), assigned["right"]
-    if names & (taken | rows - {_ROW}) or any(map(_IS_TABLE.search, names)):
-        return False
-    if listed := _LISTED.search(right):
-        if not _iterates(listed, table, rows, taken):
-            return False
-        right = f"{right[: listed.start()]}({listed['value']}){right[listed.end() :]}"
-    elif row := _use_of(table).fullmatch(right):
-        rows |= names
-        return row["row"] is not None
-    return _is_argument(right, table, rows)
-
-
-def _iterates(loop: re.Match[str], table: str, rows: set[str], taken: set[str]) -> bool:
-    names, over = _WORD.findall(loop["names"]), loop["over"].strip()
-    if set(names) & taken:
-        return False
-    if re.fullmatch(rf"(?:(?:enumerate|eachrow)\()?{table}(?:,\s?\w)?\)?", over):
-        rows.add(names[-1])
-        # In MATLAB, a loop over a matrix takes its columns.
-        return " in " in loop[0]
-    return re.fullmatch(r"[\w(),:+ -]{1,60}", over) is not None and table not in over
-
-
-def _use_of(*names: str) -> re.Pattern[str]:
-    return re.compile(
-        rf"(?<![\w.])(?:{'|'.join(sorted(names))})(?!\w)"
-        r"(?P<row>\[[\w +-]{1,12}(?:,\s?:)?\]|\([\w +-]{1,12},\s?:\)|\.row\([\w +-]{1,12}\))?"
-    )
-
-
-def _is_argument(text: str, table: str, rows: set[str]) -> bool:
-    """True if the table and its rows are only arguments of functions, or are shown."""
-    if _LITERAL.search(text):
-        return False
-    for use in _use_of(table, *rows).finditer(text):
-        before, after = text[: use.start()].rstrip(), text[use.end() :].lstrip()
-        is_within = before.removesuffix("*")[-1:] in {"(", ","} and after[:1] in {")", ","}
-        if (before or after) and not is_within:
-            return False
-    return True

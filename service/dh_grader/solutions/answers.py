@@ -531,10 +531,7 @@ def _latex_matrix(nodes: Sequence[Sequence[Node]]) -> str:
 
 
 # --- Answers that need no knowledge; their points show whether the marking is fair
-
-# --- Answers that need no knowledge; their points show whether the marking is fair
-
-
+#
 # In these answers, every joint turns about the z axis or slides along it by its variable; all other
 # entries are 0.
 

@@ -1,7 +1,7 @@
 """Sentences and their translations.
 
 Each language has a folder with the sentences of reports (``sentences.po``), of pages
-(``pages.po``) and of the command line (``commands.po``).
+(``pages.po``) and of the command line (``commands.po``). This package imports no other.
 """
 
 import errno
@@ -36,6 +36,8 @@ __all__ = [
     "told",
 ]
 
+# --- Catalogues of translations, which are compiled when they are first read
+#
 # hatch_build.py runs this file by itself, so it needs nothing but the standard library.
 
 
@@ -140,11 +142,6 @@ def _write(file: Path, content: bytes) -> None:
             new.replace(file)
         finally:
             new.unlink(missing_ok=True)
-
-
-# --- Sentences and their translations
-
-# This is the lowest package: it imports no other.
 
 
 # --- Sentences for people: a template in English with named values

@@ -18,6 +18,8 @@ from dh_grader.catalogue.robot import FieldError
 from dh_grader.catalogue.varying import Vary, is_seed
 from dh_grader.translations import say
 
+# --- The seed of a learner's variant
+#
 # If the exercise file lists seeds that a tutor has checked (deployed seeds), the learner gets the
 # one with the largest keyed hash. So one more seed in the list changes the variants of only a few
 # learners.
@@ -25,7 +27,7 @@ from dh_grader.translations import say
 
 # The letters of a free seed: 36^16 seeds cannot be tried.
 _DIGITS: Final = "0123456789abcdefghijklmnopqrstuvwxyz"
-_SEEDS_LENGTH: Final = 16
+_LENGTH: Final = 16
 
 
 def seed_of(
@@ -37,7 +39,7 @@ def seed_of(
         return max(deployed, key=lambda seed: _keyed(secret, learner, exercise, number, seed))
     whole = int.from_bytes(_keyed(secret, learner, exercise, number, ""), "big")
     digits = []
-    for _ in range(_SEEDS_LENGTH):
+    for _ in range(_LENGTH):
         whole, digit = divmod(whole, len(_DIGITS))
         digits.append(_DIGITS[digit])
     return "".join(digits)
@@ -53,8 +55,7 @@ def _keyed(secret: str, learner: str, exercise: str, number: int, seed: str) -> 
 # --- Keep the variants of an assignment when an exercise file is corrected
 #
 # The table ``[vary]`` of a file says which numbers its variants may have. An assignment stores a
-# copy
-# of this table and uses it instead of the file's table.
+# copy of this table and uses it instead of the file's table.
 
 
 # As many exercises in assignments are used at the same time.
@@ -98,9 +99,7 @@ MOST_BUILT: Final = 512
 
 
 class NoVariantError(LookupError):
-    """An exercise has no variant for this seed."""
-
-    # Or no variants at all. The message is for people.
+    """An exercise has no variant for this seed, or none at all. The message is for people."""
 
 
 def built(exercise: Exercise, seed: str) -> Exercise:

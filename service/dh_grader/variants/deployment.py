@@ -103,7 +103,7 @@ def _home(exercise: Exercise) -> dict[str, Numbers]:
 # Draws for each variant that is wanted; then there are too few different ones.
 _DRAWS: Final = 40
 _LETTERS: Final = "abcdefghijkmnpqrstuvwxyz23456789"
-_DEPLOYMENT_LENGTH: Final = 8
+_LENGTH: Final = 8
 _TABLE: Final = regex(r"^\[vary\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
 _DEPLOYED: Final = regex(r"^deployed[ \t]*=[ \t]*\[[^\]]*\][ \t]*(?:#[^\n]*)?\n", re.MULTILINE)
 _PER_LINE: Final = 8
@@ -150,7 +150,7 @@ def random_seeds() -> Iterator[str]:
     """Yield random seeds (short texts that determine variants) without end."""
     # They have no letters that look alike.
     while True:
-        yield "".join(choice(_LETTERS) for _ in range(_DEPLOYMENT_LENGTH))
+        yield "".join(choice(_LETTERS) for _ in range(_LENGTH))
 
 
 def deploy(

@@ -13,8 +13,8 @@ from unittest.mock import Mock
 import pytest
 from dh_grader.expressions import LIMITS, ExpressionError, Vocabulary, parser, read
 from dh_grader.expressions.errors import UnreadableError
+from dh_grader.expressions.lexer import END, Token
 from dh_grader.expressions.parser import Builder
-from dh_grader.expressions.words import END, Token
 
 # A part of a rule: ("", symbol), or a bracket with alternatives, each a sequence of parts.
 Part = tuple[str, "str | list[list[Part]]"]

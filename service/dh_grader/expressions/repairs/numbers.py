@@ -1,97 +1,30 @@
-"""Why a number, a unit or a power cannot be read, and its repair."""
+"""Why a number, a unit or a power cannot be read, and its repair.
+
+The rules are in the order in which they are tried.
+"""
 
 import re
 import unicodedata
 
-from dh_grader.expressions.errors import Span
+from dh_grader.expressions.errors import Span, quoted
+from dh_grader.expressions.lexer import OPERAND_ENDS
 from dh_grader.expressions.repairs.failure import (
     Failure,
     Repair,
     error,
     for_causes,
-    quoted,
     refusal,
 )
 from dh_grader.expressions.vocabulary import IN_DEGREES
-from dh_grader.expressions.words import OPERAND_ENDS
 from dh_grader.regex import regex
 from dh_grader.translations import say
 
-# --- A unit after a variable: (q1 + 90)deg. Only numbers have units
+# --- true or false instead of a number
 
 
-_UNITS = {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}
-_IN_DEGREES = {"°", "deg", "degree", "degrees"}
-# A number without a unit that is a term by itself.
-_TERM = regex(
-    r"(?<![\w.^*/°])(?:(?<=^)|(?<=[-+(\[{,;=\s]))((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?![\w.^]))"
-    r"(?=\s*(?:[-+)\]},;]|$))"
+repair_not_a_number = refusal(
+    "boolean", "not_a_number", say("Write a number or a formula, not true or false.")
 )
-_BRACKETS = regex(r"[(\[{|\\]")
-
-
-@for_causes("unit_on_variable")
-def repair_unit_on_variable(failure: Failure) -> Repair:
-    """Ask the student to write the unit after a number."""
-    name = quoted(failure.source[slice(*failure.details["variable"])])
-    message = say("A unit belongs after a number. Write it there, and not after {name}.", name=name)
-    return error(failure, "unit_on_variable", message, _repaired(failure))
-
-
-def _repaired(failure: Failure) -> str | None:
-    # Return the text without the unit if it follows only the variable (q1° -> q1); else None.
-    # In 90 + q1°, the unit belongs to the number, so it is moved to the number.
-    start, end = failure.span
-    inside = failure.details["variable"]
-    rest = failure.source[inside[1] : end].strip()
-    if inside[0] != start or rest not in _UNITS:
-        return None
-    before, after = failure.source[: inside[1]], failure.source[end:]
-    if rest not in _IN_DEGREES or not (_TERM.search(before) or _TERM.search(after)):
-        return before + after
-    if _BRACKETS.search(failure.source):
-        return None
-    unit = "°" if rest == "°" else f" {rest}"
-    return _TERM.sub(rf"\g<1>{unit}", before + after)
-
-
-# --- Two values instead of one: ``2 3``, ``q1, q2``, ``90° (π/2)``, or a second line
-
-
-@for_causes("values", "grammar")
-def repair_two_values(failure: Failure) -> Repair:
-    """Ask the student for one value, or for an operator between the two values."""
-    start, end = failure.span
-    if failure.terminal(1) and failure.terminal() != "COMMA":
-        start = failure.place(1)[0]
-    message = say("Two values stand side by side. Write one value, or an operator between them.")
-    return error(failure, "two_values", message, failure.details.get("instead"), (start, end))
-
-
-# --- A value with two units: 90 deg deg, deg(90°)
-
-
-repair_two_units = refusal("two_units", "two_units", say("This has two units. Write one."))
-
-
-# --- tan2(y, x) instead of atan2(y, x)
-
-
-_TAN2 = regex(r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()")
-
-_KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
-
-
-@for_causes("name", "grammar")
-def repair_tan_of_two(failure: Failure) -> Repair:
-    """Suggest atan2."""
-    match = _TAN2.search(failure.source)
-    if match is None or match.end() > failure.span[1] or match.group() in _KNOWN:
-        return None
-    if failure.cause == "grammar" and failure.terminal() != "COMMA":
-        return None
-    message, span = say("Write the angle of a point (x, y) as atan2(y, x)."), match.span()
-    return error(failure, "tan_of_two", message, failure.replaced("atan2", span), span)
 
 
 # --- ±, +/- and +-, which mean two values
@@ -110,6 +43,24 @@ def repair_plus_minus(failure: Failure) -> Repair:
     return error(failure, "two_values", message, span=typed and typed.span())
 
 
+# --- A range of values instead of one value: [0, pi], 0 < q1 < pi, -180..180
+
+
+_BETWEEN = regex(
+    r"[<>≤≥∈]|\.\.+|…|\\(?:leq?|geq?|lt|gt|in)(?![A-Za-z])|\bto\b|(?<=[0-9i])\s*:\s*(?=[-0-9])"
+)
+_LIST = regex(r"\s*(?:\[[^\[\]()]*,[^\[\]()]*[\])]|\([^\[\]()]*,[^\[\]()]*\])\s*")
+
+
+def repair_interval(failure: Failure) -> Repair:
+    """Ask the student for one value."""
+    match = _LIST.fullmatch(failure.source) or _BETWEEN.search(failure.source)
+    if match is None:
+        return None
+    message = say("This is a list or a range. Write one value.")
+    return error(failure, "interval", message, span=match.span())
+
+
 # --- NaN, infinity, or a number too large for a float
 
 
@@ -117,14 +68,6 @@ repair_not_finite = refusal(
     "not_finite",
     "not_finite",
     say("This number is infinite, undefined or too large. Write a finite number."),
-)
-
-
-# --- true or false instead of a number
-
-
-repair_not_a_number = refusal(
-    "boolean", "not_a_number", say("Write a number or a formula, not true or false.")
 )
 
 
@@ -152,155 +95,6 @@ def repair_mixed_number(failure: Failure) -> Repair:
         fraction=fraction,
     )
     return error(failure, "two_values", message, suggestion)
-
-
-# --- A number with two points: 1.2.3
-
-
-@for_causes("values")
-def repair_malformed_number(failure: Failure) -> Repair:
-    """Say that the number has more than one point."""
-    if not failure.details["number"] or "." not in failure.written:
-        return None
-    message = say("{written} has more than one decimal point.", written=quoted(failure.written))
-    return error(failure, "malformed_number", message)
-
-
-# --- Units after a length: 0.5 m, 30cm, \SI{0.5}{\metre}
-
-
-_UNIT = regex(
-    r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
-)
-_METRES = frozenset({"m", "meter", "meters", "metre", "metres"})
-_QUANTITY = regex(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([^{}]*?)\s{0,4}\}")
-# In l2 s(q1), s is the sine and not the second.
-_FUNCTIONS = frozenset({"s", "C"})
-_OPERANDS = OPERAND_ENDS - {"UNIT"}
-_OPENING = regex(r"(?<=[\w.)}])\s{0,4}[(\[]\s{0,4}\Z")
-_CLOSING = regex(r"\s{0,4}[)\]]")
-_WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise.")
-
-
-@for_causes("name", "quantity")
-def repair_length_unit(failure: Failure) -> Repair:
-    """Ask for a number without a unit; suggest this number if the unit is metres."""
-    if failure.cause == "quantity":
-        return _quantity(failure)
-    written = unicodedata.normalize("NFKC", failure.written)
-    brackets = _brackets(failure)
-    is_after_value = failure.details["before"] in _OPERANDS or brackets != failure.span
-    if not is_after_value or not _UNIT.fullmatch(written):
-        return None
-    if failure.details["called"] and failure.written in _FUNCTIONS:
-        return None
-    if written not in _METRES:
-        message = say(
-            "Write lengths without a unit, in the unit of the exercise. Convert {unit} first.",
-            unit=written,
-        )
-        return error(failure, "length_unit", message)
-    start, end = brackets
-    number = failure.source[:start].rstrip() + failure.source[end:]
-    return error(failure, "length_unit", _WITHOUT_UNIT, number)
-
-
-def _brackets(failure: Failure) -> Span:
-    start, end = failure.span
-    opening = _OPENING.search(failure.source, 0, start)
-    closing = _CLOSING.match(failure.source, end)
-    return (opening.start(), closing.end()) if opening and closing else failure.span
-
-
-def _quantity(failure: Failure) -> Repair:
-    quantity = _QUANTITY.fullmatch(failure.written)
-    if quantity is None or quantity[2] not in _METRES:
-        message = say(
-            "Write lengths without a unit, in the unit of the exercise. Convert this one first."
-        )
-        return error(failure, "length_unit", message)
-    return error(failure, "length_unit", _WITHOUT_UNIT, failure.replaced(quantity[1]))
-
-
-# --- A range of values instead of one value: [0, pi], 0 < q1 < pi, -180..180
-
-
-_BETWEEN = regex(
-    r"[<>≤≥∈]|\.\.+|…|\\(?:leq?|geq?|lt|gt|in)(?![A-Za-z])|\bto\b|(?<=[0-9i])\s*:\s*(?=[-0-9])"
-)
-_LIST = regex(r"\s*(?:\[[^\[\]()]*,[^\[\]()]*[\])]|\([^\[\]()]*,[^\[\]()]*\])\s*")
-
-
-def repair_interval(failure: Failure) -> Repair:
-    """Ask the student for one value."""
-    match = _LIST.fullmatch(failure.source) or _BETWEEN.search(failure.source)
-    if match is None:
-        return None
-    message = say("This is a list or a range. Write one value.")
-    return error(failure, "interval", message, span=match.span())
-
-
-# --- Powers of functions: sin^-1(x), which may mean asin(x) or 1/sin(x), and sin^k(x)
-
-
-_INVERSE = regex(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
-# An exponent -1 in the source text, in any notation.
-_END = regex(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)")
-
-
-@for_causes("function_power")
-def repair_function_power(failure: Failure) -> Repair:
-    """Suggest the inverse function for ^-1. Show how to write other powers: (sin(x))^p."""
-    name, exponent = failure.details["name"], failure.details["exponent"]
-    place = failure.details["function"]
-    if not exponent.strip():
-        message = say("The function {name} has no argument. Write {name}(x).", name=name)
-        return error(failure, "function_without_argument", message, span=place)
-    if _INVERSE.match(exponent) is None:
-        message = say(
-            "The power of a function is a whole number. Write another power as (sin(x))^p."
-        )
-        return error(failure, "function_power", message, span=(place[1], failure.span[1]))
-    end = _END.match(failure.source, place[1])
-    whole = (place[0], end.end() if end else failure.span[1])
-    inverse = f"a{name}" if name in {"sin", "cos", "tan"} else None
-    message = say("A negative power of a function has two readings. Write 1/{name}(x).", name=name)
-    if inverse:
-        message = say(
-            "This has two readings. Write {inverse}(x) for the inverse function, or 1/{name}(x).",
-            inverse=inverse,
-            name=name,
-        )
-    suggestion = inverse and failure.replaced(inverse, whole)
-    return error(failure, "function_power", message, suggestion, whole)
-
-
-# --- Functions such as acosd and rad2deg, which return degrees, in a text with radians
-
-
-_MODULE = regex(r"[A-Za-z]+\.$")
-
-
-@for_causes("degrees")
-def repair_degrees_function(failure: Failure) -> Repair:
-    """Suggest the function that returns the angle in radians: acos for acosd."""
-    plain = IN_DEGREES.get(failure.details["name"], "")
-    start, end = failure.span
-    if not plain and (module := _MODULE.search(failure.source[:start])):
-        start = module.start()
-    written = quoted(failure.written)
-    message = say(
-        "{written} gives a number of degrees, not an angle. Write the angle itself.",
-        written=written,
-    )
-    if plain:
-        message = say(
-            "{written} gives a number of degrees, not an angle. "
-            "Write {function}, which gives the angle.",
-            written=written,
-            function=plain,
-        )
-    return error(failure, "degrees_function", message, failure.replaced(plain, (start, end)))
 
 
 # --- A comma or an apostrophe as decimal point, or a thousands separator: 1,5; 1’5; 1.000,5
@@ -383,16 +177,112 @@ repair_cube_root = refusal(
 )
 
 
-# --- A power of a power, such as 2^3^2, which is ambiguous
+# --- Units after a length: 0.5 m, 30cm, \SI{0.5}{\metre}
 
 
-@for_causes("grammar")
-def repair_chained_power(failure: Failure) -> Repair:
-    """Ask the student to add brackets."""
-    if failure.terminal() != "POWER" or failure.terminal(1) not in OPERAND_ENDS:
+_UNIT = regex(
+    r"(?:k|c|m|d|µ|μ)?m|in|inch|inches|ft|foot|feet|(?:centi|milli)?met(?:er|re)s?|[°]?C|kg|s|N"
+)
+_METRES = frozenset({"m", "meter", "meters", "metre", "metres"})
+_QUANTITY = regex(r"\\[A-Za-z]{2,3}\s{0,4}\{([^{}]*)\}\s{0,4}\{\s{0,4}\\?([^{}]*?)\s{0,4}\}")
+# In l2 s(q1), s is the sine and not the second.
+_FUNCTIONS = frozenset({"s", "C"})
+_OPERANDS = OPERAND_ENDS - {"UNIT"}
+_OPENING = regex(r"(?<=[\w.)}])\s{0,4}[(\[]\s{0,4}\Z")
+_CLOSING = regex(r"\s{0,4}[)\]]")
+_WITHOUT_UNIT = say("Write lengths without a unit, in the unit of the exercise.")
+
+
+@for_causes("name", "quantity")
+def repair_length_unit(failure: Failure) -> Repair:
+    """Ask for a number without a unit; suggest this number if the unit is metres."""
+    if failure.cause == "quantity":
+        return _quantity(failure)
+    written = unicodedata.normalize("NFKC", failure.written)
+    brackets = _brackets(failure)
+    is_after_value = failure.details["before"] in _OPERANDS or brackets != failure.span
+    if not is_after_value or not _UNIT.fullmatch(written):
         return None
-    message = say("A power of a power has two readings. Add brackets: (a^b)^c or a^(b^c).")
-    return error(failure, "chained_power", message)
+    if failure.details["called"] and failure.written in _FUNCTIONS:
+        return None
+    if written not in _METRES:
+        message = say(
+            "Write lengths without a unit, in the unit of the exercise. Convert {unit} first.",
+            unit=written,
+        )
+        return error(failure, "length_unit", message)
+    start, end = brackets
+    number = failure.source[:start].rstrip() + failure.source[end:]
+    return error(failure, "length_unit", _WITHOUT_UNIT, number)
+
+
+def _brackets(failure: Failure) -> Span:
+    start, end = failure.span
+    opening = _OPENING.search(failure.source, 0, start)
+    closing = _CLOSING.match(failure.source, end)
+    return (opening.start(), closing.end()) if opening and closing else failure.span
+
+
+def _quantity(failure: Failure) -> Repair:
+    quantity = _QUANTITY.fullmatch(failure.written)
+    if quantity is None or quantity[2] not in _METRES:
+        message = say(
+            "Write lengths without a unit, in the unit of the exercise. Convert this one first."
+        )
+        return error(failure, "length_unit", message)
+    return error(failure, "length_unit", _WITHOUT_UNIT, failure.replaced(quantity[1]))
+
+
+# --- tan2(y, x) instead of atan2(y, x)
+
+
+_TAN2 = regex(r"\\?(?:tan|tang|a ?tan|atang|artan|arctan|arctang)[ _]?\{?2\}?(?=\s*(?:\\left)?\()")
+
+_KNOWN = {"atan2", "arctan2", r"\atan2", r"\arctan2"}
+
+
+@for_causes("name", "grammar")
+def repair_tan_of_two(failure: Failure) -> Repair:
+    """Suggest atan2."""
+    match = _TAN2.search(failure.source)
+    if match is None or match.end() > failure.span[1] or match.group() in _KNOWN:
+        return None
+    if failure.cause == "grammar" and failure.terminal() != "COMMA":
+        return None
+    message, span = say("Write the angle of a point (x, y) as atan2(y, x)."), match.span()
+    return error(failure, "tan_of_two", message, failure.replaced("atan2", span), span)
+
+
+# --- The text 2e1 if e1 is a symbol: it may be a power of ten or a product
+
+
+@for_causes("ambiguous_number")
+def repair_ambiguous_number(failure: Failure) -> Repair:
+    """Explain that 2e1 is ambiguous, and suggest the product."""
+    product = failure.details["product"]
+    message = say(
+        "{written} may be a power of ten or a product. For the product, write {product}.",
+        written=quoted(failure.written),
+        product=product,
+    )
+    return error(failure, "ambiguous_number", message, failure.replaced(product))
+
+
+# --- A star after a joint variable that may mark the variable or be a product: k*q1*+s1
+
+
+@for_causes("ambiguous_star")
+def repair_ambiguous_star(failure: Failure) -> Repair:
+    """Explain that the star is ambiguous, and suggest the text without the star."""
+    (start, end) = failure.details["star"]
+    variable = failure.source[failure.span[0] : start].strip()
+    message = say(
+        "The * after {written} may mark the joint variable. Delete it, or write the product as "
+        "{variable}*(…).",
+        written=quoted(variable),
+        variable=variable,
+    )
+    return error(failure, "ambiguous_star", message, failure.replaced("", (start, end)))
 
 
 # --- A unit of angles in brackets, as in headers: 90 [deg], 1.57 (rad)
@@ -443,33 +333,145 @@ def _inside(failure: Failure) -> Repair:
     return error(failure, "ambiguous_unit", message, failure.replaced(f"({value}){unit}"))
 
 
-# --- A star after a joint variable that may mark the variable or be a product: k*q1*+s1
+# --- Functions such as acosd and rad2deg, which return degrees, in a text with radians
 
 
-@for_causes("ambiguous_star")
-def repair_ambiguous_star(failure: Failure) -> Repair:
-    """Explain that the star is ambiguous, and suggest the text without the star."""
-    (start, end) = failure.details["star"]
-    variable = failure.source[failure.span[0] : start].strip()
+_MODULE = regex(r"[A-Za-z]+\.$")
+
+
+@for_causes("degrees")
+def repair_degrees_function(failure: Failure) -> Repair:
+    """Suggest the function that returns the angle in radians: acos for acosd."""
+    plain = IN_DEGREES.get(failure.details["name"], "")
+    start, end = failure.span
+    if not plain and (module := _MODULE.search(failure.source[:start])):
+        start = module.start()
+    written = quoted(failure.written)
     message = say(
-        "The * after {written} may mark the joint variable. Delete it, or write the product as "
-        "{variable}*(…).",
-        written=quoted(variable),
-        variable=variable,
+        "{written} gives a number of degrees, not an angle. Write the angle itself.",
+        written=written,
     )
-    return error(failure, "ambiguous_star", message, failure.replaced("", (start, end)))
+    if plain:
+        message = say(
+            "{written} gives a number of degrees, not an angle. "
+            "Write {function}, which gives the angle.",
+            written=written,
+            function=plain,
+        )
+    return error(failure, "degrees_function", message, failure.replaced(plain, (start, end)))
 
 
-# --- The text 2e1 if e1 is a symbol: it may be a power of ten or a product
+# --- A unit after a variable: (q1 + 90)deg. Only numbers have units
 
 
-@for_causes("ambiguous_number")
-def repair_ambiguous_number(failure: Failure) -> Repair:
-    """Explain that 2e1 is ambiguous, and suggest the product."""
-    product = failure.details["product"]
-    message = say(
-        "{written} may be a power of ten or a product. For the product, write {product}.",
-        written=quoted(failure.written),
-        product=product,
-    )
-    return error(failure, "ambiguous_number", message, failure.replaced(product))
+_UNITS = {"°", "deg", "degree", "degrees", "rad", "radian", "radians"}
+_IN_DEGREES = {"°", "deg", "degree", "degrees"}
+# A number without a unit that is a term by itself.
+_TERM = regex(
+    r"(?<![\w.^*/°])(?:(?<=^)|(?<=[-+(\[{,;=\s]))((?:[0-9]+\.?[0-9]*|\.[0-9]+)(?![\w.^]))"
+    r"(?=\s*(?:[-+)\]},;]|$))"
+)
+_BRACKETS = regex(r"[(\[{|\\]")
+
+
+@for_causes("unit_on_variable")
+def repair_unit_on_variable(failure: Failure) -> Repair:
+    """Ask the student to write the unit after a number."""
+    name = quoted(failure.source[slice(*failure.details["variable"])])
+    message = say("A unit belongs after a number. Write it there, and not after {name}.", name=name)
+    return error(failure, "unit_on_variable", message, _repaired(failure))
+
+
+def _repaired(failure: Failure) -> str | None:
+    # Return the text without the unit if it follows only the variable (q1° -> q1); else None.
+    # In 90 + q1°, the unit belongs to the number, so it is moved to the number.
+    start, end = failure.span
+    inside = failure.details["variable"]
+    rest = failure.source[inside[1] : end].strip()
+    if inside[0] != start or rest not in _UNITS:
+        return None
+    before, after = failure.source[: inside[1]], failure.source[end:]
+    if rest not in _IN_DEGREES or not (_TERM.search(before) or _TERM.search(after)):
+        return before + after
+    if _BRACKETS.search(failure.source):
+        return None
+    unit = "°" if rest == "°" else f" {rest}"
+    return _TERM.sub(rf"\g<1>{unit}", before + after)
+
+
+# --- A value with two units: 90 deg deg, deg(90°)
+
+
+repair_two_units = refusal("two_units", "two_units", say("This has two units. Write one."))
+
+
+# --- Powers of functions: sin^-1(x), which may mean asin(x) or 1/sin(x), and sin^k(x)
+
+
+_INVERSE = regex(r"(-\s*1|[({]\s*-\s*1\s*[)}])(?![0-9.])")
+# An exponent -1 in the source text, in any notation.
+_END = regex(r"[\s^*]*(?:⁻\s*¹|[({]*\s*[-−–]\s*1(?:\s*[)}])*)")
+
+
+@for_causes("function_power")
+def repair_function_power(failure: Failure) -> Repair:
+    """Suggest the inverse function for ^-1. Show how to write other powers: (sin(x))^p."""
+    name, exponent = failure.details["name"], failure.details["exponent"]
+    place = failure.details["function"]
+    if not exponent.strip():
+        message = say("The function {name} has no argument. Write {name}(x).", name=name)
+        return error(failure, "function_without_argument", message, span=place)
+    if _INVERSE.match(exponent) is None:
+        message = say(
+            "The power of a function is a whole number. Write another power as (sin(x))^p."
+        )
+        return error(failure, "function_power", message, span=(place[1], failure.span[1]))
+    end = _END.match(failure.source, place[1])
+    whole = (place[0], end.end() if end else failure.span[1])
+    inverse = f"a{name}" if name in {"sin", "cos", "tan"} else None
+    message = say("A negative power of a function has two readings. Write 1/{name}(x).", name=name)
+    if inverse:
+        message = say(
+            "This has two readings. Write {inverse}(x) for the inverse function, or 1/{name}(x).",
+            inverse=inverse,
+            name=name,
+        )
+    suggestion = inverse and failure.replaced(inverse, whole)
+    return error(failure, "function_power", message, suggestion, whole)
+
+
+# --- A power of a power, such as 2^3^2, which is ambiguous
+
+
+@for_causes("grammar")
+def repair_chained_power(failure: Failure) -> Repair:
+    """Ask the student to add brackets."""
+    if failure.terminal() != "POWER" or failure.terminal(1) not in OPERAND_ENDS:
+        return None
+    message = say("A power of a power has two readings. Add brackets: (a^b)^c or a^(b^c).")
+    return error(failure, "chained_power", message)
+
+
+# --- A number with two points: 1.2.3
+
+
+@for_causes("values")
+def repair_malformed_number(failure: Failure) -> Repair:
+    """Say that the number has more than one point."""
+    if not failure.details["number"] or "." not in failure.written:
+        return None
+    message = say("{written} has more than one decimal point.", written=quoted(failure.written))
+    return error(failure, "malformed_number", message)
+
+
+# --- Two values instead of one: ``2 3``, ``q1, q2``, ``90° (π/2)``, or a second line
+
+
+@for_causes("values", "grammar")
+def repair_two_values(failure: Failure) -> Repair:
+    """Ask the student for one value, or for an operator between the two values."""
+    start, end = failure.span
+    if failure.terminal(1) and failure.terminal() != "COMMA":
+        start = failure.place(1)[0]
+    message = say("Two values stand side by side. Write one value, or an operator between them.")
+    return error(failure, "two_values", message, failure.details.get("instead"), (start, end))
