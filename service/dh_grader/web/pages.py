@@ -21,7 +21,7 @@ from markupsafe import Markup
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from dh_grader.access import CredentialError, Keys, KeysBusyError, KeysUnreachableError, Scope
-from dh_grader.api.grading import SCRIPT, START, STYLE
+from dh_grader.api.document import SCRIPT, START, STYLE
 from dh_grader.api.http import (
     Catalogue,
     ProblemError,
