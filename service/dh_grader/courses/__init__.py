@@ -153,8 +153,10 @@ def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, st
 
 
 def place_of(learner: Any) -> tuple[str, str, str]:
-    """Return the key for sorting learners: by family name, then name, then id."""
-    # A learner without a family name is sorted by the name. Capitals and accents do not matter.
+    """Return the key for sorting learners: by family name, then name, then id.
+
+    A learner without a family name is sorted by the name. Capitals and accents do not matter.
+    """
     name = _plain(learner.name)
     return _plain(learner.family_name) if learner.family_name else name, name, learner.learner
 

@@ -454,9 +454,9 @@ def closed_practice(
 ) -> tuple[LearnerTerms, str] | None:
     """Return an assignment that forbids practice now, and the exercise's name in it; or None.
 
-    ``alike`` are the exercises with the same correct table as ``exercise``.
+    ``alike`` are the exercises with the same correct table as ``exercise``. Assignments with one of
+    them decide if no assignment has the exercise itself.
     """
-    # If no assignment has the exercise itself, assignments with one of ``alike`` decide.
     for terms, name in _assigned(connection, learner, only, exercise, alike):
         full = terms.practice == "after" and has_full_marks(connection, learner, terms.number, name)
         if not terms.may_practise(now, is_full=full):

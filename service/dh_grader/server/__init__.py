@@ -145,9 +145,9 @@ def installed_app(
 ) -> FastAPI:
     """Return the application of an installation. Raises CatalogueError, SettingsError.
 
+    ``host`` is the address on which the service listens, or None if it was checked already.
     ``drafts`` is the folder with drafts of exercises from the editor.
     """
-    # ``host`` is the address on which the service listens, or None if it was checked already.
     catalogue = open_catalogue(settings.exercises_dir, reload=settings.reload_exercises)
     store = None
     if settings.database is not None:

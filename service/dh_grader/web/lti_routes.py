@@ -330,8 +330,7 @@ def is_bound(
 
 
 def cookie_name(known: Registration, state: str) -> str:
-    """Return the name of the cookie of a login."""
-    # Several logins may be under way at once.
+    """Return the name of the cookie of a login; several may be under way at once."""
     prefix = "__Host-" if known.address.startswith("https:") else ""
     return f"{prefix}dh-grader-lti-{digest(state)[:12]}"
 
@@ -372,8 +371,7 @@ def joining_forms(landings: Landings) -> APIRouter:
 
     @router.get("/register")
     async def ask(request: Request) -> Response:
-        """Return the page that asks the platform's admin to continue."""
-        # Nothing is fetched yet.
+        """Return the page that asks the platform's admin to continue; fetch nothing yet."""
         fields = {name: request.query_params.get(name, "") for name in _FIELDS}
         now = datetime.now(UTC)
         try:
@@ -449,8 +447,7 @@ Answered = Callable[[Callable[[], Awaitable[Response]], Language], Awaitable[Res
 
 
 def tutor_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the routes of the forms on a tutor's first page."""
-    # ``answered`` makes an error page from an LtiError.
+    """Return these routes; ``answered`` makes an error page from an LtiError."""
     router = APIRouter(prefix="/lti")
     store, keys = landings.store, landings.keys
 
@@ -590,8 +587,7 @@ _REFERRER: Final = {"Referrer-Policy": "strict-origin"}
 
 
 def picker_forms(landings: Landings, answered: Answered) -> APIRouter:
-    """Return the route of the form on which a tutor chooses exercises."""
-    # ``answered`` makes an error page from an LtiError.
+    """Return this route; ``answered`` makes an error page from an LtiError."""
     router = APIRouter(prefix="/lti")
     store, secret = landings.store, landings.secret
 

@@ -101,8 +101,7 @@ def page_answer(
     headers: Mapping[str, str] = PAGE_HEADERS,
     status: HTTPStatus = HTTPStatus.OK,
 ) -> HTMLResponse:
-    """Return a page as a response in the reader's language."""
-    # A newly chosen language is stored.
+    """Return a page as a response in the reader's language; store a newly chosen language."""
     answer = HTMLResponse(content, status, headers=dict(headers))
     answer.headers["Content-Language"] = language_of(request).tag
     answer.headers["Vary"] = _VARY
@@ -379,8 +378,7 @@ def play_page(assets: Assets, language: Language, *, tutor: bool = False) -> byt
 
 
 def practice_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page for practice with generated robots."""
-    # A script loads one after the other.
+    """Return the page for practice with generated robots, which a script loads one by one."""
     return page(
         "web/templates/practice.html",
         assets,
@@ -394,7 +392,6 @@ def practice_page(assets: Assets, language: Language, *, tutor: bool = False) ->
 
 def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
     """Return the page "DH in ten minutes"."""
-    # It can be read without scripts.
     return page(
         "web/templates/learn_dh.html",
         assets,
@@ -412,8 +409,7 @@ def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False)
 
 
 def learner_page(assets: Assets, language: Language) -> bytes:
-    """Return the page of a learner with a personal link."""
-    # Its script loads the assignments.
+    """Return the page of a learner with a personal link; its script loads the assignments."""
     return page(
         "web/templates/learn.html",
         assets,

@@ -110,8 +110,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     @router.get("/tutor")
     async def home(request: Request) -> Response:
-        """Return the home page of tutors."""
-        # If the caller's key is restricted to some exercises, the page shows only these.
+        """Return the home page of tutors, with the exercises that the caller's key is for."""
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
         content = tutor_page(
@@ -191,8 +190,10 @@ def tutor_page(
     has_platforms: bool = False,
     signed_in: bool = False,
 ) -> bytes:
-    """Return the home page of tutors, with links to all pages for tutors."""
-    # Without ``of_all``, it has no links to the editor and the report on a class.
+    """Return the home page of tutors, with links to all pages for tutors.
+
+    Without ``of_all``, it has no links to the editor and the report on a class.
+    """
     return _page(
         "home",
         assets,
@@ -209,8 +210,10 @@ def tutor_page(
 def solution_page(
     exercise: Exercise, assets: Assets, language: Language, *, of_all: bool = True
 ) -> bytes:
-    """Return the page with the correct answers to an exercise, and the steps to find them."""
-    # Without ``of_all``, it has no link to the editor.
+    """Return the page with the correct answers to an exercise, and the steps to find them.
+
+    Without ``of_all``, it has no link to the editor.
+    """
     exercise = in_language(exercise, language)
     solution = solve(exercise)
     pose, answered = solution.pose, [part.text for part in solution.parts]
@@ -371,8 +374,7 @@ def editor_routes(
 
     @router.post("/check")
     async def check(request: Request) -> Response:
-        """Return the findings on the text of an exercise file."""
-        # The text is not stored.
+        """Return the findings on the text of an exercise file; do not store the text."""
         body = await read_body(CheckRequest, request)
         language = language_of(request)
         content = await work.do(partial(checking.checked, body, language))
@@ -380,8 +382,7 @@ def editor_routes(
 
     @router.post("/import")
     async def import_robot(request: Request) -> Response:
-        """Return the text of an exercise file for an imported robot."""
-        # The text is not stored.
+        """Return the text of an exercise file for an imported robot; do not store it."""
         body = await read_body(ImportRequest, request)
         language = language_of(request)
         content = await work.do(partial(imported, body, language))
@@ -460,8 +461,7 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
 
     @router.post("/class")
     async def report(request: Request) -> Response:
-        """Grade a class, and return the reports as a ZIP file."""
-        # Nothing is stored.
+        """Grade a class, and return the reports as a ZIP file; store nothing."""
         packed = await request.body()
         language = language_of(request)
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue, language))
@@ -556,9 +556,8 @@ def attempts_page(
     """Return the page with the list of attempts, its filters, the export, and the deletion.
 
     Without ``of_all``, the page shows one exercise at a time. Without ``forgets``, the page has no
-    deletion.
+    deletion, which concerns all exercises and courses.
     """
-    # Deletion concerns all exercises and courses.
     all_of_them = [("", say("All exercises"))] if of_all else []
     titles = ((each.id, in_language(each, language).title) for each in catalogue.values())
     choices = [*all_of_them, *titles]
