@@ -236,6 +236,15 @@ def test_the_list_of_exercises_is_in_the_language() -> None:
     assert "Gelenke  Titel und Teilaufgaben (Punkte)\nHier beginnen\n" in result.stdout
 
 
+@pytest.mark.long
+def test_what_the_operating_system_says_is_in_the_language(tmp_path: Path) -> None:
+    missing = tmp_path / "nichts.csv"
+    command = ("-m", "dh_grader", "grade", missing, "--exercise", "scara", "--part", "table")
+    result = process(*command, DH_GRADER_LANGUAGE="de")
+    assert "Datei oder Ordner nicht vorhanden" in result.stderr
+    assert "No such file" not in result.stderr
+
+
 def plain_words(node: ast.AST) -> Iterator[str]:
     match node:
         case ast.Call(func=ast.Name(id="Text"), args=[text, *_]):

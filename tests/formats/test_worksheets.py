@@ -190,6 +190,17 @@ def test_the_number_of_a_group_is_not_the_number_of_a_student() -> None:
     assert problem == "in/Group 3_1234 is in no row of the worksheet. Enter 8 / 8 points by hand."
 
 
+def test_letters_that_a_spreadsheet_program_lost_are_any_letters() -> None:
+    # Excel saved the worksheet in Windows-1252, which has neither ễ nor ł.
+    worksheet = moodle(WORDS["en"]).replace(b"Ada Byron", b"Nguy?n ?ucja")
+    lost = Grade("in/Nguyễn Łucja_1234", "Participant 1234", 1.0, 8.0, 8.0, "")
+    after, problems = filled([lost], worksheet)
+    assert problems == []
+    assert imported(after, WORDS["en"], ",")[1234] == (8.0, "")
+    other = Grade("in/Nguyen Anna_1234", "Participant 1234", 1.0, 8.0, 8.0, "")
+    assert filled([other], worksheet)[0] == worksheet
+
+
 def test_two_submissions_of_one_student_fill_nothing() -> None:
     before = moodle(WORDS["en"])
     after, problems = filled([ADA, ADA], before)

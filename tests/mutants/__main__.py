@@ -148,7 +148,8 @@ def tried(
             functions=list(functions),
             known=dict(known or {}),
         )
-        environment = {**os.environ, "TMPDIR": folder}
+        # The package of the copy, not that of this checkout, which the environment has installed.
+        environment = {**os.environ, "TMPDIR": folder, "PYTHONPATH": str(scratch / "service")}
         done = subprocess.run(
             [sys.executable, "-m", "tests.mutants.session"],
             input=json.dumps(asdict(wanted)),

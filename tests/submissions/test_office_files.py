@@ -455,7 +455,7 @@ def test_any_bytes_are_read_or_refused(data: bytes, ending: str) -> None:
         ("gb18030", "连杆长度,扭转角,偏距,关节角"), ("gb18030", "0, α, 0, θ1"),
         ("gb18030", "a2, 180°, 0, q2"), ("mac_roman", "a2, 180°, 0, q2"),
         ("mac_roman", "Länge, Winkel"), ("mac_roman", "0, π/2, 0, q1"),
-        ("cp1251", "Длина, угол"),
+        ("cp1251", "Длина, угол"), ("cp850", "a2, 180°, 0, q2"), ("cp437", "0, -90°, d1, q1"),
     ],
 )  # fmt: skip
 def test_text_in_another_encoding_is_not_guessed(encoding: str, text: str) -> None:
@@ -467,7 +467,7 @@ def test_text_in_another_encoding_is_not_guessed(encoding: str, text: str) -> No
     "text",
     [
         "Länge, Größe, Übung, théta [°]", "180°, ±90°, l²/2, µ", "“a” – „b“…", "¡Hola! ¿qué?",
-        "Ødegård, Žižek, Tomáš, Œuvre", "§ 5, 10 €", "mañana — «très»",
+        "Ødegård, Žižek, Tomáš, Œuvre", "§ 5, 10 €", "mañana — «très»", "2 øvelser, 3 ører",
     ],
 )  # fmt: skip
 def test_text_in_windows_1252_is_read(text: str) -> None:

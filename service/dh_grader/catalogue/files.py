@@ -32,7 +32,7 @@ from dh_grader.catalogue.schema import (
     TranslationSpec,
 )
 from dh_grader.regex import regex
-from dh_grader.translations import Sentence, joined, say, template
+from dh_grader.translations import Sentence, joined, reason_of, say, template
 
 # --- Choose the place for temporary folders that several processes share
 
@@ -502,7 +502,7 @@ def fault_reason(error: Exception) -> str:
     """Return the reason why a file cannot be read, or is not TOML."""
     match error:
         case OSError():
-            return say("cannot be read: {reason}", reason=str(error.strerror))
+            return say("cannot be read: {reason}", reason=reason_of(error))
         case UnicodeDecodeError():
             return say("is not UTF-8 text: {reason}", reason=error.reason)
         case RecursionError():

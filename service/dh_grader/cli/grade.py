@@ -80,7 +80,7 @@ from dh_grader.submissions import (
 )
 from dh_grader.submissions.answers import of_file
 from dh_grader.submissions.files import HandedIn, UnusableClassError, all_handed_in
-from dh_grader.translations import Language, Sentence, joined, say, say_count
+from dh_grader.translations import Language, Sentence, joined, reason_of, say, say_count
 from dh_grader.variants import NoVariantError
 
 if TYPE_CHECKING:
@@ -813,7 +813,7 @@ def write_folder(documents: Iterable[Document], folder: Path) -> None:
         _write_all(documents, folder.resolve())
     except OSError as error:
         raise UnusableFolderError(
-            say("cannot be written: {reason}", reason=str(error.strerror))
+            say("cannot be written: {reason}", reason=reason_of(error))
         ) from error
 
 

@@ -22,7 +22,7 @@ from dh_grader.regex import regex
 from dh_grader.submissions import AssignedExercise, ExerciseOutline, PartOutline
 from dh_grader.submissions.bodies import GradeRequest, UnknownExerciseError
 from dh_grader.submissions.files import HandedIn
-from dh_grader.translations import say
+from dh_grader.translations import reason_of, say
 
 # --- Let a server grade submissions
 
@@ -200,7 +200,7 @@ class Journal:
                         "{file} cannot be written: {reason}. If this run is interrupted, the next "
                         "one sends every submission again.",
                         file=str(self.path),
-                        reason=str(error.strerror),
+                        reason=reason_of(error),
                     )
                 )
 

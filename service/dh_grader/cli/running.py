@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any, BinaryIO, Final, TypeVar, cast
 import typer
 
 from dh_grader.regex import regex
-from dh_grader.translations import say
+from dh_grader.translations import reason_of, say
 
 if TYPE_CHECKING:
     from multiprocessing.connection import Connection
@@ -276,7 +276,7 @@ def _opened(path: Path) -> BinaryIO:
         return path.open("rb")
     except OSError as error:
         raise UnusableShardsError(
-            say("{path} cannot be read: {reason}", path=str(path), reason=str(error.strerror))
+            say("{path} cannot be read: {reason}", path=str(path), reason=reason_of(error))
         ) from error
 
 

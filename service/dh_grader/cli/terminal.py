@@ -21,7 +21,16 @@ from rich.cells import cell_len, set_cell_size
 from rich.console import Console
 from typer.core import TyperCommand
 
-from dh_grader.translations import ENGLISH, Language, Sentence, language_named, say, template, told
+from dh_grader.translations import (
+    ENGLISH,
+    Language,
+    Sentence,
+    language_named,
+    reason_of,
+    say,
+    template,
+    told,
+)
 
 # --- Output to the terminal, and errors that end the program
 
@@ -54,12 +63,12 @@ def stdout() -> Console:
 
 def unwritable(file: Path | str, error: OSError) -> Sentence:
     """Return the message that a file cannot be written."""
-    return say("{file} cannot be written: {reason}", file=str(file), reason=str(error.strerror))
+    return say("{file} cannot be written: {reason}", file=str(file), reason=reason_of(error))
 
 
 def unreadable(file: Path | str, error: OSError) -> Sentence:
     """Return the message that a file cannot be read."""
-    return say("{file} cannot be read: {reason}", file=str(file), reason=str(error.strerror))
+    return say("{file} cannot be read: {reason}", file=str(file), reason=reason_of(error))
 
 
 def tell(message: str) -> None:

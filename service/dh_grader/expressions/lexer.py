@@ -188,6 +188,9 @@ _EXPONENT: Final = regex(
 )
 
 
+_ABBREVIATED: Final = regex(r"(?<=deg)\.(?=\s*(?:$|[-+)]))")
+
+
 class WordLexer(TokenWriter):
     """Turns runs of letters and digits into tokens."""
 
@@ -252,6 +255,8 @@ class WordLexer(TokenWriter):
             self._operand("NUMBER", Number(float(word), word, a, b), a, b)
         elif kind == "unit":
             self._unit(word, start + piece.start, stop, a, b)
+            # The full stop of an abbreviation: 90 deg.
+            return end + (stop == end and _ABBREVIATED.match(self.text, end) is not None)
         else:
             raise UnreadableError("invalid_shorthand", (a, b), joint=piece.joint)
         return end

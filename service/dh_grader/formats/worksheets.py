@@ -502,8 +502,9 @@ def _moodle(head: Sequence[str], rows: list[list[_Cell]]) -> _Layout:
         # A group has a number of its own, which may be the number of another student.
         [number] = _number_of(each.learner)
         name = _compared(PurePath(each.name).name.partition(f"_{number}")[0])
-        known = (_compared(cells[1].value), _compared(cells[0].value.rstrip("0123456789")))
-        return not has_names or not name or name in known or name == _compared(cells[0].value)
+        participant = cells[0].value
+        known = (cells[1].value, participant.rstrip("0123456789"), participant)
+        return not has_names or not name or any(_is_name(name, cell) for cell in known)
 
     def person(cells: Sequence[_Cell]) -> str:
         return cells[1].value if has_names else ""
@@ -544,6 +545,15 @@ def _value(text: str) -> float:
 
 def _compared(name: str) -> str:
     return "".join(c for c in name.casefold() if c.isalnum())
+
+
+def _is_name(compared: str, cell: str) -> bool:
+    # A spreadsheet program that saves in Windows-1252 writes a question mark for the letters that
+    # are missing there: "Nguy?n".
+    letters = "".join(c for c in cell.casefold() if c.isalnum() or c == "?")
+    return len(letters) == len(compared) and all(
+        a in ("?", b) for a, b in zip(letters, compared, strict=True)
+    )
 
 
 def _unknown() -> Sentence:

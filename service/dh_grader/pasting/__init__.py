@@ -120,8 +120,8 @@ FORMATS: Final[tuple[GridFormat, ...]] = (
 _SEPARATED: Final = FORMATS[FORMATS.index(MARKDOWN) :]
 # The formats in which any line may be a row.
 _PLAIN: Final = (TSV, SEMICOLONS, CSV, COLUMNS)
-# The formats in which a comma separates no cells.
-_WITHOUT_COMMAS: Final = (HTML, MARKDOWN, TSV, SEMICOLONS)
+# The formats in which a comma inside a cell separates nothing: the cells of CSV are quoted then.
+_WITHOUT_COMMAS: Final = (HTML, MARKDOWN, TSV, SEMICOLONS, CSV)
 
 _SEPARATORS: Final = (*",;&|│┃║\t\n\r\x85\u2028\u2029", "<t", "<T", "\\\\")
 

@@ -625,11 +625,12 @@ def decoded(data: bytes) -> str:
     return text
 
 
-# Signs that no text in Windows-1252 has at such places, but one in GBK, in the code page of a Mac
-# or in Cyrillic letters, which is decoded as Windows-1252: "Á¬¸Ë³¤¶È", "180¡", "LŠnge", "¹/2".
+# Signs that no text in Windows-1252 has at such places, but one in GBK, in the code page of a Mac,
+# of DOS, or in Cyrillic letters, which is decoded as Windows-1252: "Á¬¸Ë³¤¶È", "180¡", "180ø",
+# "LŠnge", "¹/2".
 _IMPLAUSIBLE: Final = regex(
     r"[¬¸¶¤¦¨¯]|[À-ÖØ-öø-ÿ¡-§©-¯±-¶¸-º¼-¿×÷ŠšŒœŽžŸƒˆ˜]{4}|[²³µ¼½¾±][À-ÖØ-öø-ÿ]"
-    r"|\w[¡§]|[€†‡…ˆ‰][a-z]|[A-Za-z][ŠŽŒŸ€†‡ˆ‰](?=[a-z\s])|(?<![\w)])¹"
+    r"|\w[¡§]|\d ?ø(?!\w)|[€†‡…ˆ‰][a-z]|[A-Za-z][ŠŽŒŸ€†‡ˆ‰](?=[a-z\s])|(?<![\w)])¹"
 )
 
 

@@ -43,7 +43,7 @@ from dh_grader.submissions.office_files import (
     open_archive,
     unpacked,
 )
-from dh_grader.translations import Sentence, say
+from dh_grader.translations import Sentence, reason_of, say
 
 # --- Find the submissions in files, folders of a class, and folders of single students
 #
@@ -148,7 +148,7 @@ def _too_large(name: str) -> str:
 def _unread(error: OSError, name: str) -> str:
     if error.errno == errno.EFBIG:
         return _too_large(name)
-    return say("cannot be read: {reason}", reason=str(error.strerror))
+    return say("cannot be read: {reason}", reason=reason_of(error))
 
 
 def read_content(data: bytes, name: str) -> FileContent:
@@ -939,9 +939,7 @@ def _names(folder: Path, most: int) -> list[str]:
     try:
         names = sorted(name for name in os.listdir(folder) if not _is_junk(name))  # noqa: PTH208
     except OSError as error:
-        raise UnusableFileError(
-            say("cannot be read: {reason}", reason=str(error.strerror))
-        ) from error
+        raise UnusableFileError(say("cannot be read: {reason}", reason=reason_of(error))) from error
     if len(names) > most:
         raise UnusableFileError(say("holds more than {most:,} files", most=most))
     return names

@@ -4,6 +4,7 @@ Each language has a folder with the sentences of reports (``sentences.po``), of 
 (``pages.po``) and of the command line (``commands.po``).
 """
 
+import errno
 import hashlib
 import os
 import re
@@ -210,6 +211,23 @@ def say_count(one: str, many: str, /, *, count: int, **values: SentenceValue) ->
 def template(text: str, /) -> str:
     """Return the text, and mark it for extraction as a template that is filled later."""
     return text
+
+
+# What the operating system says in English about the files of students and tutors.
+_REASONS: Final = {
+    errno.EACCES: template("Permission denied"),
+    errno.EISDIR: template("Is a directory"),
+    errno.ENOENT: template("No such file or directory"),
+    errno.ENOSPC: template("No space left on device"),
+    errno.ENOTDIR: template("Not a directory"),
+    errno.EROFS: template("Read-only file system"),
+}
+
+
+def reason_of(error: OSError) -> str:
+    """Return why the operating system refused something."""
+    reason = _REASONS.get(error.errno or 0)
+    return say(reason) if reason == error.strerror else str(error.strerror)
 
 
 def listed(words: Sequence[str]) -> str:

@@ -63,7 +63,7 @@ from dh_grader.submissions.files import (
     handed_in_out_of_place,
     leads_out,
 )
-from dh_grader.translations import ENGLISH, Language, Translation, say, told
+from dh_grader.translations import ENGLISH, Language, Translation, reason_of, say, told
 from dh_grader.typeset import statement_html
 
 # --- Check the text of an exercise file in the editor, and preview the exercise
@@ -417,7 +417,7 @@ class ExerciseFolder:
                 self._write(self._written / f"{body.id}.toml", content, body)
             except OSError as error:
                 raise _not_saved(
-                    say("The file cannot be saved: {reason}.", reason=str(error.strerror))
+                    say("The file cannot be saved: {reason}.", reason=reason_of(error))
                 ) from error
         return _mark(content)
 

@@ -89,6 +89,7 @@ SHAPES: dict[str, Any] = {
     "spreadsheet": {"rows": "\n".join(map("\t".join, ROWS))},
     "csv": {"rows": "\n".join(map(";".join, ROWS))},
     "markdown": {"rows": "\n".join(f"| {' | '.join(row)} |" for row in ROWS)},
+    "quoted": {"rows": "\n".join(",".join(f'"{cell}"' for cell in row) for row in ROWS)},
     "spaces": {"rows": "\n".join(map("  ".join, ROWS))},
 }
 
@@ -101,7 +102,7 @@ def test_a_table_with_decimal_commas_has_full_marks(
     assert report.points == report.max_points
 
 
-@pytest.mark.parametrize("shape", ["spreadsheet", "csv", "markdown"])
+@pytest.mark.parametrize("shape", ["spreadsheet", "csv", "markdown", "quoted"])
 def test_between_other_signs_than_commas_a_decimal_comma_is_read_with_a_note(
     arm: Callable[[bool], Exercise], shape: str
 ) -> None:

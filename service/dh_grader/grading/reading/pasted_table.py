@@ -1,6 +1,7 @@
 """Read a pasted DH table as rows of entries: units in rows, comments and captions."""
 
 import re
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import reduce
@@ -728,6 +729,11 @@ def _columns_by_headers(
         )
         raise GridError("unknown_header", message, place_of(unknown))
     places: dict[str, int] = {}
+    named = Counter(header.column for header in found if header)
+    if all(named[column] > 1 for column in COLUMNS):
+        # A tidy table beside the one that the student worked in.
+        place = place_of([cell for cell, header in zip(row, found, strict=True) if header])
+        raise GridError("two_tables", say("There are two tables here; paste one of them."), place)
     for i, header in enumerate(found):
         if header is None or header.column in (column_headers.LABEL, column_headers.ASIDE):
             continue

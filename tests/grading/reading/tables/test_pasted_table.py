@@ -155,6 +155,11 @@ def test_an_empty_paste_is_missing(text: str, catalogue: Mapping[str, Exercise])
         ("foo, alpha, d, theta\n1, 2, 3, 4", "unknown_header", "foo"),
         ("Weite, Kipp, b, c\n1, 2, 3, 4", "unknown_header", "Weite, Kipp, b, c"),
         ("a, r, d, theta\n1, 2, 3, 4", "two_headers", "r"),
+        (
+            "a, alpha, d, theta,, a, alpha, d, theta\n0, 0, 0, 1,, 0, 0, 0, 2",
+            "two_tables",
+            "a, alpha, d, theta,, a, alpha, d, theta",
+        ),
         ("a, alpha, theta\n1, 2, 3", "missing_header", "a, alpha, theta"),
         ("a, alpha, d, theta", "no_rows", "a, alpha, d, theta"),
         ("a, alpha, d, theta (m)\n0, 0, 0, 0", "header_unit", "theta (m)"),
