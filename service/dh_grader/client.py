@@ -4,6 +4,9 @@ GraderClientError         a call failed
 ├── RequestRefusedError     the service answered with an error
 ├── ServerUnreachableError  there was no complete response
 └── UnexpectedAnswerError   the response is not from a DH Grader
+
+It loads httpx, so the program imports it only where it is needed. How submissions in files are sent
+is in ``cli/remote_grading.py``.
 """
 
 import asyncio
@@ -92,9 +95,6 @@ from dh_grader.submissions.bodies import (
 )
 from dh_grader.translations import say
 
-# This package loads httpx: import it where it is needed.
-
-
 __all__ = [
     "AsyncGraderClient",
     "ExerciseSubmission",
@@ -167,9 +167,10 @@ class ServerUnreachableError(GraderClientError):
 
 
 class UnexpectedAnswerError(GraderClientError):
-    """The response is not from a DH Grader of this version."""
+    """The response is not from a DH Grader of this version.
 
-    # A redirect also raises this error: a client that follows a redirect may reveal its key.
+    A redirect also raises this error: a client that follows a redirect may reveal its key.
+    """
 
 
 # --- The rules by which failed calls are retried
@@ -192,8 +193,10 @@ class Retries:
     longest_wait: float = 30.0
 
     def wait(self, failures: int, error: GraderClientError) -> float | None:
-        """Return the seconds to wait after this number of failures, or None to give up."""
-        # Only temporary failures are retried: no response, or the status 429, 502, 503 or 504.
+        """Return the seconds to wait after this number of failures, or None to give up.
+
+        Only temporary failures are retried: no response, or the status 429, 502, 503 or 504.
+        """
         if failures > self.number or not error.is_temporary:
             return None
         if error.retry_after > self.longest_wait:
@@ -318,9 +321,10 @@ def _new_key() -> str:
 
 @dataclass(frozen=True, slots=True)
 class HttpCall(Generic[T]):
-    """One call: POST if it has a body, otherwise GET. ``read`` parses the response."""
+    """One call: POST if it has a body, otherwise GET. ``read`` parses the response.
 
-    # Retries have the same ``idempotency_key``, by which the service recognizes them.
+    Retries have the same ``idempotency_key``, by which the service recognizes them.
+    """
 
     path: str
     read: Callable[[bytes], T]
@@ -361,16 +365,15 @@ def exercises() -> HttpCall[list[ExerciseSummary]]:
 
 def exercise(exercise: str) -> HttpCall[ExerciseView]:
     """Return the exercise with this id as students see it."""
-    return HttpCall(_calls_path(exercise), ExerciseView.model_validate_json)
+    return HttpCall(_exercise_path(exercise), ExerciseView.model_validate_json)
 
 
 def next_robot(
     level: int = 1, convention: Convention = Convention.STANDARD, after: str | None = None
 ) -> HttpCall[PracticeRobot]:
     """Return a generated robot to practise with; ``after`` is the id of the previous robot."""
-    given = {"level": level, "convention": convention.value, "after": after}
-    query = urlencode({name: value for name, value in given.items() if value is not None})
-    return HttpCall(f"v1/practice/next?{query}", PracticeRobot.model_validate_json)
+    query = _query(level=str(level), convention=convention.value, after=after)
+    return HttpCall(f"v1/practice/next{query}", PracticeRobot.model_validate_json)
 
 
 def grade(
@@ -390,7 +393,7 @@ def grade(
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "feedback": feedback}
     body = encoded(GradeRequest.model_validate(fields | {"echo": echo}))
     return HttpCall(
-        f"{_calls_path(exercise)}/grade", read_report, body, idempotency_key or _new_key()
+        f"{_exercise_path(exercise)}/grade", read_report, body, idempotency_key or _new_key()
     )
 
 
@@ -412,7 +415,7 @@ def hint(
     fields = {"answers": dict(answers), "angle_unit": angle_unit, "part": part, "code": code}
     place = {"row": row, "cell": cell, "step": step}
     body = encoded(HintRequest.model_validate(fields | place))
-    return HttpCall(f"{_calls_path(exercise)}/hints", Hint.model_validate_json, body)
+    return HttpCall(f"{_exercise_path(exercise)}/hints", Hint.model_validate_json, body)
 
 
 def preview(
@@ -454,8 +457,13 @@ def encoded(body: BaseModel) -> bytes:
         return json.dumps(content, separators=(",", ":")).encode()
 
 
-def _calls_path(exercise: str) -> str:
+def _exercise_path(exercise: str) -> str:
     return "v1/exercises/" + quote(exercise, safe="").replace(".", "%2E")
+
+
+def _query(**given: str | None) -> str:
+    query = urlencode({name: value for name, value in given.items() if value is not None})
+    return f"?{query}" if query else ""
 
 
 def _together(submissions: list[bytes]) -> bytes:
@@ -498,102 +506,96 @@ def create_course(new: NewCourse) -> HttpCall[Course]:
 
 def course(course_id: str) -> HttpCall[Course]:
     """Return a course."""
-    return HttpCall(_course_calls_path(course_id), Course.model_validate_json)
+    return HttpCall(_course_path(course_id), Course.model_validate_json)
 
 
 def change_course(course: str, change: CourseChange) -> HttpCall[Course]:
     """Change the title or the time zone of a course."""
-    return _sending(_course_calls_path(course), change, Course)
+    return _sending(_course_path(course), change, Course)
 
 
 def delete_course(course: str, wanted: DeletionRequest) -> HttpCall[DeletedData]:
     """Delete a course; without ``apply``, only return what would be deleted."""
-    return _sending(_course_calls_path(course, "delete"), wanted, DeletedData)
+    return _sending(_course_path(course, "delete"), wanted, DeletedData)
 
 
 def delete_assignment(
     course: str, assignment: str, wanted: DeletionRequest
 ) -> HttpCall[DeletedData]:
     """Delete an assignment; without ``apply``, only return what would be deleted."""
-    return _sending(
-        _course_calls_path(course, "assignments", assignment, "delete"), wanted, DeletedData
-    )
+    return _sending(_course_path(course, "assignments", assignment, "delete"), wanted, DeletedData)
 
 
 def remove_learner(course: str, wanted: RemovalRequest) -> HttpCall[DeletedData]:
     """Remove a learner; without ``apply``, only return what would be deleted."""
-    return _sending(_course_calls_path(course, "learners", "remove"), wanted, DeletedData)
+    return _sending(_course_path(course, "learners", "remove"), wanted, DeletedData)
 
 
 def learners(course: str) -> HttpCall[LearnerList]:
     """Return the learners of a course."""
-    return HttpCall(_course_calls_path(course, "learners"), LearnerList.model_validate_json)
+    return HttpCall(_course_path(course, "learners"), LearnerList.model_validate_json)
 
 
 def add_learners(course: str, new: LearnersRequest) -> HttpCall[AddedLearners]:
     """Add learners, or a class list in CSV; return all learners of the course."""
-    return _sending(_course_calls_path(course, "learners"), new, AddedLearners)
+    return _sending(_course_path(course, "learners"), new, AddedLearners)
 
 
 def links(course: str, wanted: LinksRequest) -> HttpCall[LinkList]:
     """Return the personal links of learners, and make missing ones."""
-    return _sending(_course_calls_path(course, "links"), wanted, LinkList)
+    return _sending(_course_path(course, "links"), wanted, LinkList)
 
 
 def revoke_links(course: str, wanted: RevokeLinksRequest) -> HttpCall[RevokedLinks]:
     """Revoke personal links."""
-    return _sending(_course_calls_path(course, "links", "revoke"), wanted, RevokedLinks)
+    return _sending(_course_path(course, "links", "revoke"), wanted, RevokedLinks)
 
 
 def assignments(course: str) -> HttpCall[CourseAssignmentList]:
     """Return the assignments of a course."""
-    return HttpCall(
-        _course_calls_path(course, "assignments"), CourseAssignmentList.model_validate_json
-    )
+    return HttpCall(_course_path(course, "assignments"), CourseAssignmentList.model_validate_json)
 
 
 def assignment(course: str, assignment_id: str) -> HttpCall[CourseAssignment]:
     """Return an assignment with its extensions."""
-    path = _course_calls_path(course, "assignments", assignment_id)
+    path = _course_path(course, "assignments", assignment_id)
     return HttpCall(path, CourseAssignment.model_validate_json)
 
 
 def create_assignment(course: str, new: NewAssignment) -> HttpCall[CourseAssignment]:
     """Add an assignment to a course."""
-    return _sending(_course_calls_path(course, "assignments"), new, CourseAssignment)
+    return _sending(_course_path(course, "assignments"), new, CourseAssignment)
 
 
 def change_assignment(
     course: str, assignment: str, change: AssignmentChange
 ) -> HttpCall[CourseAssignment]:
     """Change the given fields of an assignment; None removes a date or a limit."""
-    return _sending(_course_calls_path(course, "assignments", assignment), change, CourseAssignment)
+    return _sending(_course_path(course, "assignments", assignment), change, CourseAssignment)
 
 
 def extend(course: str, assignment: str, extension: Extension) -> HttpCall[CourseAssignment]:
     """Change the dates or the limit of attempts of an assignment for one learner."""
-    path = _course_calls_path(course, "assignments", assignment, "extensions")
+    path = _course_path(course, "assignments", assignment, "extensions")
     return _sending(path, extension, CourseAssignment)
 
 
 def variants(course: str, assignment: str, learner: str) -> HttpCall[LearnerVariants]:
     """Return a learner's variants of the exercises in an assignment."""
-    path = _course_calls_path(course, "assignments", assignment, "variants") + _query(
-        learner=learner
-    )
+    path = _course_path(course, "assignments", assignment, "variants") + _query(learner=learner)
     return HttpCall(path, LearnerVariants.model_validate_json)
 
 
 def deal_variant(course: str, assignment: str, wanted: DealRequest) -> HttpCall[LearnerVariant]:
     """Replace a learner's variant of an exercise by a new variant."""
     return _sending(
-        _course_calls_path(course, "assignments", assignment, "variants"), wanted, LearnerVariant
+        _course_path(course, "assignments", assignment, "variants"), wanted, LearnerVariant
     )
 
 
 def missing(course: str, assignment: str) -> HttpCall[MissingList]:
     """Return the learners who have not handed in all exercises of an assignment."""
-    path = _course_calls_path(course, "assignments", assignment, "missing")
+    path = _course_path(course, "assignments", assignment, "missing")
     return HttpCall(path, MissingList.model_validate_json)
 
 
@@ -607,19 +609,17 @@ def scores(
     """Return the scores that go to learning platforms."""
     given = {"assignment": assignment, "learner": learner, "failed": "true" if failed else None}
     query = urlencode({name: value for name, value in given.items() if value is not None})
-    return HttpCall(
-        f"{_course_calls_path(course, 'scores')}?{query}", PlatformScores.model_validate_json
-    )
+    return HttpCall(f"{_course_path(course, 'scores')}?{query}", PlatformScores.model_validate_json)
 
 
 def send_scores(course: str, wanted: SendAgainRequest) -> HttpCall[SentAgain]:
     """Send scores to learning platforms again."""
-    return _sending(_course_calls_path(course, "scores", "send"), wanted, SentAgain)
+    return _sending(_course_path(course, "scores", "send"), wanted, SentAgain)
 
 
 def gradebook(course: str, assignment: str | None = None) -> HttpCall[Gradebook]:
     """Return the gradebook of a course, or of one ``assignment``."""
-    path = _course_calls_path(course, "gradebook") + _query(assignment=assignment)
+    path = _course_path(course, "gradebook") + _query(assignment=assignment)
     return HttpCall(path, Gradebook.model_validate_json)
 
 
@@ -627,20 +627,20 @@ def gradebook_file(
     course: str, form: GradebookFormat, assignment: str | None = None
 ) -> HttpCall[bytes]:
     """Return the gradebook as a file: ``csv``, ``moodle``, ``canvas`` or ``xlsx``."""
-    path = _course_calls_path(course, "gradebook") + _query(assignment=assignment, format=form)
+    path = _course_path(course, "gradebook") + _query(assignment=assignment, format=form)
     return HttpCall(path, bytes)
 
 
 def learner_view(course: str, learner: str) -> HttpCall[OwnCourses]:
     """Return a course as one of its learners sees it."""
     return HttpCall(
-        _course_calls_path(course, "learners", learner, "view"), OwnCourses.model_validate_json
+        _course_path(course, "learners", learner, "view"), OwnCourses.model_validate_json
     )
 
 
 def assigned_solution(course: str, assignment: str, exercise: str) -> HttpCall[ModelSolution]:
     """Return the solution of an exercise; the client's key must be a learner's link or token."""
-    path = _course_calls_path(course, "assignments", assignment, "solutions", exercise)
+    path = _course_path(course, "assignments", assignment, "solutions", exercise)
     return HttpCall(path, _solution)
 
 
@@ -679,7 +679,7 @@ def hand_in(
         {name: value for name, value in given.items() if value is not None}
     )
     call = _sending(
-        _course_calls_path(course, "assignments", assignment, "attempts"), body, AttemptResponse
+        _course_path(course, "assignments", assignment, "attempts"), body, AttemptResponse
     )
     return call if idempotency_key is None else replace(call, idempotency_key=idempotency_key)
 
@@ -692,14 +692,9 @@ def own_courses() -> HttpCall[OwnCourses]:
 _solution = TypeAdapter(ModelSolution).validate_json
 
 
-def _course_calls_path(course: str, *rest: str) -> str:
+def _course_path(course: str, *rest: str) -> str:
     names = (quote(each, safe="").replace(".", "%2E") for each in (course, *rest))
     return "/".join(("v1/courses", *names))
-
-
-def _query(**given: str | None) -> str:
-    query = urlencode({name: value for name, value in given.items() if value is not None})
-    return f"?{query}" if query else ""
 
 
 def _sending(path: str, body: BaseModel, model: type[M]) -> HttpCall[M]:
@@ -717,9 +712,9 @@ _KEY: Final = regex(r"[A-Za-z0-9._~+/-]+=*")
 def checked_server(server: str) -> str:
     """Return the address of a server without a trailing slash.
 
-    Raises ValueError for an invalid address.
+    Raises ValueError for an invalid address, such as one with a password, which messages would
+    show.
     """
-    # A password in the address is invalid, because messages would show it.
     try:
         url = httpx.URL(server)
     except httpx.InvalidURL as error:
@@ -747,9 +742,8 @@ def client_options(
 ) -> dict[str, Any]:
     """Return the options of an httpx client for a checked server.
 
-    Raises ValueError for a key with invalid characters.
+    Raises ValueError for a key with invalid characters; the message does not show the key.
     """
-    # The message does not show the key.
     # No compression, so that the size of an answer is limited by the bytes received.
     headers = {"User-Agent": f"dh-grader/{VERSION}", "Accept-Encoding": "identity"}
     if language is not None:
@@ -859,8 +853,7 @@ class GraderClient(_Methods):
         self._http = httpx.Client(transport=transport, **options)
 
     def grade_many(self, submissions: Iterable[ExerciseSubmission]) -> Iterator[GradeResult]:
-        """Grade submissions; yield a report or an error for each, in order."""
-        # The submissions are sent in as few requests as the service's limits allow.
+        """Grade submissions in as few requests as possible; yield a report or error for each."""
         for call in grade_many(submissions):
             yield from self._result(call)
 
@@ -930,8 +923,7 @@ class AsyncGraderClient(_Methods):
     async def grade_many(
         self, submissions: Iterable[ExerciseSubmission]
     ) -> AsyncIterator[GradeResult]:
-        """Grade submissions; yield a report or an error for each, in order."""
-        # The submissions are sent in as few requests as the service's limits allow.
+        """Grade submissions in as few requests as possible; yield a report or error for each."""
         for call in grade_many(submissions):
             for result in await self._result(call):
                 yield result

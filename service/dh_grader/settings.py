@@ -1,4 +1,8 @@
-"""The settings of an installation, from environment variables DH_GRADER_…."""
+"""The settings of an installation, from environment variables DH_GRADER_….
+
+It knows the names, defaults and forms of all settings. What they do is decided where they are read:
+most in ``server/__init__.py``, those of `grade` in ``cli``.
+"""
 
 import os
 import re
@@ -20,8 +24,6 @@ from dh_grader.translations import LANGUAGES, Sentence, joined, language_named, 
 PREFIX = "DH_GRADER_"
 # The word in DH_GRADER_EXERCISES_DIR for the folder of the shipped exercises.
 SHIPPED = "shipped"
-
-
 # A scheme, a host with an optional port, and an optional path whose parts are not empty.
 _PUBLIC_URL: Final = regex(
     r"https?://(?:[a-z0-9._-]+|\[[0-9a-f:.]+\])(?::[0-9]+)?(?:/[a-z0-9._~%-]+)*/?",

@@ -66,73 +66,7 @@ class Caller:
 NOBODY: Final = Caller(frozenset())
 
 
-# The prefix lets scanners find keys that were published by mistake. The checksum lets the service
-# refuse a misspelt key without asking the database.
-
-
-PREFIX: Final = "dhg_"
-_ALPHABET: Final = string.digits + string.ascii_letters
-# 190 random bits.
-_RANDOM: Final = 32
-_CHECKSUM: Final = 6
-
-
-def new_key_text() -> str:
-    """Return the text of a new random key."""
-    drawn = "".join(secrets.choice(_ALPHABET) for _ in range(_RANDOM))
-    return f"{PREFIX}{drawn}{_checksum(drawn)}"
-
-
-def key_text_of(seed: bytes) -> str:
-    """Return the text of a key made of 64 bytes; equal bytes give equal texts."""
-    rest = int.from_bytes(seed)
-    digits = []
-    for _ in range(_RANDOM):
-        rest, digit = divmod(rest, len(_ALPHABET))
-        digits.append(_ALPHABET[digit])
-    drawn = "".join(digits)
-    return f"{PREFIX}{drawn}{_checksum(drawn)}"
-
-
-def is_spelt_right(text: str) -> bool:
-    """True if a text has the form of a key and a correct checksum."""
-    drawn, checksum = text[len(PREFIX) : -_CHECKSUM], text[-_CHECKSUM:]
-    return (
-        text.startswith(PREFIX)
-        and len(drawn) == _RANDOM
-        and set(text[len(PREFIX) :]) <= set(_ALPHABET)
-        and checksum == _checksum(drawn)
-    )
-
-
-def _checksum(drawn: str) -> str:
-    rest = crc32(drawn.encode())
-    digits = []
-    for _ in range(_CHECKSUM):
-        rest, digit = divmod(rest, len(_ALPHABET))
-        digits.append(_ALPHABET[digit])
-    return "".join(digits)
-
-
-# --- Find the client of a request by its address, for scheduling and for limits
-
-
-def client_key(address: str) -> str:
-    """Return the client of an address: the IPv4 address, or the /64 network of the IPv6 address."""
-    # One client may own a whole /64 network. An IPv4 address in IPv6 notation, such as
-    # ``::ffff:10.0.0.7``, counts as the IPv4 address.
-    if ":" not in address:
-        return address
-    try:
-        found = ipaddress.IPv6Address(address.partition("%")[0])
-    except ValueError:
-        return address
-    if found.ipv4_mapped is not None:
-        return str(found.ipv4_mapped)
-    return str(ipaddress.IPv6Network((found, 64), strict=False))
-
-
-# --- The operations that need no API key
+# --- What needs no API key
 
 
 UNTIL_KEYS: Final = "until-keys"
@@ -143,10 +77,9 @@ NOTHING: Final = "none"
 class OpenAccess:
     """The scopes (rights of a key) that never need a key.
 
-    With ``until_keys``, nothing needs a key as long as no key exists.
+    With ``until_keys``, nothing needs a key as long as no key exists. This applies only to requests
+    to the loopback address, unless ``anywhere`` is set.
     """
-
-    # ``until_keys`` applies only to requests to the loopback address, unless ``anywhere`` is set.
 
     scopes: frozenset[Scope] = frozenset()
     until_keys: bool = True
@@ -193,9 +126,7 @@ class KeysUnreachableError(Exception):
 
 
 class KeysBusyError(Exception):
-    """Too many unknown keys are being looked up."""
-
-    # Known keys do not wait for them.
+    """Too many unknown keys are being looked up. Known keys do not wait for them."""
 
 
 class CredentialError(Exception):
@@ -242,8 +173,7 @@ class Keys(Protocol):
     """The API keys of an installation."""
 
     async def are_needed(self) -> bool:
-        """True if any key exists."""
-        # Revoked and expired keys count, too.
+        """True if any key exists, also a revoked or expired one."""
 
     async def caller(self, credential: str) -> Caller:
         """Return the caller with this key or token.
@@ -310,3 +240,71 @@ class Secret:
 
     def _derived(self, purpose: str) -> bytes:
         return hmac.digest(self._text, f"dh-grader {purpose}".encode(), "sha256")
+
+
+# --- The text of an API key
+#
+# The prefix lets scanners find keys that were published by mistake. The checksum lets the service
+# refuse a misspelt key without asking the database.
+
+
+PREFIX: Final = "dhg_"
+_ALPHABET: Final = string.digits + string.ascii_letters
+# 190 random bits.
+_RANDOM: Final = 32
+_CHECKSUM: Final = 6
+
+
+def new_key_text() -> str:
+    """Return the text of a new random key."""
+    drawn = "".join(secrets.choice(_ALPHABET) for _ in range(_RANDOM))
+    return f"{PREFIX}{drawn}{_checksum(drawn)}"
+
+
+def key_text_of(seed: bytes) -> str:
+    """Return the text of a key made of 64 bytes; equal bytes give equal texts."""
+    rest = int.from_bytes(seed)
+    digits = []
+    for _ in range(_RANDOM):
+        rest, digit = divmod(rest, len(_ALPHABET))
+        digits.append(_ALPHABET[digit])
+    drawn = "".join(digits)
+    return f"{PREFIX}{drawn}{_checksum(drawn)}"
+
+
+def is_spelt_right(text: str) -> bool:
+    """True if a text has the form of a key and a correct checksum."""
+    drawn, checksum = text[len(PREFIX) : -_CHECKSUM], text[-_CHECKSUM:]
+    return (
+        text.startswith(PREFIX)
+        and len(drawn) == _RANDOM
+        and set(text[len(PREFIX) :]) <= set(_ALPHABET)
+        and checksum == _checksum(drawn)
+    )
+
+
+def _checksum(drawn: str) -> str:
+    rest = crc32(drawn.encode())
+    digits = []
+    for _ in range(_CHECKSUM):
+        rest, digit = divmod(rest, len(_ALPHABET))
+        digits.append(_ALPHABET[digit])
+    return "".join(digits)
+
+
+# --- Find the client of a request by its address, for scheduling and for limits
+
+
+def client_key(address: str) -> str:
+    """Return the client of an address: the IPv4 address, or the /64 network of the IPv6 address."""
+    # One client may own a whole /64 network. An IPv4 address in IPv6 notation, such as
+    # ``::ffff:10.0.0.7``, counts as the IPv4 address.
+    if ":" not in address:
+        return address
+    try:
+        found = ipaddress.IPv6Address(address.partition("%")[0])
+    except ValueError:
+        return address
+    if found.ipv4_mapped is not None:
+        return str(found.ipv4_mapped)
+    return str(ipaddress.IPv6Network((found, 64), strict=False))

@@ -1,4 +1,7 @@
-"""The API keys in the database, and the tokens and sessions that name a key."""
+"""The API keys in the database, and the tokens and sessions that name a key.
+
+``KeyRing`` checks all three. What a key may do is in ``dh_grader.access``.
+"""
 
 import asyncio
 import json
@@ -293,8 +296,7 @@ def any_key(connection: Connection) -> bool:
 
 
 def fits(connection: Connection, secret: Secret) -> bool:
-    """True if this secret belongs to the keys in the database."""
-    # The result is also True if the database has recorded no secret.
+    """True if this secret belongs to the keys in the database, or if it has recorded none."""
     return connection.scalar(select(key_secrets.c.digest)) in (None, secret.check)
 
 
@@ -318,8 +320,7 @@ def add_key(
     expires_at: datetime,
     course: str | None = None,
 ) -> Key:
-    """Insert a new key; ``digest`` is the keyed hash of its text."""
-    # The text itself is not stored.
+    """Insert a new key; ``digest`` is the keyed hash of its text, which is not stored."""
     bound = None if exercises is None else frozenset(exercises)
     key = Key(secrets.token_hex(4), name, frozenset(scopes), bound, created_at, expires_at)
     insert_key(connection, replace(key, course=course), digest)
@@ -348,13 +349,8 @@ def link_keys(connection: Connection, course: str) -> list[Key]:
     return [_key(row) for row in connection.execute(select(keys).where(links))]
 
 
-def keys_at(
-    connection: Connection, places: Collection[tuple[str, str]]
-) -> dict[tuple[str, str], Key]:
-    """Return the keys with these ids or digests; leave out unknown ones.
-
-    ``places`` has pairs: a column (``id`` or ``digest``) and its value.
-    """
+def keys_at(connection: Connection, places: Collection[KeyPlace]) -> dict[KeyPlace, Key]:
+    """Return the keys with these ids or digests; leave out unknown ones."""
     columns: dict[str, list[str]] = {column: [] for column, _ in places}
     for column, value in places:
         columns[column].append(value)
@@ -391,7 +387,7 @@ def _key(row: Row[Any]) -> Key:
 
 _ALGORITHM: Final = "HS256"
 _ISSUER: Final = "dh-grader"
-_TOKENS_JWS: Final = jwt.PyJWS()
+_JWS: Final = jwt.PyJWS()
 
 
 class _Claims(BaseModel):
@@ -445,7 +441,7 @@ def signed(token: LearnerToken, expires_at: datetime, secret: bytes) -> str:
 def verified(text: str, secret: bytes) -> LearnerToken:
     """Return the content of a token with a valid signature. Raises CredentialError."""
     try:
-        claims = _Claims.model_validate_json(_TOKENS_JWS.decode(text, secret, [_ALGORITHM]))
+        claims = _Claims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
         scopes = frozenset(map(Scope, claims.scope.split()))
     except jwt.InvalidTokenError as error:
         raise CredentialError(say("This is neither a key nor a token of this service.")) from error
@@ -467,13 +463,8 @@ def _unexpected(*claims: str) -> str:
 
 # --- Sessions of tutors in a browser
 #
-# A session is a signed text that names a key. Sessions are not stored.
-
-
-# A session token is valid at most as long as its key.
-
-
-_SESSIONS_JWS: Final = jwt.PyJWS()
+# A session is a signed text that names a key and is valid at most as long as the key. Sessions are
+# not stored.
 
 
 class _SessionClaims(BaseModel):
@@ -493,9 +484,7 @@ def signed_session(key_id: str, expires_at: datetime, secret: bytes) -> str:
 def key_of_session(text: str, secret: bytes) -> str:
     """Return the id of the key that a session token names. Raises CredentialError."""
     try:
-        claims = _SessionClaims.model_validate_json(
-            _SESSIONS_JWS.decode(text, secret, [_ALGORITHM])
-        )
+        claims = _SessionClaims.model_validate_json(_JWS.decode(text, secret, [_ALGORITHM]))
     except (jwt.InvalidTokenError, ValidationError) as error:
         raise CredentialError(say("This is no session of this service.")) from error
     if claims.exp <= time.time():

@@ -1,4 +1,7 @@
-"""Rate limits for keys and addresses."""
+"""Rate limits for keys and addresses.
+
+Which requests are counted is decided by the middleware in ``api/permissions.py``.
+"""
 
 import asyncio
 import logging
@@ -36,9 +39,10 @@ def rates_in(text: str) -> Sequence[RateLimitItem]:
 
 
 class Rates:
-    """Counts requests in the memory of this process, or in a Redis that processes share."""
+    """Counts requests in the memory of this process, or in a Redis that processes share.
 
-    # While Redis does not respond, each process counts on its own.
+    While Redis does not respond, each process counts on its own.
+    """
 
     def __init__(self, per_key: str = "", per_address: str = "", store: str = "memory://") -> None:
         # The limits are texts for ``rates_in``. Raises UnusableRatesError.
@@ -75,12 +79,12 @@ class Rates:
                 _log.warning("The store of rates does not respond: %s", type(error).__name__)
         return _hit(self._own, rates, counted, requests)
 
-    def _of(self, caller: Caller) -> Sequence[RateLimitItem]:
-        return self._per_key if caller.owner else self._per_address
-
     def close(self) -> None:
         """Stop the threads."""
         self._threads.shutdown(wait=False)
+
+    def _of(self, caller: Caller) -> Sequence[RateLimitItem]:
+        return self._per_key if caller.owner else self._per_address
 
 
 def _hit(

@@ -91,7 +91,7 @@ from dh_grader.kinematics import Matrices, Numbers
 from dh_grader.slices import checkpoint
 from dh_grader.translations import Language, Sentence, say, say_count
 
-# --- The routes that show how the grader reads a text while a student is typing
+# --- Previews: how the grader reads a text while a student is typing
 
 
 JOINTS: Final = range(1, 10)
@@ -105,67 +105,8 @@ GENERIC: Final = Vocabulary(
     ],
     of_books=True,
 )
-
-
-def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
-    """Return how the grader reads the text; ``vocabulary`` has the known symbols."""
-    try:
-        expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
-    except ExpressionError as error:
-        return PreviewAnswer.model_validate({"ok": False, "error": error})
-    return PreviewAnswer.model_validate(
-        {
-            "ok": True,
-            "text": expression.text(),
-            "latex": expression.latex(),
-            "mathml": expression.mathml(),
-            "symbols": sorted(expression.symbols),
-            "notes": expression.notes,
-        }
-    )
-
-
-def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
-    """Return how the grader reads several texts, within the limits of one submission."""
-    entries = [(entry.text, entry.quantity) for entry in body.entries]
-    cells = preview_entries(entries, exercise, body.part, body.angle_unit)
-    return PreviewManyResponse(results=[_answer(cell) for cell in cells])
-
-
-def _answer(cell: CellPreview) -> PreviewAnswer:
-    if cell.problem:
-        return PreviewAnswer.model_validate({"ok": False, "error": cell.problem})
-    read = {name: getattr(cell, name) for name in ("text", "latex", "mathml", "symbols", "notes")}
-    return PreviewAnswer.model_validate({"ok": True, **read})
-
-
 # Characters between the cells of a table or matrix. A single entry has none of them.
 _BETWEEN_CELLS: Final = frozenset("\n\t;|&<[,")
-
-
-def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
-    """Return how the grader reads each cell of a pasted table or matrix."""
-    pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
-    symbols = {name for row in pasted.rows for cell in row for name in cell.symbols}
-    return PreviewAnswer.model_validate(
-        {
-            "ok": pasted.ok,
-            "rows": pasted.rows or None,
-            "symbols": sorted(symbols),
-            "notes": pasted.notes,
-            "error": pasted.problem,
-        }
-    )
-
-
-def _shown(body: PreviewRequest, exercise: Exercise | None, language: Language) -> str:
-    shown = preview(body, exercise.vocabulary if exercise else GENERIC)
-    if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
-        grid = preview_grid(body, exercise, body.part)
-        # If the text is not a grid either, the problem of the single entry explains it better.
-        is_script = grid.error is not None and grid.error.code == "unread_script"
-        shown = grid if grid.rows or is_script or "\n" in body.text else shown
-    return shown.model_dump_json(exclude_none=True, context=language.translation)
 
 
 def preview_routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
@@ -232,27 +173,67 @@ def _exercise(catalogue: Catalogue, body: PreviewRequest) -> Exercise | None:
     return exercise
 
 
-# --- The route that computes where to draw the frames of a DH table and the links of a robot
+def _shown(body: PreviewRequest, exercise: Exercise | None, language: Language) -> str:
+    shown = preview(body, exercise.vocabulary if exercise else GENERIC)
+    if not shown.ok and exercise and body.part and _BETWEEN_CELLS & set(body.text):
+        grid = preview_grid(body, exercise, body.part)
+        # If the text is not a grid either, the problem of the single entry explains it better.
+        is_script = grid.error is not None and grid.error.code == "unread_script"
+        shown = grid if grid.rows or is_script or "\n" in body.text else shown
+    return shown.model_dump_json(exclude_none=True, context=language.translation)
+
+
+def preview(body: PreviewRequest, vocabulary: Vocabulary) -> PreviewAnswer:
+    """Return how the grader reads the text; ``vocabulary`` has the known symbols."""
+    try:
+        expression = read(body.text, vocabulary, quantity=body.quantity, angle_unit=body.angle_unit)
+    except ExpressionError as error:
+        return PreviewAnswer.model_validate({"ok": False, "error": error})
+    return PreviewAnswer.model_validate(
+        {
+            "ok": True,
+            "text": expression.text(),
+            "latex": expression.latex(),
+            "mathml": expression.mathml(),
+            "symbols": sorted(expression.symbols),
+            "notes": expression.notes,
+        }
+    )
+
+
+def preview_many(body: PreviewManyRequest, exercise: Exercise) -> PreviewManyResponse:
+    """Return how the grader reads several texts, within the limits of one submission."""
+    entries = [(entry.text, entry.quantity) for entry in body.entries]
+    cells = preview_entries(entries, exercise, body.part, body.angle_unit)
+    return PreviewManyResponse(results=[_answer(cell) for cell in cells])
+
+
+def _answer(cell: CellPreview) -> PreviewAnswer:
+    if cell.problem:
+        return PreviewAnswer.model_validate({"ok": False, "error": cell.problem})
+    read = {name: getattr(cell, name) for name in ("text", "latex", "mathml", "symbols", "notes")}
+    return PreviewAnswer.model_validate({"ok": True, **read})
+
+
+def preview_grid(body: PreviewRequest, exercise: Exercise, part: str) -> PreviewAnswer:
+    """Return how the grader reads each cell of a pasted table or matrix."""
+    pasted = preview_pasted(body.text, exercise, part, body.angle_unit)
+    symbols = {name for row in pasted.rows for cell in row for name in cell.symbols}
+    return PreviewAnswer.model_validate(
+        {
+            "ok": pasted.ok,
+            "rows": pasted.rows or None,
+            "symbols": sorted(symbols),
+            "notes": pasted.notes,
+            "error": pasted.problem,
+        }
+    )
+
+
+# --- Frames: where to draw the frames of a DH table and the links of a robot
 
 
 _MOST_MECHANISMS: Final = 64
-
-
-class _Mechanisms:
-    # A dragged slider uses a mechanism many times.
-    def __init__(self) -> None:
-        self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
-
-    def of(self, exercise: Exercise, numbers: Mapping[str, float]) -> tuple[MovableMechanism, View]:
-        key = (exercise.id, exercise.version, exercise.view, *numbers.values())
-        if key not in self._mechanisms:
-            subject = subject_of(exercise)
-            mechanism = mechanism_of(subject.reference, numbers)
-            self._mechanisms[key] = mechanism, subject.view or default_view(mechanism, numbers)
-            while len(self._mechanisms) > _MOST_MECHANISMS:
-                self._mechanisms.popitem(last=False)
-        self._mechanisms.move_to_end(key)
-        return self._mechanisms[key]
 
 
 def frames_routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> APIRouter:
@@ -285,6 +266,23 @@ def frames_routes(catalogue: Catalogue, access: Access, own: OwnVariants) -> API
         return told_json(content, language)
 
     return router
+
+
+class _Mechanisms:
+    # A dragged slider uses a mechanism many times.
+    def __init__(self) -> None:
+        self._mechanisms: OrderedDict[Hashable, tuple[MovableMechanism, View]] = OrderedDict()
+
+    def of(self, exercise: Exercise, numbers: Mapping[str, float]) -> tuple[MovableMechanism, View]:
+        key = (exercise.id, exercise.version, exercise.view, *numbers.values())
+        if key not in self._mechanisms:
+            subject = subject_of(exercise)
+            mechanism = mechanism_of(subject.reference, numbers)
+            self._mechanisms[key] = mechanism, subject.view or default_view(mechanism, numbers)
+            while len(self._mechanisms) > _MOST_MECHANISMS:
+                self._mechanisms.popitem(last=False)
+        self._mechanisms.move_to_end(key)
+        return self._mechanisms[key]
 
 
 def _answered(
@@ -532,15 +530,15 @@ def _plain(numbers: Numbers) -> Any:
     return (np.round(numbers, 12) + 0.0).tolist()
 
 
-# --- The route that draws an exercise's mechanism
+# --- Figures: the drawing of an exercise's mechanism
 
 
-_THEME = Query(
+_THEME: Final = Query(
     description="`light`, `dark`, or `auto`, as the reader's system wants. Prints are always light."
 )
-
-
-_REFUSED = refusals(HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY)
+_REFUSED: Final = refusals(
+    HTTPStatus.FORBIDDEN, HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY
+)
 
 
 class SvgResponse(Response):
@@ -580,14 +578,10 @@ def figures_routes(catalogue: Catalogue, own: OwnVariants) -> APIRouter:
                 say("The exercise has no figure"),
             )
         key = (exercise.id, exercise.version, exercise.title, exercise.view, theme)
-        content = await figures.of(key, partial(_drawn, exercise, theme))
+        content = await figures.of(key, lambda: exercise_figure(exercise, theme).encode())
         return SvgResponse(content, headers=figure_headers(theme))
 
     return router
-
-
-def _drawn(exercise: Exercise, theme: Theme) -> bytes:
-    return exercise_figure(exercise, theme).encode()
 
 
 def figure_headers(theme: Theme) -> dict[str, str]:

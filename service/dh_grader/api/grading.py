@@ -1,6 +1,6 @@
-"""The routes that grade, and what belongs to it: exercises, hints, solutions, practice, tokens.
+"""The routes that grade without recording, and those around: exercises, hints, solutions, tokens.
 
-Nothing is recorded here: ``recording.py`` has the routes that record attempts.
+Attempts are recorded in ``recording.py``. What an assignment allows is in ``grading_gates.py``.
 """
 
 import asyncio
@@ -9,21 +9,22 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from functools import partial
 from http import HTTPStatus
-from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Final, Literal
 
-from fastapi import APIRouter, Query, Request, Response
-from fastapi import Path as fastapi_Path
+from fastapi import APIRouter, Path, Query, Request, Response
 from pydantic import BaseModel, TypeAdapter
-from starlette.responses import Response as responses_Response
 
 from dh_grader.access import Caller
 from dh_grader.api.document import MAY_NEED_KEY, answers, posting, refusals
 from dh_grader.api.frames import SvgResponse, figure_headers
-from dh_grader.api.grading_gates import OwnVariants, PracticeGate, of_assignment
+from dh_grader.api.grading_gates import (
+    OwnVariants,
+    PracticeGate,
+    of_assignment,
+    solution_not_shown,
+)
 from dh_grader.api.http import (
     Catalogue,
-    ChunkedResponse,
     ExerciseId,
     Location,
     MemoizedResults,
@@ -36,6 +37,8 @@ from dh_grader.api.http import (
     invalid,
     language_headers,
     language_of,
+    private,
+    private_json,
     read_body,
     require_exercises,
     require_parts,
@@ -67,7 +70,6 @@ from dh_grader.formats.documents import rendered
 from dh_grader.formats.graded import report_in
 from dh_grader.grading import Report, Submission, grade, is_all_right, report_on_part
 from dh_grader.grading.kinds.tables import shown_shape
-from dh_grader.grading.report import RuleName
 from dh_grader.hints import (
     RULES,
     STEPS,
@@ -276,7 +278,7 @@ def exercises_routes(catalogue: Catalogue, feedback: FeedbackLevel, own: OwnVari
 # --- The routes for hints, for pictures of DH rules, and for alternatives to a correct table
 
 
-_RULE = fastapi_Path(max_length=60, description="The name of a rule.", examples=["link_twist"])
+_RULE = Path(max_length=60, description="The name of a rule.", examples=["link_twist"])
 
 
 def hints_routes(
@@ -351,7 +353,7 @@ def hints_routes(
         responses=refusals(HTTPStatus.NOT_FOUND, HTTPStatus.UNPROCESSABLE_ENTITY),
     )
     async def draw_rule(
-        convention: Annotated[Convention, fastapi_Path(description="The convention.")],
+        convention: Annotated[Convention, Path(description="The convention.")],
         rule: Annotated[str, _RULE],
         theme: Annotated[Theme, Query(description="The colours, as of a figure.")] = Theme.AUTO,
     ) -> Response:
@@ -360,7 +362,7 @@ def hints_routes(
         if name is None:
             raise ProblemError(HTTPStatus.NOT_FOUND, "There is no picture of such a rule.")
         content = await pictures.of(
-            (name, convention, theme), partial(_drawn, name, convention, theme)
+            (name, convention, theme), lambda: rule_picture(name, convention, theme).encode()
         )
         return SvgResponse(content, headers=figure_headers(theme))
 
@@ -417,10 +419,6 @@ def choices_for(exercise: Exercise, body: ChoicesRequest) -> FrameChoices:
         for each in found
     ]
     return FrameChoices(choices=tables)
-
-
-def _drawn(rule: RuleName, convention: Convention, theme: Theme) -> bytes:
-    return rule_picture(rule, convention, theme).encode()
 
 
 # --- The route that gives students generated robots to practise with
@@ -490,23 +488,6 @@ def practice_routes(catalogue: Catalogue) -> APIRouter:
 _SOLUTION: Final = TypeAdapter(ModelSolution)
 
 
-class SolvedExercises:
-    """The model solutions of exercises, memoized."""
-
-    def __init__(self) -> None:
-        self._memoized = MemoizedResults()
-
-    async def answer(self, exercise: Exercise) -> Response:
-        """Return the model solution of an exercise as JSON."""
-        key = (exercise.id, exercise.version)
-        content = await self._memoized.of(key, partial(_solved, exercise))
-        return Response(content, 200, {"Cache-Control": "no-store"}, "application/json")
-
-
-def _solved(exercise: Exercise) -> bytes:
-    return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
-
-
 def solutions_routes(
     catalogue: Catalogue, access: Access, practice: PracticeGate, own: OwnVariants
 ) -> APIRouter:
@@ -559,12 +540,26 @@ def solutions_routes(
 
 
 def _not_shown() -> ProblemError:
-    return ProblemError(
-        HTTPStatus.FORBIDDEN,
-        say("The solution is shown after full marks, and not for exercises that count."),
-        "solution-not-shown",
-        say("The solution is not shown"),
+    return solution_not_shown(
+        say("The solution is shown after full marks, and not for exercises that count.")
     )
+
+
+class SolvedExercises:
+    """The model solutions of exercises, memoized."""
+
+    def __init__(self) -> None:
+        self._memoized = MemoizedResults()
+
+    async def answer(self, exercise: Exercise) -> Response:
+        """Return the model solution of an exercise as JSON."""
+        key = (exercise.id, exercise.version)
+        content = await self._memoized.of(key, partial(_solved, exercise))
+        return private_json(content)
+
+
+def _solved(exercise: Exercise) -> bytes:
+    return _SOLUTION.dump_json(solve(exercise), exclude_none=True)
 
 
 # --- The route that makes tokens for learners
@@ -609,49 +604,7 @@ def tokens_routes(catalogue: Catalogue, access: Access) -> APIRouter:
         learner = replace(caller, learner=body.learner, exercises=exercises)
         token = access.token(learner, expires_at)
         answer = TokenResponse(token=token, learner=body.learner, expires_at=expires_at)
-        return Response(
-            answer.model_dump_json(),
-            HTTPStatus.CREATED,
-            {"Cache-Control": "no-store"},
-            "application/json",
-        )
-
-    return router
-
-
-# --- The page /docs, which documents the HTTP interface
-#
-# Swagger UI draws the page. The service has a copy of Swagger UI, so the page works without the
-# internet.
-
-
-FOLDER: Final = Path(__file__).parent / "swagger_ui"
-SCRIPT: Final = "swagger-ui-5.35.0.js"
-STYLE: Final = "swagger-ui-5.35.0.css"
-START: Final = "start.js"
-
-# The media type and caching of each file. A file with a version in its name never changes.
-_FOR_EVER: Final = "public, max-age=31536000, immutable"
-_FILES: Final = {
-    SCRIPT: ("text/javascript", _FOR_EVER),
-    STYLE: ("text/css", _FOR_EVER),
-    START: ("text/javascript", "no-cache"),
-}
-
-
-def reference_routes() -> APIRouter:
-    """Return the route that serves the files for the page /docs."""
-    router = APIRouter(include_in_schema=False)
-    contents = {name: (FOLDER / name).read_bytes() for name in _FILES}
-
-    @router.get("/docs/{name}")
-    async def file(name: str) -> responses_Response:
-        """Return a script or style of the page."""
-        if name not in _FILES:
-            raise ProblemError(HTTPStatus.NOT_FOUND, "The page /docs has no such file.")
-        media_type, caching = _FILES[name]
-        headers = {"Cache-Control": caching}
-        return ChunkedResponse(contents[name], headers=headers, media_type=media_type)
+        return private(answer, HTTPStatus.CREATED)
 
     return router
 
@@ -702,7 +655,13 @@ def health_routes(catalogue: Catalogue, store: "AttemptStore | None") -> APIRout
         """Say whether the service can grade submissions and, if it has a database, record them."""
         exercises = len(catalogue)
         if not exercises:
-            raise _no_exercises()
+            raise ProblemError(
+                HTTPStatus.SERVICE_UNAVAILABLE,
+                "No exercise is loaded.",
+                "no-exercises",
+                "The service has nothing to grade",
+                headers={"Retry-After": "5"},
+            )
         if checks is not None:
             try:
                 await checks.passed()
@@ -730,13 +689,3 @@ class _Checks:
             await asyncio.wait_for(self._store.check(), _PATIENCE)
         except TimeoutError as error:
             raise StoreDownError(f"the database does not react within {_PATIENCE:g} s") from error
-
-
-def _no_exercises() -> ProblemError:
-    return ProblemError(
-        HTTPStatus.SERVICE_UNAVAILABLE,
-        "No exercise is loaded.",
-        "no-exercises",
-        "The service has nothing to grade",
-        headers={"Retry-After": "5"},
-    )

@@ -1,6 +1,7 @@
-"""What an assignment allows a learner: practice, a paid hint, a solution, an own variant.
+"""What an assignment allows a learner: practice, a free hint, a solution, an own variant.
 
-The routes that grade ask here, so they need no database if there are no courses.
+The routes that grade without recording ask here, and know nothing else of courses. Without a
+database everything is allowed.
 """
 
 from datetime import UTC, datetime
@@ -20,7 +21,7 @@ from dh_grader.api.http import (
     with_parameters,
 )
 from dh_grader.api.permissions import Access, access_problem
-from dh_grader.api.recording import ask, read
+from dh_grader.api.recording import read
 from dh_grader.catalogue import Exercise
 from dh_grader.contract.courses import CourseName
 from dh_grader.store import StoreDownError
@@ -55,11 +56,9 @@ class PracticeGate:
         from dh_grader.courses.gradebook import has_priced_hints
 
         now, alike = datetime.now(UTC), self._alike(exercise.plain_id)
-        priced = await ask(
+        priced = await read(
             self._store,
-            lambda store: store.read(
-                lambda it: has_priced_hints(it, learner, caller.course, exercise, alike, now)
-            ),
+            lambda it: has_priced_hints(it, learner, caller.course, exercise, alike, now),
         )
         if priced or (caller.course is None and exercise.attempts.hint_prices is not None):
             raise ProblemError(
@@ -79,19 +78,12 @@ class PracticeGate:
         from dh_grader.courses.gradebook import hides_solution
 
         now, alike = datetime.now(UTC), self._alike(exercise)
-        hidden = await ask(
+        hidden = await read(
             self._store,
-            lambda store: store.read(
-                lambda it: hides_solution(it, learner, caller.course, exercise, alike, now)
-            ),
+            lambda it: hides_solution(it, learner, caller.course, exercise, alike, now),
         )
         if hidden:
-            raise ProblemError(
-                HTTPStatus.FORBIDDEN,
-                say("An assignment does not show you this solution now."),
-                "solution-not-shown",
-                say("The solution is not shown"),
-            )
+            raise solution_not_shown(say("An assignment does not show you this solution now."))
 
     async def refusal(self, caller: Caller, exercise: str) -> ProblemError | None:
         """Return the error if the caller may not practise the exercise now, else None."""
@@ -140,11 +132,17 @@ class PracticeGate:
         }
 
 
+def solution_not_shown(detail: str) -> ProblemError:
+    """Return the error for a solution that the caller may not see now; ``detail`` says why."""
+    return ProblemError(
+        HTTPStatus.FORBIDDEN, detail, "solution-not-shown", say("The solution is not shown")
+    )
+
+
 # --- Find a learner's own variant of an exercise, for requests that name an assignment
 #
-# The query ``?course=…&assignment=…`` names the assignment; the token names the learner.
-#
-# The response has the id of the exercise, not of the variant.
+# The query ``?course=…&assignment=…`` names the assignment; the token names the learner. The
+# response has the id of the exercise, not of the variant.
 
 
 _NAME: Final = TypeAdapter(CourseName)

@@ -1,6 +1,7 @@
-"""What all routes share: bodies, problem details, languages, compression, slow work in threads.
+"""What all routes share: errors, bodies, exercise ids, languages, turns, threads, and responses.
 
-It knows HTTP and nothing about exercises but their ids.
+It knows HTTP, and of exercises only their ids and the ids of their parts. Who may use a route is
+in ``permissions.py``, and how a route reaches the database in ``recording.py``.
 """
 
 import asyncio
@@ -21,15 +22,13 @@ from itertools import islice
 from time import perf_counter
 from typing import Annotated, Any, Final, NamedTuple, Protocol, TypeVar
 
-from fastapi import Depends, FastAPI, Path, Request
-from fastapi import Response as fastapi_Response
+from fastapi import Depends, FastAPI, Path, Request, Response
 from fastapi.exceptions import RequestValidationError
 from fastapi.routing import iter_route_contexts
 from pydantic import BaseModel, StringConstraints, TypeAdapter, ValidationError
 from starlette.exceptions import HTTPException
 from starlette.middleware.gzip import GZipMiddleware
 from starlette.requests import ClientDisconnect, HTTPConnection
-from starlette.responses import Response
 from starlette.types import ASGIApp, Receive, Scope, Send
 
 from dh_grader.access import Caller
@@ -57,73 +56,6 @@ from dh_grader.translations import (
     say,
     told,
 )
-
-# --- Compute slow results in a thread, one at a time, and memoize them
-
-
-# A course has a few dozen exercises. A solution or figure takes about ten kilobytes.
-MOST_RESULTS: Final = 128
-
-
-class MemoizedResults:
-    """Keeps the most recently used results in memory."""
-
-    def __init__(self) -> None:
-        self._results: OrderedDict[Hashable, bytes] = OrderedDict()
-        self._lock = asyncio.Lock()
-
-    async def of(self, key: Hashable, work: Callable[[], bytes]) -> bytes:
-        """Return the result for this key; call ``work`` if the result is not in memory."""
-        if key not in self._results:
-            async with self._lock:
-                if key not in self._results:
-                    self._results[key] = await asyncio.to_thread(work)
-                    while len(self._results) > MOST_RESULTS:
-                        self._results.popitem(last=False)
-        self._results.move_to_end(key)
-        return self._results[key]
-
-
-# --- Compression of responses with gzip
-
-
-# Of nine levels. Higher ones take twice as long and save 1 %.
-_LEVEL: Final = 6
-
-
-class CompressedGets:
-    """Compress the responses to GET for clients that accept gzip."""
-
-    # The responses to POST are small and must be fast, so they are not compressed.
-
-    def __init__(self, app: ASGIApp) -> None:
-        self.app = app
-        self._packed = GZipMiddleware(app, compresslevel=_LEVEL)
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
-        """Serve one ASGI connection."""
-        is_get = scope["type"] == "http" and scope["method"] == "GET"
-        await (self._packed if is_get else self.app)(scope, receive, send)
-
-
-# --- A response whose content is in memory and is sent in chunks
-
-
-# Bytes of a chunk.
-_PIECE: Final = 16 * 1024
-
-
-class ChunkedResponse(Response):
-    """A response that is sent in chunks; at most one chunk is buffered."""
-
-    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
-        """Serve one ASGI connection."""
-        start = {"status": self.status_code, "headers": self.raw_headers}
-        await send({"type": "http.response.start", **start})
-        for i in range(0, max(1, len(self.body)), _PIECE):
-            piece, more = self.body[i : i + _PIECE], i + _PIECE < len(self.body)
-            await send({"type": "http.response.body", "body": piece, "more_body": more})
-
 
 # --- Error responses in the format of RFC 9457 (problem details)
 
@@ -155,7 +87,7 @@ class ProblemError(Exception):
     headers: Mapping[str, str] | None = None
     challenges: Sequence[str] = ()
 
-    def response(self, instance: str, language: Language = ENGLISH) -> fastapi_Response:
+    def response(self, instance: str, language: Language = ENGLISH) -> Response:
         """Return the error response to a request for the path ``instance``."""
         request = current_request()
         content = self.content(instance, "" if request is None else request.id, language)
@@ -164,9 +96,9 @@ class ProblemError(Exception):
             answer.headers.update(language_headers(language))
         return answer
 
-    def answer(self, content: bytes, media_type: str = "text/html") -> fastapi_Response:
+    def answer(self, content: bytes, media_type: str = "text/html") -> Response:
         """Return a response with this content, and with the error's status and headers."""
-        response = fastapi_Response(content, self.status, self.headers, media_type)
+        response = Response(content, self.status, self.headers, media_type)
         for challenge in self.challenges:
             response.headers.append("WWW-Authenticate", challenge)
         return response
@@ -202,7 +134,7 @@ def message_of(error: Exception) -> str:
 
 
 # Makes the page of a problem; None if a program has made the request.
-ProblemPage = Callable[[Request, ProblemError], fastapi_Response | None]
+ProblemPage = Callable[[Request, ProblemError], Response | None]
 
 
 def too_large() -> ProblemError:
@@ -279,12 +211,12 @@ def install(app: FastAPI, page: ProblemPage | None = None) -> None:
     ``page`` makes the HTML page of an error, for browsers.
     """
 
-    async def answer(request: Request, error: Exception) -> fastapi_Response:
+    async def answer(request: Request, error: Exception) -> Response:
         problem = _problem(request, error)
         if problem.name == STORE_DOWN:
             _log.warning("The database fails: %s", error.__cause__)
         if request.method == "OPTIONS" and problem.status is HTTPStatus.METHOD_NOT_ALLOWED:
-            return fastapi_Response(status_code=HTTPStatus.NO_CONTENT, headers=problem.headers)
+            return Response(status_code=HTTPStatus.NO_CONTENT, headers=problem.headers)
         shown = None if page is None else page(request, problem)
         if shown is not None:
             return shown
@@ -343,206 +275,66 @@ def _other_method(request: Request) -> ProblemError:
     return ProblemError(HTTPStatus.METHOD_NOT_ALLOWED, detail, headers={"Allow": allow})
 
 
-# --- Optional query parameters that several routes have, in the document and checked alike
+# --- Read the body of a request and validate it as an instance of a pydantic model
+
+M = TypeVar("M", bound=BaseModel)
+# A place in a body: the keys and indices that lead to it.
+Location = tuple[str | int, ...]
 
 
-@dataclass(frozen=True)
-class QueryParameter:
-    """An optional query parameter; ``values`` accepts its values."""
-
-    name: str
-    description: str
-    values: TypeAdapter[str]
-
-    @property
-    def documented(self) -> Mapping[str, Any]:
-        """The parameter as in the OpenAPI document."""
-        return {
-            "name": self.name,
-            "in": "query",
-            "required": False,
-            "description": self.description,
-            "schema": self.values.json_schema(),
-        }
-
-    def check(self, request: Request) -> None:
-        """Check the value in a request, if there is one. Raises RequestValidationError."""
-        value = request.query_params.get(self.name)
-        if value is None:
-            return
-        try:
-            self.values.validate_python(value)
-        except ValidationError as error:
-            details = error.errors(include_url=False)
-            raise RequestValidationError(
-                [{**each, "loc": ("query", self.name)} for each in details]
-            ) from error
+async def read_body(model: type[M], request: Request) -> M:
+    """Return the request's JSON body as an instance of ``model``. Raises ProblemError."""
+    # JSON is accepted with any Content-Type, because forms and scripts often omit this header. That
+    # is safe: a cookie gives rights only to requests of the service's own pages.
+    try:
+        value = read_json(await request.body())
+    except MalformedError as error:
+        raise _malformed(error, request.headers.get("content-type", "")) from error
+    return validated(model, value)
 
 
-def with_parameters(options: Mapping[str, Any], *parameters: QueryParameter) -> dict[str, Any]:
-    """Return FastAPI's arguments for a route that also has these query parameters."""
+def validated(model: type[M], value: object, at: Location = ()) -> M:
+    """Return ``value``, a part of a request body, as an instance of ``model``.
 
-    async def check(request: Request) -> None:
-        for each in parameters:
-            each.check(request)
-
-    extra = options.get("openapi_extra", {})
-    documented = [*extra.get("parameters", ()), *(each.documented for each in parameters)]
-    return {
-        **options,
-        "openapi_extra": {**extra, "parameters": documented},
-        "dependencies": [*options.get("dependencies", ()), Depends(check)],
-    }
-
-
-# --- The request that is being answered: its id, its route, and when it arrived
-
-
-# The header with the id of a request. The id of a client is kept, and sent with the answer.
-HEADER: Final = "X-Request-ID"
-# Ids as proxies and tracers write them, without characters that a log would have to quote.
-_WELL_FORMED: Final = regex(r"[A-Za-z0-9._:=+/-]{1,128}", re.ASCII)
-
-
-@dataclass(slots=True)
-class RequestContext:
-    """A request; ``route`` is the pattern of its path, such as ``/v1/exercises/{exercise_id}``."""
-
-    id: str
-    route: str = ""
-    arrived: float = field(default_factory=perf_counter)
-
-    @property
-    def seconds(self) -> float:
-        """The seconds since the request arrived."""
-        return perf_counter() - self.arrived
-
-
-_current: ContextVar[RequestContext | None] = ContextVar("request", default=None)
-
-
-def begin_request(wished: str | None = None) -> RequestContext:
-    """Start a new request in the current task; ``wished`` is the id that the client asks for."""
-    usable = wished is not None and _WELL_FORMED.fullmatch(wished)
-    context = RequestContext(wished if usable and wished else secrets.token_hex(16))
-    _current.set(context)
-    return context
-
-
-def current_request() -> RequestContext | None:
-    """Return the request that the current task answers, or None."""
-    return _current.get()
-
-
-def end_request() -> None:
-    """End the request of the current task."""
-    _current.set(None)
-
-
-# --- The language of the reader who sends a request
-
-
-# The field of a query that chooses a language, and the cookie that keeps the choice.
-LANGUAGE_FIELD: Final = "lang"
-LANGUAGE_COOKIE: Final = "dh_grader_language"
-_A_YEAR: Final = 365 * 24 * 3600
-
-
-def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
-    """Return the reader's language: from the query, the cookie, or ``Accept-Language``.
-
-    ``usual`` is a known language of the reader, for example from a learning platform.
+    ``at`` is the path of ``value`` in the body. Raises ProblemError.
     """
-    # The first that names a known language decides; the default is English.
-    return (
-        language_named(request.query_params.get(LANGUAGE_FIELD))
-        or language_named(request.cookies.get(LANGUAGE_COOKIE))
-        or language_named(usual)
-        or accepted_language(request.headers.get("accept-language"))
+    try:
+        return model.model_validate(_with_few_unknown(model, value))
+    except ValidationError as error:
+        details = error.errors(include_url=False, include_input=False)
+        placed = [{**detail, "loc": (*at, *detail["loc"])} for detail in details]
+        raise invalid(placed, list(model.model_fields), at) from error
+
+
+def _with_few_unknown(model: type[BaseModel], value: object) -> object:
+    # An error response lists at most MAX_ERRORS errors, so further unknown fields are removed.
+    known = model.model_fields
+    if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
+        return value
+    unknown = islice((key for key in value if key not in known), MAX_ERRORS)
+    return {key: value[key] for key in (*filter(value.__contains__, known), *unknown)}
+
+
+def _malformed(error: MalformedError, content_type: str) -> ProblemError:
+    if content_type and not _is_json(content_type):
+        return ProblemError(
+            HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
+            say("The body is not JSON; send a JSON object, as application/json."),
+        )
+    place = {} if error.line is None else {"line": error.line, "column": error.column or 1}
+    return ProblemError(
+        HTTPStatus.BAD_REQUEST,
+        str(error),
+        "malformed-json",
+        say("The body cannot be read"),
+        [{"detail": error.reason, **place}],
     )
 
 
-def keep_language(request: HTTPConnection, response: Response) -> None:
-    """Store the language that the query chooses, if any, in a cookie."""
-    if chosen := language_named(request.query_params.get(LANGUAGE_FIELD)):
-        response.set_cookie(
-            LANGUAGE_COOKIE,
-            chosen.code,
-            max_age=_A_YEAR,
-            path=request.scope.get("root_path") or "/",
-            secure=request.url.scheme == "https",
-            httponly=True,
-            samesite="lax",
-        )
-
-
-# --- Headers and parameters of responses in the language of the reader
-
-
-_LANGUAGE: Final = QueryParameter(
-    LANGUAGE_FIELD,
-    "The language of sentences for people: `en`, `de`, `es`, `fr` or `zh`. Default: "
-    "`Accept-Language`. A sentence without a translation is in English, and so is an answer in a "
-    "language that the service does not have.",
-    TypeAdapter(Annotated[str, StringConstraints(max_length=35)]),
-)
-# Caches keep an answer for each language.
-_VARY: Final = {"Vary": "Accept-Language, Cookie"}
-
-
-def in_languages(options: dict[str, Any]) -> dict[str, Any]:
-    """Return FastAPI's arguments for a route that also has the query parameter ``lang``."""
-    return with_parameters(options, _LANGUAGE)
-
-
-def language_headers(language: Language) -> dict[str, str]:
-    """Return the headers ``Content-Language`` and ``Vary`` of a response in this language."""
-    return {"Content-Language": language.tag, **_VARY}
-
-
-def told_json(
-    content: bytes | str,
-    language: Language,
-    status: HTTPStatus = HTTPStatus.OK,
-    headers: Mapping[str, str] | None = None,
-) -> fastapi_Response:
-    """Return a JSON response whose headers name its language."""
-    named = {**language_headers(language), **(headers or {})}
-    return fastapi_Response(content, status, named, "application/json")
-
-
-# --- Do slow work in a thread, one task at a time, with a short queue
-
-
-T = TypeVar("T")
-
-# The length of the queue. A tutor's page waits for an answer before its next request.
-WAITING: Final = 4
-
-
-class BoundedWork:
-    """Does one task at a time in a thread; refuses further tasks if the queue is full."""
-
-    def __init__(self) -> None:
-        self._working = asyncio.Lock()
-        self._accepted = 0
-
-    async def do(self, work: Callable[[], T]) -> T:
-        """Do ``work`` and return its result. Raises ProblemError if the queue is full."""
-        if self._accepted > WAITING:
-            raise ProblemError(
-                HTTPStatus.SERVICE_UNAVAILABLE,
-                "Other work waits already. Try again in a few seconds.",
-                "busy",
-                "The service has a lot to do",
-                headers={"Retry-After": "5"},
-            )
-        self._accepted += 1
-        try:
-            async with self._working:
-                return await asyncio.to_thread(work)
-        finally:
-            self._accepted -= 1
+def _is_json(content_type: str) -> bool:
+    header = Message()
+    header["content-type"] = content_type
+    return header.get_content_subtype().rpartition("+")[2] == "json"
 
 
 # --- Find the exercises and the parts of exercises that a request names
@@ -553,8 +345,6 @@ ExerciseId = Annotated[
     str, Path(max_length=200, description="The id of an exercise.", examples=["stanford-arm"])
 ]
 AttemptId = Annotated[str, Path(max_length=100, description="The id of an attempt.")]
-# A place in a body: the keys and indices that lead to it.
-Location = tuple[str | int, ...]
 
 
 def reachable_exercises(catalogue: Catalogue, caller: Caller) -> Catalogue:
@@ -617,71 +407,173 @@ def require_parts(exercise: Exercise, located: Iterable[tuple[str, Location]]) -
         raise replace(problem, name="unknown-part", title=say("The exercise has no such part"))
 
 
-# --- Read the body of a request and validate it as an instance of a pydantic model
+# --- Optional query parameters that several routes have, in the document and checked alike
 
 
-M = TypeVar("M", bound=BaseModel)
+@dataclass(frozen=True)
+class QueryParameter:
+    """An optional query parameter; ``values`` accepts its values."""
+
+    name: str
+    description: str
+    values: TypeAdapter[str]
+
+    @property
+    def documented(self) -> Mapping[str, Any]:
+        """The parameter as in the OpenAPI document."""
+        return {
+            "name": self.name,
+            "in": "query",
+            "required": False,
+            "description": self.description,
+            "schema": self.values.json_schema(),
+        }
+
+    def check(self, request: Request) -> None:
+        """Check the value in a request, if there is one. Raises RequestValidationError."""
+        value = request.query_params.get(self.name)
+        if value is None:
+            return
+        try:
+            self.values.validate_python(value)
+        except ValidationError as error:
+            details = error.errors(include_url=False)
+            raise RequestValidationError(
+                [{**each, "loc": ("query", self.name)} for each in details]
+            ) from error
 
 
-async def read_body(model: type[M], request: Request) -> M:
-    """Return the request's JSON body as an instance of ``model``. Raises ProblemError."""
-    # JSON is accepted with any Content-Type, because forms and scripts often omit this header. That
-    # is safe: a cookie gives rights only to requests of the service's own pages.
-    try:
-        value = read_json(await request.body())
-    except MalformedError as error:
-        raise _malformed(error, request.headers.get("content-type", "")) from error
-    return validated(model, value)
+def with_parameters(options: Mapping[str, Any], *parameters: QueryParameter) -> dict[str, Any]:
+    """Return FastAPI's arguments for a route that also has these query parameters."""
+
+    async def check(request: Request) -> None:
+        for each in parameters:
+            each.check(request)
+
+    extra = options.get("openapi_extra", {})
+    documented = [*extra.get("parameters", ()), *(each.documented for each in parameters)]
+    return {
+        **options,
+        "openapi_extra": {**extra, "parameters": documented},
+        "dependencies": [*options.get("dependencies", ()), Depends(check)],
+    }
 
 
-def validated(model: type[M], value: object, at: Location = ()) -> M:
-    """Return ``value``, a part of a request body, as an instance of ``model``.
+# --- The language of the reader who sends a request, and of the response
 
-    ``at`` is the path of ``value`` in the body. Raises ProblemError.
+
+# The field of a query that chooses a language, and the cookie that keeps the choice.
+LANGUAGE_FIELD: Final = "lang"
+LANGUAGE_COOKIE: Final = "dh_grader_language"
+_A_YEAR: Final = 365 * 24 * 3600
+_LANGUAGE: Final = QueryParameter(
+    LANGUAGE_FIELD,
+    "The language of sentences for people: `en`, `de`, `es`, `fr` or `zh`. Default: "
+    "`Accept-Language`. A sentence without a translation is in English, and so is an answer in a "
+    "language that the service does not have.",
+    TypeAdapter(Annotated[str, StringConstraints(max_length=35)]),
+)
+# Caches keep an answer for each language.
+_VARY: Final = {"Vary": "Accept-Language, Cookie"}
+
+
+def language_of(request: HTTPConnection, usual: str | None = None) -> Language:
+    """Return the reader's language: from the query, the cookie, or ``Accept-Language``.
+
+    ``usual`` is a known language of the reader, for example from a learning platform.
     """
-    try:
-        return model.model_validate(_with_few_unknown(model, value))
-    except ValidationError as error:
-        details = error.errors(include_url=False, include_input=False)
-        placed = [{**detail, "loc": (*at, *detail["loc"])} for detail in details]
-        raise invalid(placed, list(model.model_fields), at) from error
-
-
-def _with_few_unknown(model: type[BaseModel], value: object) -> object:
-    # An error response lists at most MAX_ERRORS errors, so further unknown fields are removed.
-    known = model.model_fields
-    if not isinstance(value, dict) or len(value) <= len(known) + MAX_ERRORS:
-        return value
-    unknown = islice((key for key in value if key not in known), MAX_ERRORS)
-    return {key: value[key] for key in (*filter(value.__contains__, known), *unknown)}
-
-
-def _malformed(error: MalformedError, content_type: str) -> ProblemError:
-    if content_type and not _is_json(content_type):
-        return ProblemError(
-            HTTPStatus.UNSUPPORTED_MEDIA_TYPE,
-            say("The body is not JSON; send a JSON object, as application/json."),
-        )
-    place = {} if error.line is None else {"line": error.line, "column": error.column or 1}
-    return ProblemError(
-        HTTPStatus.BAD_REQUEST,
-        str(error),
-        "malformed-json",
-        say("The body cannot be read"),
-        [{"detail": error.reason, **place}],
+    # The first that names a known language decides; the default is English.
+    return (
+        language_named(request.query_params.get(LANGUAGE_FIELD))
+        or language_named(request.cookies.get(LANGUAGE_COOKIE))
+        or language_named(usual)
+        or accepted_language(request.headers.get("accept-language"))
     )
 
 
-def _is_json(content_type: str) -> bool:
-    header = Message()
-    header["content-type"] = content_type
-    return header.get_content_subtype().rpartition("+")[2] == "json"
+def keep_language(request: HTTPConnection, response: Response) -> None:
+    """Store the language that the query chooses, if any, in a cookie."""
+    if chosen := language_named(request.query_params.get(LANGUAGE_FIELD)):
+        response.set_cookie(
+            LANGUAGE_COOKIE,
+            chosen.code,
+            max_age=_A_YEAR,
+            path=request.scope.get("root_path") or "/",
+            secure=request.url.scheme == "https",
+            httponly=True,
+            samesite="lax",
+        )
+
+
+def in_languages(options: dict[str, Any]) -> dict[str, Any]:
+    """Return FastAPI's arguments for a route that also has the query parameter ``lang``."""
+    return with_parameters(options, _LANGUAGE)
+
+
+def language_headers(language: Language) -> dict[str, str]:
+    """Return the headers ``Content-Language`` and ``Vary`` of a response in this language."""
+    return {"Content-Language": language.tag, **_VARY}
+
+
+def told_json(
+    content: bytes | str,
+    language: Language,
+    status: HTTPStatus = HTTPStatus.OK,
+    headers: Mapping[str, str] | None = None,
+) -> Response:
+    """Return a JSON response whose headers name its language."""
+    named = {**language_headers(language), **(headers or {})}
+    return Response(content, status, named, "application/json")
+
+
+# --- The request that is being answered: its id, its route, and when it arrived
+
+
+# The header with the id of a request. The id of a client is kept, and sent with the answer.
+HEADER: Final = "X-Request-ID"
+# Ids as proxies and tracers write them, without characters that a log would have to quote.
+_WELL_FORMED: Final = regex(r"[A-Za-z0-9._:=+/-]{1,128}", re.ASCII)
+
+
+@dataclass(slots=True)
+class RequestContext:
+    """A request; ``route`` is the pattern of its path, such as ``/v1/exercises/{exercise_id}``."""
+
+    id: str
+    route: str = ""
+    arrived: float = field(default_factory=perf_counter)
+
+    @property
+    def seconds(self) -> float:
+        """The seconds since the request arrived."""
+        return perf_counter() - self.arrived
+
+
+_current: ContextVar[RequestContext | None] = ContextVar("request", default=None)
+
+
+def begin_request(wished: str | None = None) -> RequestContext:
+    """Start a new request in the current task; ``wished`` is the id that the client asks for."""
+    usable = wished is not None and _WELL_FORMED.fullmatch(wished)
+    context = RequestContext(wished if usable and wished else secrets.token_hex(16))
+    _current.set(context)
+    return context
+
+
+def current_request() -> RequestContext | None:
+    """Return the request that the current task answers, or None."""
+    return _current.get()
+
+
+def end_request() -> None:
+    """End the request of the current task."""
+    _current.set(None)
 
 
 # --- Share the processor fairly between the requests of clients
 
 
-R = TypeVar("R")
+T = TypeVar("T")
 
 # The key of a request's ASGI scope under which a layer leaves the function that awaits a turn.
 TURN: Final = "dh_grader.turn"
@@ -731,12 +623,111 @@ async def give_way(request: Request) -> None:
     await (asyncio.sleep(0) if turn is None else turn())
 
 
-async def run_in_turns(request: Request, work: Callable[[], R]) -> R:
+async def run_in_turns(request: Request, work: Callable[[], T]) -> T:
     """Call ``work`` and return its result; let other requests run meanwhile.
 
     Raises ClientDisconnect.
     """
     return await in_slices(work, partial(give_way, request))
+
+
+# --- Do slow work in a thread, one task at a time, with a short queue or memoized
+
+
+# The length of the queue. A tutor's page waits for an answer before its next request.
+WAITING: Final = 4
+# A course has a few dozen exercises. A solution or figure takes about ten kilobytes.
+MOST_RESULTS: Final = 128
+
+
+class BoundedWork:
+    """Does one task at a time in a thread; refuses further tasks if the queue is full."""
+
+    def __init__(self) -> None:
+        self._working = asyncio.Lock()
+        self._accepted = 0
+
+    async def do(self, work: Callable[[], T]) -> T:
+        """Do ``work`` and return its result. Raises ProblemError if the queue is full."""
+        if self._accepted > WAITING:
+            raise ProblemError(
+                HTTPStatus.SERVICE_UNAVAILABLE,
+                "Other work waits already. Try again in a few seconds.",
+                "busy",
+                "The service has a lot to do",
+                headers={"Retry-After": "5"},
+            )
+        self._accepted += 1
+        try:
+            async with self._working:
+                return await asyncio.to_thread(work)
+        finally:
+            self._accepted -= 1
+
+
+class MemoizedResults:
+    """Keeps the most recently used results in memory."""
+
+    def __init__(self) -> None:
+        self._results: OrderedDict[Hashable, bytes] = OrderedDict()
+        self._lock = asyncio.Lock()
+
+    async def of(self, key: Hashable, work: Callable[[], bytes]) -> bytes:
+        """Return the result for this key; call ``work`` if the result is not in memory."""
+        if key not in self._results:
+            async with self._lock:
+                if key not in self._results:
+                    self._results[key] = await asyncio.to_thread(work)
+                    while len(self._results) > MOST_RESULTS:
+                        self._results.popitem(last=False)
+        self._results.move_to_end(key)
+        return self._results[key]
+
+
+# --- Responses that no cache stores, that are sent in chunks, or that are compressed
+
+NO_STORE: Final = {"Cache-Control": "no-store"}
+# Bytes of a chunk.
+_CHUNK: Final = 16 * 1024
+# Of nine levels. Higher ones take twice as long and save 1 %.
+_GZIP_LEVEL: Final = 6
+
+
+def private(model: BaseModel, status: HTTPStatus = HTTPStatus.OK) -> Response:
+    """Return the model as a JSON response that no cache may store."""
+    return private_json(model.model_dump_json(exclude_none=True), status)
+
+
+def private_json(content: bytes | str, status: HTTPStatus = HTTPStatus.OK) -> Response:
+    """Return JSON as a response that no cache may store."""
+    return Response(content, status, NO_STORE, "application/json")
+
+
+class ChunkedResponse(Response):
+    """A response that is sent in chunks; at most one chunk is buffered."""
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:  # noqa: ARG002
+        """Serve one ASGI connection."""
+        start = {"status": self.status_code, "headers": self.raw_headers}
+        await send({"type": "http.response.start", **start})
+        for i in range(0, max(1, len(self.body)), _CHUNK):
+            piece, more = self.body[i : i + _CHUNK], i + _CHUNK < len(self.body)
+            await send({"type": "http.response.body", "body": piece, "more_body": more})
+
+
+class CompressedGets:
+    """Compress the responses to GET for clients that accept gzip."""
+
+    # The responses to POST are small and must be fast, so they are not compressed.
+
+    def __init__(self, app: ASGIApp) -> None:
+        self.app = app
+        self._packed = GZipMiddleware(app, compresslevel=_GZIP_LEVEL)
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Serve one ASGI connection."""
+        is_get = scope["type"] == "http" and scope["method"] == "GET"
+        await (self._packed if is_get else self.app)(scope, receive, send)
 
 
 # --- The interface through which the application counts requests and reports in the metrics

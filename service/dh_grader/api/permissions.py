@@ -46,7 +46,7 @@ from dh_grader.api.http import (
 )
 from dh_grader.translations import SentenceValue, say, template
 
-# --- A table with the right that each route needs
+# --- The right that each route needs, as a table
 #
 # docs/keys.md contains a list made from this table.
 
@@ -221,155 +221,6 @@ RIGHTS: Final[Mapping[str, Right]] = {
 def right_of(request: Request) -> Right:
     """Return the right that the route of this request needs."""
     return RIGHTS[f"{request.method} {request.scope['route'].path}"]
-
-
-# --- The errors for requests that the caller has no right to make
-
-
-_BEARER: Final = "Bearer"
-_ALLOWS: Final = {
-    Scope.GRADE: say("have answers graded"),
-    Scope.RECORD: say("record attempts"),
-    Scope.TUTOR: say("see what tutors see"),
-}
-
-
-class AccessProblem(NamedTuple):
-    """The constant texts of an error, with placeholders in braces."""
-
-    status: HTTPStatus
-    title: str
-    detail: str
-    retry_after: str | None = None
-    challenges: Sequence[str] = ()
-
-
-# The problems by the ends of their types.
-ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
-    "key-needed": AccessProblem(
-        HTTPStatus.UNAUTHORIZED,
-        template("A key is needed"),
-        template("This needs a key. Send it in the header Authorization: Bearer dhg_…"),
-        challenges=(_BEARER,),
-    ),
-    "key-not-valid": AccessProblem(
-        HTTPStatus.UNAUTHORIZED,
-        template("The key is not valid"),
-        "{reason}",
-        challenges=(f'{_BEARER} error="invalid_token"',),
-    ),
-    "scope-missing": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("The key is not for this"),
-        template("This key may not {allowed}: it has not the scope {scope}."),
-    ),
-    "other-exercise": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("The key is for other exercises"),
-        template(
-            "This key or token is for certain exercises. Name one of them; others, and all at "
-            "once, are not for it."
-        ),
-    ),
-    "other-course": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("The key is for one course"),
-        template("This key or link is for one course. Others, and all at once, are not for it."),
-    ),
-    "learner-needed": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("This is for a learner"),
-        template("This needs the personal link or the token of a learner."),
-    ),
-    "other-learner": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("The token is for another learner"),
-        template("This token is for one learner, and not for the one that is named here."),
-    ),
-    "solutions-off": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("Model solutions are not shown here"),
-        template(
-            "Model solutions are for tutors, and this service does not show them. To show them to "
-            "everybody who can reach it, start it with DH_GRADER_SOLUTIONS=true; on the machine "
-            "itself, use dh-grader exercises show ID --solution."
-        ),
-    ),
-    "attempts-not-shown": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("Recorded attempts are not shown here"),
-        template(
-            "Recorded attempts are for tutors, and this service does not show them. Ask from the "
-            "machine itself, use dh-grader attempts there, or set DH_GRADER_READ_ATTEMPTS=true to "
-            "show them to everybody who can reach the service."
-        ),
-    ),
-    "attempts-not-changed": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("Recorded attempts are not changed here"),
-        template(
-            "Only tutors change recorded attempts: with a key or, while the service has no keys, "
-            "from the machine itself, on a page of the service or by dh-grader attempts."
-        ),
-    ),
-    "origin-refused": AccessProblem(
-        HTTPStatus.FORBIDDEN,
-        template("The page is of another origin"),
-        template(
-            "A page of this origin may not record attempts. DH_GRADER_CORS_ORIGINS names those "
-            "that may."
-        ),
-    ),
-    "tokens-not-made": AccessProblem(
-        HTTPStatus.NOT_FOUND,
-        template("No tokens are made here"),
-        template("A token is made by the holder of a key, and this service needs no keys."),
-    ),
-    "too-often": AccessProblem(
-        HTTPStatus.TOO_MANY_REQUESTS,
-        template("Too many requests"),
-        template("These are more requests than are allowed. Come again in {seconds} seconds."),
-        retry_after="{seconds}",
-    ),
-    "batch-too-large": AccessProblem(
-        HTTPStatus.UNPROCESSABLE_ENTITY,
-        template("The batch is too large"),
-        template(
-            "Each submission counts as a request. {number} at once are never allowed here: send "
-            "at most {most} in one request."
-        ),
-    ),
-    "busy": AccessProblem(
-        HTTPStatus.SERVICE_UNAVAILABLE,
-        template("The service has a lot to do"),
-        template("Too many keys are being checked. Send this request again."),
-        retry_after="1",
-    ),
-}
-
-
-def access_problem(name: str, **values: SentenceValue) -> ProblemError:
-    """Return the error called ``name``, with ``values`` put into its texts."""
-    status, title, detail, retry_after, challenges = ACCESS_PROBLEMS[name]
-    headers = None if retry_after is None else {"Retry-After": retry_after.format_map(values)}
-    return ProblemError(
-        status, say(detail, **values), name, say(title), headers=headers, challenges=challenges
-    )
-
-
-def scope_missing(scope: Scope) -> ProblemError:
-    """Return the error for a key without this scope (a right of a key)."""
-    return access_problem("scope-missing", allowed=_ALLOWS[scope], scope=str(scope))
-
-
-def token_for_token() -> ProblemError:
-    """Return the error for a request that shows a token, not a key, to create a token."""
-    return ProblemError(
-        HTTPStatus.FORBIDDEN,
-        say("A token makes no tokens; this needs a key."),
-        "scope-missing",
-        say("The token is not for this"),
-    )
 
 
 # --- Check that each caller has the right that the requested route needs
@@ -596,39 +447,6 @@ def is_at_the_machine(request: Request) -> bool:
     )
 
 
-def _is_of_proxy(request: Request) -> bool:
-    # An unconfigured nginx adds no header and names this machine as host, but it speaks HTTP/1.0
-    # (ngx_http_proxy_module, "proxy_http_version", "proxy_set_header"), which no browser does.
-    return request.scope.get("http_version") == "1.0" or any(
-        name in _OF_PROXIES or name.startswith("x-forwarded-") for name in request.headers
-    )
-
-
-def is_loopback(host: str) -> bool:
-    """True if an address is a loopback address, which only this machine reaches."""
-    address = _address(host)
-    return address is not None and address.is_loopback
-
-
-def _is_to_this_machine(server: str) -> bool:
-    return _address(server) is None or is_loopback(server)
-
-
-@lru_cache(1024)
-def _address(host: str) -> IPv4Address | IPv6Address | None:
-    try:
-        return ip_address(host)
-    except ValueError:
-        return None
-
-
-def _host_name(netloc: str) -> str:
-    try:
-        return urlsplit(f"//{netloc}").hostname or ""
-    except ValueError:
-        return ""
-
-
 def is_same_origin(request: Request) -> bool:
     """True unless a page of another origin has made the request."""
     # Programs send no origin. Browsers send Sec-Fetch-Site (Fetch Metadata) over HTTPS and to their
@@ -658,6 +476,39 @@ def session_in(scope: AsgiScope) -> str:
     names = (SECURE_COOKIE,) if is_secure else (SECURE_COOKIE, PLAIN_COOKIE)
     session = next(filter(None, map(request.cookies.get, names)), "")
     return session if session and is_same_origin(request) else ""
+
+
+def is_loopback(host: str) -> bool:
+    """True if an address is a loopback address, which only this machine reaches."""
+    address = _address(host)
+    return address is not None and address.is_loopback
+
+
+def _is_of_proxy(request: Request) -> bool:
+    # An unconfigured nginx adds no header and names this machine as host, but it speaks HTTP/1.0
+    # (ngx_http_proxy_module, "proxy_http_version", "proxy_set_header"), which no browser does.
+    return request.scope.get("http_version") == "1.0" or any(
+        name in _OF_PROXIES or name.startswith("x-forwarded-") for name in request.headers
+    )
+
+
+def _is_to_this_machine(server: str) -> bool:
+    return _address(server) is None or is_loopback(server)
+
+
+@lru_cache(1024)
+def _address(host: str) -> IPv4Address | IPv6Address | None:
+    try:
+        return ip_address(host)
+    except ValueError:
+        return None
+
+
+def _host_name(netloc: str) -> str:
+    try:
+        return urlsplit(f"//{netloc}").hostname or ""
+    except ValueError:
+        return ""
 
 
 def _follows_link(request: Request) -> bool:
@@ -767,3 +618,152 @@ def _most_shares(caller: Caller) -> float:
     if caller.learner is not None:
         return ONE_STUDENT
     return COURSE_SITE if Scope.RECORD in caller.scopes else ONE_ADDRESS
+
+
+# --- The errors for requests that the caller has no right to make
+
+
+_BEARER: Final = "Bearer"
+_ALLOWS: Final = {
+    Scope.GRADE: say("have answers graded"),
+    Scope.RECORD: say("record attempts"),
+    Scope.TUTOR: say("see what tutors see"),
+}
+
+
+class AccessProblem(NamedTuple):
+    """The constant texts of an error, with placeholders in braces."""
+
+    status: HTTPStatus
+    title: str
+    detail: str
+    retry_after: str | None = None
+    challenges: Sequence[str] = ()
+
+
+# The problems by the ends of their types.
+ACCESS_PROBLEMS: Final[Mapping[str, AccessProblem]] = {
+    "key-needed": AccessProblem(
+        HTTPStatus.UNAUTHORIZED,
+        template("A key is needed"),
+        template("This needs a key. Send it in the header Authorization: Bearer dhg_…"),
+        challenges=(_BEARER,),
+    ),
+    "key-not-valid": AccessProblem(
+        HTTPStatus.UNAUTHORIZED,
+        template("The key is not valid"),
+        "{reason}",
+        challenges=(f'{_BEARER} error="invalid_token"',),
+    ),
+    "scope-missing": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("The key is not for this"),
+        template("This key may not {allowed}: it has not the scope {scope}."),
+    ),
+    "other-exercise": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("The key is for other exercises"),
+        template(
+            "This key or token is for certain exercises. Name one of them; others, and all at "
+            "once, are not for it."
+        ),
+    ),
+    "other-course": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("The key is for one course"),
+        template("This key or link is for one course. Others, and all at once, are not for it."),
+    ),
+    "learner-needed": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("This is for a learner"),
+        template("This needs the personal link or the token of a learner."),
+    ),
+    "other-learner": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("The token is for another learner"),
+        template("This token is for one learner, and not for the one that is named here."),
+    ),
+    "solutions-off": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("Model solutions are not shown here"),
+        template(
+            "Model solutions are for tutors, and this service does not show them. To show them to "
+            "everybody who can reach it, start it with DH_GRADER_SOLUTIONS=true; on the machine "
+            "itself, use dh-grader exercises show ID --solution."
+        ),
+    ),
+    "attempts-not-shown": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("Recorded attempts are not shown here"),
+        template(
+            "Recorded attempts are for tutors, and this service does not show them. Ask from the "
+            "machine itself, use dh-grader attempts there, or set DH_GRADER_READ_ATTEMPTS=true to "
+            "show them to everybody who can reach the service."
+        ),
+    ),
+    "attempts-not-changed": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("Recorded attempts are not changed here"),
+        template(
+            "Only tutors change recorded attempts: with a key or, while the service has no keys, "
+            "from the machine itself, on a page of the service or by dh-grader attempts."
+        ),
+    ),
+    "origin-refused": AccessProblem(
+        HTTPStatus.FORBIDDEN,
+        template("The page is of another origin"),
+        template(
+            "A page of this origin may not record attempts. DH_GRADER_CORS_ORIGINS names those "
+            "that may."
+        ),
+    ),
+    "tokens-not-made": AccessProblem(
+        HTTPStatus.NOT_FOUND,
+        template("No tokens are made here"),
+        template("A token is made by the holder of a key, and this service needs no keys."),
+    ),
+    "too-often": AccessProblem(
+        HTTPStatus.TOO_MANY_REQUESTS,
+        template("Too many requests"),
+        template("These are more requests than are allowed. Come again in {seconds} seconds."),
+        retry_after="{seconds}",
+    ),
+    "batch-too-large": AccessProblem(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        template("The batch is too large"),
+        template(
+            "Each submission counts as a request. {number} at once are never allowed here: send "
+            "at most {most} in one request."
+        ),
+    ),
+    "busy": AccessProblem(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        template("The service has a lot to do"),
+        template("Too many keys are being checked. Send this request again."),
+        retry_after="1",
+    ),
+}
+
+
+def access_problem(name: str, **values: SentenceValue) -> ProblemError:
+    """Return the error called ``name``, with ``values`` put into its texts."""
+    status, title, detail, retry_after, challenges = ACCESS_PROBLEMS[name]
+    headers = None if retry_after is None else {"Retry-After": retry_after.format_map(values)}
+    return ProblemError(
+        status, say(detail, **values), name, say(title), headers=headers, challenges=challenges
+    )
+
+
+def scope_missing(scope: Scope) -> ProblemError:
+    """Return the error for a key without this scope (a right of a key)."""
+    return access_problem("scope-missing", allowed=_ALLOWS[scope], scope=str(scope))
+
+
+def token_for_token() -> ProblemError:
+    """Return the error for a request that shows a token, not a key, to create a token."""
+    return ProblemError(
+        HTTPStatus.FORBIDDEN,
+        say("A token makes no tokens; this needs a key."),
+        "scope-missing",
+        say("The token is not for this"),
+    )

@@ -1,6 +1,7 @@
 """The routes that record attempts, and those that list, export and change recorded attempts.
 
-Which attempt counts is decided in ``dh_grader.store``.
+The last section is for all routes with a database: they ask it with ``ask``, ``read`` and
+``write``. Which attempt counts is decided in ``dh_grader.store``.
 """
 
 import hashlib
@@ -14,7 +15,7 @@ from http import HTTPStatus
 from typing import IO, TYPE_CHECKING, Annotated, Any, Final, TypeVar
 
 from fastapi import APIRouter, Header, Path, Query, Request, Response
-from pydantic import AfterValidator, AwareDatetime, BaseModel, BeforeValidator, StringConstraints
+from pydantic import AfterValidator, AwareDatetime, BeforeValidator, StringConstraints
 from starlette.background import BackgroundTask
 from starlette.requests import ClientDisconnect
 from starlette.responses import StreamingResponse
@@ -22,6 +23,7 @@ from starlette.responses import StreamingResponse
 from dh_grader.access import Caller
 from dh_grader.api.document import MAY_NEED_KEY, posting, refusals
 from dh_grader.api.http import (
+    NO_STORE,
     AttemptId,
     BoundedWork,
     Catalogue,
@@ -35,6 +37,7 @@ from dh_grader.api.http import (
     invalid,
     language_of,
     message_of,
+    private,
     read_body,
     require_parts,
     run_in_turns,
@@ -96,7 +99,462 @@ if TYPE_CHECKING:
     from dh_grader.store.results import AttemptHistory
 
 
-# --- Routes for tutors: export and change recorded attempts
+# --- The route that records attempts
+
+
+IDEMPOTENCY_KEY: Final = Header(
+    alias="Idempotency-Key",
+    min_length=1,
+    max_length=255,
+    description="Any text that you choose for this attempt. If the request is sent again with the "
+    "same key, the answer is the same, and nothing is recorded twice.",
+)
+
+
+def new_attempts_routes(
+    catalogue: Catalogue,
+    feedback: FeedbackLevel,
+    store: "AttemptStore | None",
+    access: Access,
+    practice: Callable[[Caller, str], Awaitable[None]],
+    monitor: Monitor | None = None,
+    origins: Collection[str] = (),
+) -> APIRouter:
+    """Return the route that records attempts; ``feedback`` is the highest feedback level."""
+    router = APIRouter(prefix="/v1", tags=["attempts"])
+
+    @router.post(
+        "/exercises/{exercise_id}/attempts",
+        operation_id="recordAttempt",
+        summary="Grade a submission and record it",
+        response_description="The recorded attempt and its report.",
+        status_code=HTTPStatus.CREATED,
+        **in_languages(
+            posting(
+                AttemptRequest,
+                AttemptResponse,
+                "attempt",
+                HTTPStatus.FORBIDDEN,
+                HTTPStatus.NOT_FOUND,
+                HTTPStatus.SERVICE_UNAVAILABLE,
+                success=HTTPStatus.CREATED,
+            )
+        ),
+    )
+    async def record_attempt(
+        exercise_id: ExerciseId,
+        request: Request,
+        idempotency_key: Annotated[str | None, IDEMPOTENCY_KEY] = None,
+    ) -> Response:
+        """Grade answers and record them with their report, once for each idempotency key.
+
+        The exercise says how attempts are counted and limited; an attempt in which nothing
+        could be read does not count. An attempt that is answered with 201 is not lost,
+        whatever happens to the service.
+        """
+        access.require_allowed_origin(request, origins)
+        if store is None:
+            raise not_recorded()
+        exercise = exercise_or_404(catalogue, exercise_id)
+        caller = access.caller(request)
+        await practice(caller, exercise.plain_id)
+        body = await read_body(AttemptRequest, request)
+        if caller.learner not in (None, body.learner):
+            raise access_problem("other-learner")
+        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
+        terms = AttemptTerms(exercise.attempts, exercise.feedback_at)
+        recorder = Recorder(store, feedback, monitor)
+        return await recorder.answer(request, exercise, body, terms, caller.owner, idempotency_key)
+
+    return router
+
+
+# --- Grade and record one attempt at an exercise, perhaps in an assignment of a course
+
+
+@dataclass(frozen=True, slots=True)
+class AttemptTerms:
+    """The rules for recording an attempt.
+
+    ``feedback_at`` returns the feedback level of the n-th attempt. ``assignment`` is the row number
+    of the assignment, or None.
+    """
+
+    rules: AttemptsSpec
+    feedback_at: Callable[[int], FeedbackLevel]
+    assignment: int | None = None
+
+
+# When a request arrived, and how many attempts of the learner counted then.
+Arrived = tuple[datetime, Standing]
+
+
+@dataclass(frozen=True, slots=True)
+class Recorder:
+    """Records attempts in the database. ``ceiling`` is the highest feedback level of reports."""
+
+    store: "AttemptStore"
+    ceiling: FeedbackLevel
+    monitor: Monitor | None
+
+    async def answer(
+        self,
+        request: Request,
+        exercise: Exercise,
+        body: AttemptRequest,
+        terms: AttemptTerms,
+        owner: str,
+        idempotency_key: str | None,
+        arrived: Arrived | None = None,
+    ) -> Response:
+        """Grade and record answers; return a response with the attempt and its report.
+
+        Raises ProblemError.
+        """
+        # Without ``arrived``, the time of arrival and the earlier attempts are looked up.
+        now, before = arrived or (arrived_at(request), None)
+        attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
+        try:
+            recorded = await attempting.recorded(request, before)
+        except StoreDownError as error:
+            detail = say(
+                "The database did not confirm the attempt. Send it again, with the same "
+                "Idempotency-Key."
+            )
+            raise store_down(detail) from error
+        except AttemptRefusedError as error:
+            raise ProblemError(
+                HTTPStatus.FORBIDDEN, message_of(error), error.name, say("The attempt is not taken")
+            ) from error
+        language = language_of(request)
+        return told_json(_answer(recorded, language), language, HTTPStatus.CREATED)
+
+
+class _Attempting:
+    def __init__(
+        self,
+        exercise: Exercise,
+        body: AttemptRequest,
+        terms: AttemptTerms,
+        recorder: Recorder,
+        owner: str,
+        idempotency_key: str | None,
+        now: datetime,
+    ) -> None:
+        self._exercise = exercise
+        self._body = body
+        self._terms = terms
+        self._recorder = recorder
+        self._owner = owner
+        self._key = idempotency_key
+        self._grading = AttemptGrading(exercise, body)
+        self._now = now
+        answers = body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)
+        self._submission = json.dumps(answers)
+        self._answers_digest = _digest(body.answers)
+        content = {"exercise": exercise.id, "learner": body.learner, **answers}
+        if terms.assignment is not None:
+            content["assignment"] = terms.assignment
+        self._request_digest = _digest(content)
+
+    async def recorded(self, request: Request, before: Standing | None) -> RecordedAttempt:
+        store, assignment = self._recorder.store, self._terms.assignment
+        standing = before or await store.standing(
+            self._exercise.plain_id, self._body.learner, self._owner, self._key, assignment
+        )
+        while True:
+            if standing.earlier is not None:
+                return self._same(standing.earlier)
+            most = self._most(self._ruling(standing))
+            if not self._grading.has(most):
+                await run_in_turns(request, partial(self._grade, most))
+            written = await store.record(standing, self._after)
+            if isinstance(written, RecordedAttempt):
+                return written
+            standing = written
+
+    def _ruling(self, standing: Standing) -> Ruling:
+        return ruling(self._terms.rules, standing.counted, self._now)
+
+    def _most(self, taken: Ruling) -> FeedbackLevel:
+        return least(self._terms.feedback_at(taken.ordinal), self._recorder.ceiling)
+
+    def _grade(self, most: FeedbackLevel) -> None:
+        began = working_time()
+        report = self._grading.at(most).report
+        monitor = self._recorder.monitor
+        if monitor is not None:
+            monitor.graded(report, working_time() - began)
+
+    def _same(self, earlier: RecordedAttempt) -> RecordedAttempt:
+        if earlier.request_digest != self._request_digest:
+            raise ProblemError(
+                HTTPStatus.UNPROCESSABLE_ENTITY,
+                say(
+                    "Another attempt was recorded under this Idempotency-Key. Take a new key for "
+                    "each attempt."
+                ),
+                "idempotency-key-reused",
+                say("The idempotency key belongs to another attempt"),
+            )
+        return earlier
+
+    def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
+        # Return None if the attempt is not allowed, is recorded already, or must be graded with
+        # another feedback level first.
+        if standing.earlier is not None:
+            return None
+        try:
+            taken = self._ruling(standing)
+        except AttemptRefusedError:
+            return None
+        most = self._most(taken)
+        if not self._grading.has(most):
+            return None
+        graded = self._grading.at(most)
+        return self._new(taken, graded, standing), graded.outcome
+
+    def _new(self, taken: Ruling, graded: AttemptReport, before: Standing) -> NewAttempt:
+        report, price = graded.report, before.hint_price
+        return NewAttempt(
+            exercise=self._exercise.plain_id,
+            learner=self._body.learner,
+            ordinal=before.last + 1 if report.gradable else None,
+            at=self._now,
+            is_late=taken.is_late,
+            worth=taken.worth,
+            submission=self._submission,
+            answers_digest=self._answers_digest,
+            report=graded.text,
+            version=report.version,
+            grader=report.grader,
+            points=points_after(report.points, report.max_points, price, taken.worth),
+            max_points=report.max_points,
+            owner=self._owner,
+            idempotency_key=self._key,
+            request_digest=self._request_digest,
+            assignment=self._terms.assignment,
+            variant=self._exercise.seed or None,
+            hint_price=price,
+        )
+
+
+def _answer(recorded: RecordedAttempt, language: Language) -> bytes:
+    attempt = Attempt.model_validate(recorded, from_attributes=True)
+    told = attempt.model_dump_json(exclude_none=True)
+    report = shown_report(recorded.report, language)
+    return f'{{"attempt":{told},"report":{report}}}'.encode()
+
+
+def _digest(content: object) -> str:
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+# --- For tutors and for learners with a token: read recorded attempts
+
+
+def _written_out(moment: object) -> object:
+    # A number would be read as seconds since 1970.
+    if isinstance(moment, str) and _DATE.match(moment) is None:
+        raise ValueError(say("This must be a date with a time, such as 2026-10-01T08:00:00Z."))
+    return moment
+
+
+def _in_utc(moment: datetime) -> datetime:
+    try:
+        return moment.astimezone(UTC)
+    except OverflowError as error:
+        raise ValueError(say("This is no moment of the calendar in UTC.")) from error
+
+
+_DATE: Final = regex(r"\d{4}-\d\d-\d\d[Tt ]")
+Moment = Annotated[AwareDatetime, BeforeValidator(_written_out), AfterValidator(_in_utc)]
+Since = Annotated[
+    Moment | None,
+    Query(description="Attempts from this moment on; with its time zone: 2026-10-01T08:00:00Z."),
+]
+Until = Annotated[Moment | None, Query(description="Attempts before this moment.")]
+CourseFilter = Annotated[CourseName | None, Query(description="The id of a course.")]
+AssignmentFilter = Annotated[
+    CourseName | None, Query(description="The id of an assignment of the course.")
+]
+Name = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")]
+
+_LISTING_REFUSED: Final = refusals(
+    HTTPStatus.FORBIDDEN,
+    HTTPStatus.NOT_FOUND,
+    HTTPStatus.UNPROCESSABLE_ENTITY,
+    HTTPStatus.SERVICE_UNAVAILABLE,
+)
+
+
+def listing_routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
+    """Return the routes that read attempts: tutors read all attempts, learners only their own."""
+    router = APIRouter(prefix="/v1", tags=["attempts"])
+
+    @router.get(
+        "/attempts",
+        operation_id="listAttempts",
+        summary="List recorded attempts",
+        response_model=AttemptList,
+        response_description="A page of attempts.",
+        responses=_LISTING_REFUSED,
+        openapi_extra=MAY_NEED_KEY,
+    )
+    async def list_attempts(
+        request: Request,
+        exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
+        learner: Annotated[Learner | None, Query(description="The learner.")] = None,
+        since: Since = None,
+        until: Until = None,
+        counted: Annotated[
+            bool | None,
+            Query(description="Only attempts that count (true), or that do not count (false)."),
+        ] = None,
+        cursor: Annotated[
+            str | None, Query(max_length=40, description="The `next` of the previous page.")
+        ] = None,
+        course: CourseFilter = None,
+        assignment: AssignmentFilter = None,
+        limit: Annotated[
+            int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most attempts on a page.")
+        ] = 50,
+    ) -> Response:
+        """List recorded attempts, the newest first, without answers and reports.
+
+        Tutors see all attempts. A learner with a token sees the learner's own.
+        """
+        caller = access.caller(request)
+        course = course_of(caller, course)
+        if exercise is not None and caller.learner is not None:
+            exercise = exercise.partition("~")[0]
+        wanted = AttemptFilter(
+            exercise, _readable(caller, learner), since, until, counted, course, assignment
+        )
+        try:
+            shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
+        except BadCursorError as error:
+            message = say("This is no cursor of a page.")
+            detail = {"type": "cursor", "loc": ("cursor",), "msg": message}
+            raise invalid([detail]) from error
+        attempts = [_summary(each, caller) for each in shown]
+        return private(AttemptList(attempts=attempts, next=following))
+
+    @router.get(
+        "/attempts/{attempt_id}",
+        operation_id="getAttempt",
+        summary="Show a recorded attempt",
+        response_model=AttemptDetail,
+        response_description="The attempt with its answers and reports.",
+        **in_languages({"responses": _LISTING_REFUSED, "openapi_extra": MAY_NEED_KEY}),
+    )
+    async def show_attempt(request: Request, attempt_id: AttemptId) -> Response:
+        """Show a recorded attempt with its answers and its report, in the reader's language.
+
+        Tutors also see earlier reports and overrides.
+        """
+        caller = access.caller(request)
+        found = await ask(store, lambda it: it.history(attempt_id))
+        if found is None or not _may_read(caller, found):
+            raise unknown_attempt()
+        language = language_of(request)
+        content = json.dumps(_detail(found, caller, language))
+        return told_json(content, language, headers=NO_STORE)
+
+    @router.get(
+        "/exercises/{exercise_id}/statistics",
+        operation_id="getStatistics",
+        summary="Show the statistics of an exercise",
+        response_model=ExerciseStatistics,
+        response_description="The counts of recorded attempts.",
+        **in_languages({"responses": _LISTING_REFUSED, "openapi_extra": MAY_NEED_KEY}),
+    )
+    async def show_statistics(
+        request: Request,
+        exercise_id: ExerciseId,
+        since: Since = None,
+        until: Until = None,
+        course: CourseFilter = None,
+        assignment: AssignmentFilter = None,
+    ) -> Response:
+        """Count recorded attempts for tutors: right answers in each place, and common mistakes."""
+        exercise = exercise_or_404(catalogue, exercise_id)
+        wanted = AttemptFilter(
+            exercise=exercise.id,
+            since=since,
+            until=until,
+            course=course_of(access.caller(request), course),
+            assignment=assignment,
+        )
+        figures = await ask(store, lambda it: it.statistics(wanted))
+        language = language_of(request)
+        content = figures.model_dump_json(exclude_none=True, context=language.translation)
+        return told_json(content, language, headers=NO_STORE)
+
+    return router
+
+
+def course_of(caller: Caller, course: str | None) -> str | None:
+    """Return the course whose attempts the caller asks for, or None. Raises ProblemError."""
+    if caller.course is not None and course not in (None, caller.course):
+        raise access_problem("other-course")
+    return caller.course or course
+
+
+def may_reach(caller: Caller, found: "AttemptHistory | None") -> bool:
+    """True if the attempt exists and the caller may see it."""
+    return (
+        found is not None
+        and caller.reaches(found.attempt.exercise)
+        and caller.course in (None, found.course)
+    )
+
+
+def _readable(caller: Caller, learner: str | None) -> str | None:
+    if caller.learner is not None and learner not in (None, caller.learner):
+        raise access_problem("other-learner")
+    return caller.learner or learner
+
+
+def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
+    return may_reach(caller, found) and caller.learner in (None, found.attempt.learner)
+
+
+def _summary(attempt: ListedAttempt, caller: Caller) -> AttemptSummary:
+    seen = attempt if caller.learner is None else replace(attempt, variant=None)
+    return AttemptSummary.model_validate(seen, from_attributes=True)
+
+
+def _detail(found: "AttemptHistory", caller: Caller, language: Language) -> dict[str, Any]:
+    # Overrides and replaced reports are only for tutors.
+    is_tutor = caller.learner is None
+    attempt = _summary(found.attempt, caller)
+    return {
+        "attempt": attempt.model_dump(mode="json", exclude_none=True),
+        "submission": json.loads(found.submission),
+        "report": json.loads(shown_report(found.report, language)),
+        "overrides": [
+            AttemptOverride.model_validate(row, from_attributes=True).model_dump(
+                mode="json", exclude_none=True
+            )
+            for row in found.overrides
+            if is_tutor
+        ],
+        "earlier_reports": [_earlier(row, language) for row in found.earlier if is_tutor],
+        "hints": [each.model_dump(mode="json", exclude_none=True) for each in found.hints],
+    }
+
+
+def _earlier(row: "Row[Any]", language: Language) -> dict[str, Any]:
+    named = ("version", "grader", "points", "max_points")
+    return {
+        "replaced_at": row.replaced_at.isoformat(),
+        **{name: getattr(row, name) for name in named},
+        "report": json.loads(shown_report(row.report, language)),
+    }
+
+
+# --- For tutors: export and change recorded attempts
 
 
 # Bytes of an export that are sent at once.
@@ -356,517 +814,9 @@ def _author(caller: Caller, given: str | None) -> str:
     return f"{given} ({by})" if given else by
 
 
-# --- Grade and record one attempt at an exercise, perhaps in an assignment of a course
-
-
-@dataclass(frozen=True, slots=True)
-class AttemptTerms:
-    """The rules for recording an attempt.
-
-    ``feedback_at`` returns the feedback level of the n-th attempt. ``assignment`` is the row number
-    of the assignment, or None.
-    """
-
-    rules: AttemptsSpec
-    feedback_at: Callable[[int], FeedbackLevel]
-    assignment: int | None = None
-
-
-# When a request arrived, and how many attempts of the learner counted then.
-Arrived = tuple[datetime, Standing]
-
-
-@dataclass(frozen=True, slots=True)
-class Recorder:
-    """Records attempts in the database. ``ceiling`` is the highest feedback level of reports."""
-
-    store: "AttemptStore"
-    ceiling: FeedbackLevel
-    monitor: Monitor | None
-
-    async def answer(
-        self,
-        request: Request,
-        exercise: Exercise,
-        body: AttemptRequest,
-        terms: AttemptTerms,
-        owner: str,
-        idempotency_key: str | None,
-        arrived: Arrived | None = None,
-    ) -> Response:
-        """Grade and record answers; return a response with the attempt and its report.
-
-        Raises ProblemError.
-        """
-        # Without ``arrived``, the time of arrival and the earlier attempts are looked up.
-        now, before = arrived or (arrived_at(request), None)
-        attempting = _Attempting(exercise, body, terms, self, owner, idempotency_key, now)
-        try:
-            recorded = await attempting.recorded(request, before)
-        except StoreDownError as error:
-            detail = say(
-                "The database did not confirm the attempt. Send it again, with the same "
-                "Idempotency-Key."
-            )
-            raise store_down(detail) from error
-        except AttemptRefusedError as error:
-            raise ProblemError(
-                HTTPStatus.FORBIDDEN, message_of(error), error.name, say("The attempt is not taken")
-            ) from error
-        language = language_of(request)
-        return told_json(_answer(recorded, language), language, HTTPStatus.CREATED)
-
-
-class _Attempting:
-    def __init__(
-        self,
-        exercise: Exercise,
-        body: AttemptRequest,
-        terms: AttemptTerms,
-        recorder: Recorder,
-        owner: str,
-        idempotency_key: str | None,
-        now: datetime,
-    ) -> None:
-        self._exercise = exercise
-        self._body = body
-        self._terms = terms
-        self._recorder = recorder
-        self._owner = owner
-        self._key = idempotency_key
-        self._grading = AttemptGrading(exercise, body)
-        self._now = now
-        answers = body.model_dump(mode="json", exclude={"learner"}, exclude_unset=True)
-        self._submission = json.dumps(answers)
-        self._answers_digest = _digest(body.answers)
-        content = {"exercise": exercise.id, "learner": body.learner, **answers}
-        if terms.assignment is not None:
-            content["assignment"] = terms.assignment
-        self._request_digest = _digest(content)
-
-    async def recorded(self, request: Request, before: Standing | None) -> RecordedAttempt:
-        store, assignment = self._recorder.store, self._terms.assignment
-        standing = before or await store.standing(
-            self._exercise.plain_id, self._body.learner, self._owner, self._key, assignment
-        )
-        while True:
-            if standing.earlier is not None:
-                return self._same(standing.earlier)
-            most = self._most(self._ruling(standing))
-            if not self._grading.has(most):
-                await run_in_turns(request, partial(self._grade, most))
-            written = await store.record(standing, self._after)
-            if isinstance(written, RecordedAttempt):
-                return written
-            standing = written
-
-    def _ruling(self, standing: Standing) -> Ruling:
-        return ruling(self._terms.rules, standing.counted, self._now)
-
-    def _most(self, taken: Ruling) -> FeedbackLevel:
-        return least(self._terms.feedback_at(taken.ordinal), self._recorder.ceiling)
-
-    def _grade(self, most: FeedbackLevel) -> None:
-        began = working_time()
-        report = self._grading.at(most).report
-        monitor = self._recorder.monitor
-        if monitor is not None:
-            monitor.graded(report, working_time() - began)
-
-    def _same(self, earlier: RecordedAttempt) -> RecordedAttempt:
-        if earlier.request_digest != self._request_digest:
-            raise ProblemError(
-                HTTPStatus.UNPROCESSABLE_ENTITY,
-                say(
-                    "Another attempt was recorded under this Idempotency-Key. Take a new key for "
-                    "each attempt."
-                ),
-                "idempotency-key-reused",
-                say("The idempotency key belongs to another attempt"),
-            )
-        return earlier
-
-    def _after(self, standing: Standing) -> tuple[NewAttempt, Outcome] | None:
-        # Return None if the attempt is not allowed, is recorded already, or must be graded with
-        # another feedback level first.
-        if standing.earlier is not None:
-            return None
-        try:
-            taken = self._ruling(standing)
-        except AttemptRefusedError:
-            return None
-        most = self._most(taken)
-        if not self._grading.has(most):
-            return None
-        graded = self._grading.at(most)
-        return self._new(taken, graded, standing), graded.outcome
-
-    def _new(self, taken: Ruling, graded: AttemptReport, before: Standing) -> NewAttempt:
-        report, price = graded.report, before.hint_price
-        return NewAttempt(
-            exercise=self._exercise.plain_id,
-            learner=self._body.learner,
-            ordinal=before.last + 1 if report.gradable else None,
-            at=self._now,
-            is_late=taken.is_late,
-            worth=taken.worth,
-            submission=self._submission,
-            answers_digest=self._answers_digest,
-            report=graded.text,
-            version=report.version,
-            grader=report.grader,
-            points=points_after(report.points, report.max_points, price, taken.worth),
-            max_points=report.max_points,
-            owner=self._owner,
-            idempotency_key=self._key,
-            request_digest=self._request_digest,
-            assignment=self._terms.assignment,
-            variant=self._exercise.seed or None,
-            hint_price=price,
-        )
-
-
-def _answer(recorded: RecordedAttempt, language: Language) -> bytes:
-    attempt = Attempt.model_validate(recorded, from_attributes=True)
-    told = attempt.model_dump_json(exclude_none=True)
-    report = shown_report(recorded.report, language)
-    return f'{{"attempt":{told},"report":{report}}}'.encode()
-
-
-def _digest(content: object) -> str:
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-
-
-# --- The route that records attempts
-
-
-IDEMPOTENCY_KEY: Final = Header(
-    alias="Idempotency-Key",
-    min_length=1,
-    max_length=255,
-    description="Any text that you choose for this attempt. If the request is sent again with the "
-    "same key, the answer is the same, and nothing is recorded twice.",
-)
-
-
-def new_attempts_routes(
-    catalogue: Catalogue,
-    feedback: FeedbackLevel,
-    store: "AttemptStore | None",
-    access: Access,
-    practice: Callable[[Caller, str], Awaitable[None]],
-    monitor: Monitor | None = None,
-    origins: Collection[str] = (),
-) -> APIRouter:
-    """Return the route that records attempts; ``feedback`` is the highest feedback level."""
-    router = APIRouter(prefix="/v1", tags=["attempts"])
-
-    @router.post(
-        "/exercises/{exercise_id}/attempts",
-        operation_id="recordAttempt",
-        summary="Grade a submission and record it",
-        response_description="The recorded attempt and its report.",
-        status_code=HTTPStatus.CREATED,
-        **in_languages(
-            posting(
-                AttemptRequest,
-                AttemptResponse,
-                "attempt",
-                HTTPStatus.FORBIDDEN,
-                HTTPStatus.NOT_FOUND,
-                HTTPStatus.SERVICE_UNAVAILABLE,
-                success=HTTPStatus.CREATED,
-            )
-        ),
-    )
-    async def record_attempt(
-        exercise_id: ExerciseId,
-        request: Request,
-        idempotency_key: Annotated[str | None, IDEMPOTENCY_KEY] = None,
-    ) -> Response:
-        """Grade answers and record them with their report, once for each idempotency key.
-
-        The exercise says how attempts are counted and limited; an attempt in which nothing
-        could be read does not count. An attempt that is answered with 201 is not lost,
-        whatever happens to the service.
-        """
-        access.require_allowed_origin(request, origins)
-        if store is None:
-            raise not_recorded()
-        exercise = exercise_or_404(catalogue, exercise_id)
-        caller = access.caller(request)
-        await practice(caller, exercise.plain_id)
-        body = await read_body(AttemptRequest, request)
-        if caller.learner not in (None, body.learner):
-            raise access_problem("other-learner")
-        require_parts(exercise, ((part, ("answers", part)) for part in body.answers))
-        terms = AttemptTerms(exercise.attempts, exercise.feedback_at)
-        recorder = Recorder(store, feedback, monitor)
-        return await recorder.answer(request, exercise, body, terms, caller.owner, idempotency_key)
-
-    return router
-
-
-def not_recorded() -> ProblemError:
-    """Return the error for a service without a database."""
-    return ProblemError(
-        HTTPStatus.NOT_FOUND,
-        say("No attempts are recorded here: the service has no database."),
-        "attempts-not-recorded",
-        say("Attempts are not recorded here"),
-    )
-
-
-# --- Access to the recorded attempts for routes, with errors as HTTP responses
-
+# --- How routes ask the database: what is read and written, and errors as HTTP responses
 
 R = TypeVar("R")
-
-NO_STORE: Final = {"Cache-Control": "no-store"}
-
-
-async def ask(
-    store: "AttemptStore | None", question: Callable[["AttemptStore"], Awaitable[R]]
-) -> R:
-    """Call ``question`` with the store of attempts; return the result.
-
-    Raises ProblemError if the database is missing or does not respond.
-    """
-    if store is None:
-        raise not_recorded()
-    try:
-        return await question(store)
-    except StoreDownError as error:
-        detail = say("The database does not answer.")
-        raise store_down(detail) from error
-
-
-def unknown_attempt() -> ProblemError:
-    """Return the error for an attempt that is unknown or that the caller may not see."""
-    return ProblemError(
-        HTTPStatus.NOT_FOUND,
-        say("No attempt with this id is recorded here."),
-        "unknown-attempt",
-        say("There is no such attempt"),
-    )
-
-
-def private(model: BaseModel) -> Response:
-    """Return the model as a JSON response that no cache may store."""
-    return private_json(model.model_dump_json(exclude_none=True).encode())
-
-
-def private_json(content: bytes) -> Response:
-    """Return JSON as a response that no cache may store."""
-    return Response(content, HTTPStatus.OK, NO_STORE, "application/json")
-
-
-# --- Routes for tutors and for learners with a token: read recorded attempts
-
-
-def _in_utc(moment: datetime) -> datetime:
-    try:
-        return moment.astimezone(UTC)
-    except OverflowError as error:
-        raise ValueError(say("This is no moment of the calendar in UTC.")) from error
-
-
-def _written_out(moment: object) -> object:
-    # A number would be read as seconds since 1970.
-    if isinstance(moment, str) and _DATE.match(moment) is None:
-        raise ValueError(say("This must be a date with a time, such as 2026-10-01T08:00:00Z."))
-    return moment
-
-
-_DATE: Final = regex(r"\d{4}-\d\d-\d\d[Tt ]")
-Moment = Annotated[AwareDatetime, BeforeValidator(_written_out), AfterValidator(_in_utc)]
-Since = Annotated[
-    Moment | None,
-    Query(description="Attempts from this moment on; with its time zone: 2026-10-01T08:00:00Z."),
-]
-Until = Annotated[Moment | None, Query(description="Attempts before this moment.")]
-CourseFilter = Annotated[CourseName | None, Query(description="The id of a course.")]
-AssignmentFilter = Annotated[
-    CourseName | None, Query(description="The id of an assignment of the course.")
-]
-Name = Annotated[str, StringConstraints(max_length=100, pattern=r"^[^\x00-\x1f\x7f]+$")]
-
-_LISTING_REFUSED: Final = refusals(
-    HTTPStatus.FORBIDDEN,
-    HTTPStatus.NOT_FOUND,
-    HTTPStatus.UNPROCESSABLE_ENTITY,
-    HTTPStatus.SERVICE_UNAVAILABLE,
-)
-
-
-def listing_routes(catalogue: Catalogue, store: "AttemptStore | None", access: Access) -> APIRouter:
-    """Return the routes that read attempts: tutors read all attempts, learners only their own."""
-    router = APIRouter(prefix="/v1", tags=["attempts"])
-
-    @router.get(
-        "/attempts",
-        operation_id="listAttempts",
-        summary="List recorded attempts",
-        response_model=AttemptList,
-        response_description="A page of attempts.",
-        responses=_LISTING_REFUSED,
-        openapi_extra=MAY_NEED_KEY,
-    )
-    async def list_attempts(
-        request: Request,
-        exercise: Annotated[Name | None, Query(description="The id of an exercise.")] = None,
-        learner: Annotated[Learner | None, Query(description="The learner.")] = None,
-        since: Since = None,
-        until: Until = None,
-        counted: Annotated[
-            bool | None,
-            Query(description="Only attempts that count (true), or that do not count (false)."),
-        ] = None,
-        cursor: Annotated[
-            str | None, Query(max_length=40, description="The `next` of the previous page.")
-        ] = None,
-        course: CourseFilter = None,
-        assignment: AssignmentFilter = None,
-        limit: Annotated[
-            int, Query(ge=1, le=MOST_ON_A_PAGE, description="The most attempts on a page.")
-        ] = 50,
-    ) -> Response:
-        """List recorded attempts, the newest first, without answers and reports.
-
-        Tutors see all attempts. A learner with a token sees the learner's own.
-        """
-        caller = access.caller(request)
-        course = course_of(caller, course)
-        if exercise is not None and caller.learner is not None:
-            exercise = exercise.partition("~")[0]
-        wanted = AttemptFilter(
-            exercise, _readable(caller, learner), since, until, counted, course, assignment
-        )
-        try:
-            shown, following = await ask(store, lambda it: it.page(wanted, cursor, limit))
-        except BadCursorError as error:
-            message = say("This is no cursor of a page.")
-            detail = {"type": "cursor", "loc": ("cursor",), "msg": message}
-            raise invalid([detail]) from error
-        attempts = [_summary(each, caller) for each in shown]
-        return private(AttemptList(attempts=attempts, next=following))
-
-    @router.get(
-        "/attempts/{attempt_id}",
-        operation_id="getAttempt",
-        summary="Show a recorded attempt",
-        response_model=AttemptDetail,
-        response_description="The attempt with its answers and reports.",
-        **in_languages({"responses": _LISTING_REFUSED, "openapi_extra": MAY_NEED_KEY}),
-    )
-    async def show_attempt(request: Request, attempt_id: AttemptId) -> Response:
-        """Show a recorded attempt with its answers and its report, in the reader's language.
-
-        Tutors also see earlier reports and overrides.
-        """
-        caller = access.caller(request)
-        found = await ask(store, lambda it: it.history(attempt_id))
-        if found is None or not _may_read(caller, found):
-            raise unknown_attempt()
-        language = language_of(request)
-        content = json.dumps(_detail(found, caller, language))
-        return told_json(content, language, headers=NO_STORE)
-
-    @router.get(
-        "/exercises/{exercise_id}/statistics",
-        operation_id="getStatistics",
-        summary="Show the statistics of an exercise",
-        response_model=ExerciseStatistics,
-        response_description="The counts of recorded attempts.",
-        **in_languages({"responses": _LISTING_REFUSED, "openapi_extra": MAY_NEED_KEY}),
-    )
-    async def show_statistics(
-        request: Request,
-        exercise_id: ExerciseId,
-        since: Since = None,
-        until: Until = None,
-        course: CourseFilter = None,
-        assignment: AssignmentFilter = None,
-    ) -> Response:
-        """Count recorded attempts for tutors: right answers in each place, and common mistakes."""
-        exercise = exercise_or_404(catalogue, exercise_id)
-        wanted = AttemptFilter(
-            exercise=exercise.id,
-            since=since,
-            until=until,
-            course=course_of(access.caller(request), course),
-            assignment=assignment,
-        )
-        figures = await ask(store, lambda it: it.statistics(wanted))
-        language = language_of(request)
-        content = figures.model_dump_json(exclude_none=True, context=language.translation)
-        return told_json(content, language, headers=NO_STORE)
-
-    return router
-
-
-def course_of(caller: Caller, course: str | None) -> str | None:
-    """Return the course whose attempts the caller asks for, or None. Raises ProblemError."""
-    if caller.course is not None and course not in (None, caller.course):
-        raise access_problem("other-course")
-    return caller.course or course
-
-
-def may_reach(caller: Caller, found: "AttemptHistory | None") -> bool:
-    """True if the attempt exists and the caller may see it."""
-    return (
-        found is not None
-        and caller.reaches(found.attempt.exercise)
-        and caller.course in (None, found.course)
-    )
-
-
-def _readable(caller: Caller, learner: str | None) -> str | None:
-    if caller.learner is not None and learner not in (None, caller.learner):
-        raise access_problem("other-learner")
-    return caller.learner or learner
-
-
-def _may_read(caller: Caller, found: "AttemptHistory") -> bool:
-    return may_reach(caller, found) and caller.learner in (None, found.attempt.learner)
-
-
-def _summary(attempt: ListedAttempt, caller: Caller) -> AttemptSummary:
-    seen = attempt if caller.learner is None else replace(attempt, variant=None)
-    return AttemptSummary.model_validate(seen, from_attributes=True)
-
-
-def _detail(found: "AttemptHistory", caller: Caller, language: Language) -> dict[str, Any]:
-    # Overrides and replaced reports are only for tutors.
-    is_tutor = caller.learner is None
-    attempt = _summary(found.attempt, caller)
-    return {
-        "attempt": attempt.model_dump(mode="json", exclude_none=True),
-        "submission": json.loads(found.submission),
-        "report": json.loads(shown_report(found.report, language)),
-        "overrides": [
-            AttemptOverride.model_validate(row, from_attributes=True).model_dump(
-                mode="json", exclude_none=True
-            )
-            for row in found.overrides
-            if is_tutor
-        ],
-        "earlier_reports": [_earlier(row, language) for row in found.earlier if is_tutor],
-        "hints": [each.model_dump(mode="json", exclude_none=True) for each in found.hints],
-    }
-
-
-def _earlier(row: "Row[Any]", language: Language) -> dict[str, Any]:
-    named = ("version", "grader", "points", "max_points")
-    return {
-        "replaced_at": row.replaced_at.isoformat(),
-        **{name: getattr(row, name) for name in named},
-        "report": json.loads(shown_report(row.report, language)),
-    }
-
-
-# --- Helper functions for the routes of courses
-
 
 CourseId = Annotated[CourseName, Path(description="The id of a course.")]
 AssignmentId = Annotated[CourseName, Path(description="The id of an assignment.")]
@@ -887,21 +837,20 @@ _ASKING_REFUSED: Final = (
 )
 
 
-def reading(model: type) -> dict[str, Any]:
-    """Return FastAPI's arguments for a route that reads data of a course."""
-    refused = refusals(*_ASKING_REFUSED, HTTPStatus.UNPROCESSABLE_ENTITY)
-    return {"response_model": model, "responses": refused, "openapi_extra": MAY_NEED_KEY}
+async def ask(
+    store: "AttemptStore | None", question: Callable[["AttemptStore"], Awaitable[R]]
+) -> R:
+    """Call ``question`` with the store of attempts; return the result.
 
-
-def changing(
-    body: type, model: type, *further: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
-) -> dict[str, Any]:
-    """Return FastAPI's arguments for a route that changes data of a course.
-
-    ``further`` are additional error statuses of the route.
+    Raises ProblemError if the database is missing or does not respond.
     """
-    options = posting(body, model, None, *_ASKING_REFUSED, *further, success=success)
-    return {"status_code": success, **options}
+    if store is None:
+        raise not_recorded()
+    try:
+        return await question(store)
+    except StoreDownError as error:
+        detail = say("The database does not answer.")
+        raise store_down(detail) from error
 
 
 async def read(store: "AttemptStore | None", work: "Callable[[Connection], R]") -> R:
@@ -929,14 +878,51 @@ async def _done(
         raise course_problem(error) from error
 
 
-def service_address(request: Request) -> str:
-    """Return the address with which links to this service begin, without a trailing slash."""
-    # Without the setting, the header Host decides, which the caller's own browser sends.
-    public_url: str | None = request.app.state.public_url
-    return public_url or str(request.base_url).rstrip("/")
+def reading(model: type) -> dict[str, Any]:
+    """Return FastAPI's arguments for a route that reads data of a course."""
+    refused = refusals(*_ASKING_REFUSED, HTTPStatus.UNPROCESSABLE_ENTITY)
+    return {"response_model": model, "responses": refused, "openapi_extra": MAY_NEED_KEY}
+
+
+def changing(
+    body: type, model: type, *further: HTTPStatus, success: HTTPStatus = HTTPStatus.OK
+) -> dict[str, Any]:
+    """Return FastAPI's arguments for a route that changes data of a course.
+
+    ``further`` are additional error statuses of the route.
+    """
+    options = posting(body, model, None, *_ASKING_REFUSED, *further, success=success)
+    return {"status_code": success, **options}
+
+
+def not_recorded() -> ProblemError:
+    """Return the error for a service without a database."""
+    return ProblemError(
+        HTTPStatus.NOT_FOUND,
+        say("No attempts are recorded here: the service has no database."),
+        "attempts-not-recorded",
+        say("Attempts are not recorded here"),
+    )
+
+
+def unknown_attempt() -> ProblemError:
+    """Return the error for an attempt that is unknown or that the caller may not see."""
+    return ProblemError(
+        HTTPStatus.NOT_FOUND,
+        say("No attempt with this id is recorded here."),
+        "unknown-attempt",
+        say("There is no such attempt"),
+    )
 
 
 def course_problem(error: CourseError) -> ProblemError:
     """Convert a CourseError to an HTTP error."""
     status, title = _TITLES[error.name]
     return ProblemError(status, message_of(error), error.name, title)
+
+
+def service_address(request: Request) -> str:
+    """Return the address with which links to this service begin, without a trailing slash."""
+    # Without the setting, the header Host decides, which the caller's own browser sends.
+    public_url: str | None = request.app.state.public_url
+    return public_url or str(request.base_url).rstrip("/")

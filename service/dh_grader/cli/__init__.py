@@ -1,4 +1,7 @@
-"""The command `dh-grader`, which imports the file of a command when it is called."""
+"""The command `dh-grader`, which imports the file of a command when it is called.
+
+It knows the names of the commands, their one line of help, and where they are.
+"""
 
 import gc
 import os
@@ -11,12 +14,6 @@ from typer.core import TyperGroup
 
 from dh_grader.cli.terminal import spoken, translate_help
 from dh_grader.translations import paragraph, say
-
-# --- The command `dh-grader`
-
-
-# --- The program `dh-grader`, which imports a command when it is called
-
 
 # The help of each command. The help of the program needs neither the grader nor the web framework.
 COMMANDS: Final = {
@@ -56,7 +53,7 @@ PLACES: Final = {
 
 
 def commands_of(name: str | None) -> typer.Typer:
-    """Import the module of a command and return its typer application."""
+    """Import the file of a command and return its typer application."""
     found: typer.Typer = resolve_name(PLACES[name or ""])
     return found
 
@@ -145,7 +142,7 @@ def _open_closed_streams() -> None:
 
 
 def run() -> None:
-    """Run the command-line program."""
+    """Run the program, and exit with a message if a stream or a file cannot be written."""
     _open_closed_streams()
     # Replace characters that a stream cannot encode instead of failing within a report.
     for stream in (sys.stdout, sys.stderr):
@@ -161,12 +158,10 @@ def run() -> None:
 
 
 def main() -> None:
-    """Run the command-line program."""
+    """Run the program; Ctrl-C shows no traceback."""
     # Loaded modules stay to the end: searching them for garbage takes a tenth of a short run.
     gc.disable()
     try:
-        # Import here, so that Ctrl-C during the import shows no traceback.
-
         run()
     except KeyboardInterrupt:
         from dh_grader.cli.terminal import INTERRUPTED

@@ -1,4 +1,7 @@
-"""`dh-grader attempts`, `learners`, `backup` and `restore`: what the database has recorded."""
+"""`dh-grader attempts`, `learners`, `backup` and `restore`: what the database has recorded.
+
+What is read and changed there is in ``dh_grader.store``; this file knows options and messages.
+"""
 
 import getpass
 import json
@@ -63,154 +66,7 @@ from dh_grader.store.results import (
 from dh_grader.store.tables import attempts
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count
 
-# --- `dh-grader attempts`: the recorded attempts of this installation
-
-
-# --- Regrade the attempts at an exercise in one process or several
-
-
-# The time between two counts of the queue, and to wait for other processes at the end (seconds).
-_PAUSE: Final = 0.2
-_MOST_SHOWN: Final = 200
-
-
-def show_what_would_change(engine: Engine, exercise: Exercise, course: str | None) -> None:
-    """Grade all outdated attempts; print whose result would change, and why."""
-    regrading = Regrading(exercise, load_settings().feedback, course)
-    changes: list[RegradedAttempt] = []
-    with engine.connect() as connection:
-        numbers = regrading.outdated(connection)
-        with progress(len(numbers)) as bar:
-            for i in range(0, len(numbers), BATCH):
-                for each in regrading.preview(connection, numbers[i : i + BATCH]):
-                    bar.advance()
-                    if each.is_changed:
-                        changes.append(each)
-    screen = stdout()
-    for each in changes[:_MOST_SHOWN]:
-        counted = each.counted or each
-        why = [*each.reasons] or [say("what a late attempt earns")]
-        if counted.awarded is not None:
-            why.append(say("a tutor's {points} stays", points=number(counted.awarded)))
-        line = say(
-            "{learner}, attempt {attempt}: {before} → {after} of {most} ({why})",
-            learner=visible(each.learner),
-            attempt=each.ordinal or "-",
-            before=number(counted.before),
-            after=number(counted.after),
-            most=number(counted.max_points),
-            why=joined("; ", why),
-        )
-        screen.print(spoken(line))
-    if len(changes) > _MOST_SHOWN:
-        screen.print(spoken(say("… and {count} more", count=len(changes) - _MOST_SHOWN)))
-    kept = sum(each.awarded is not None for each in changes)
-    screen.print(spoken(_summary(len(numbers), len(changes), kept)))
-    if numbers:
-        saved = say("Nothing is saved yet: add --apply to save. The old reports are kept.")
-        screen.print(spoken(saved))
-
-
-def _summary(outdated: int, changed: int, kept: int) -> Sentence:
-    if not kept:
-        return say_count(
-            "{count} attempt was graded by another version; {changed} would change.",
-            "{count} attempts were graded by another version; {changed} would change.",
-            count=outdated,
-            changed=changed,
-        )
-    return say_count(
-        "{count} attempt was graded by another version; {changed} would change, of which {kept} "
-        "would keep the points of a tutor.",
-        "{count} attempts were graded by another version; {changed} would change, of which {kept} "
-        "would keep the points of a tutor.",
-        count=outdated,
-        changed=changed,
-        kept=kept,
-    )
-
-
-def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: int) -> None:
-    """Regrade all outdated attempts in ``jobs`` processes."""
-    # Other programs may do so at the same time.
-    regrading = Regrading(exercise, load_settings().feedback, course)
-    in_transaction(engine, regrading.enqueue)
-    with engine.connect() as connection:
-        total = left = regrading.waiting(connection)
-    context = get_context("spawn")
-    args = (exercise.id, course)
-    others = [context.Process(target=work, args=args, daemon=True) for _ in range(jobs - 1)]
-    for each in others:
-        each.start()
-    try:
-        with progress(total) as bar:
-            look_again = 0.0
-            while left:
-                done = regrading.next_batch(engine)
-                begun = time.monotonic()
-                if done and begun < look_again:
-                    continue
-                with engine.connect() as connection:
-                    before, left = left, regrading.waiting(connection)
-                # Counting millions of rows takes as long as regrading many attempts.
-                look_again = begun + max(_PAUSE, 20 * (time.monotonic() - begun))
-                for _ in range(before - left):
-                    bar.advance()
-                if left and not done:
-                    time.sleep(_PAUSE)
-    finally:
-        for each in others:
-            each.kill()
-            each.join()
-    stdout().print(spoken(say("Regraded: {total}. The reports before are kept.", total=total)))
-
-
-def work(exercise_id: str, course: str | None) -> None:
-    """Regrade attempts until the queue is empty; this is the main function of a process."""
-    settings = load_settings()
-    assert settings.database is not None
-    try:
-        engine = open_database(settings.database.get_secret_value(), create=False, migrate=False)
-        regrading = Regrading(installed_exercise(exercise_id), settings.feedback, course)
-        while regrading.next_batch(engine):
-            pass
-        engine.dispose()
-    except (SQLAlchemyError, UnusableDatabaseError):
-        # The attempts of this batch stay in the queue for the parent process.
-        return
-
-
-attempts_commands = typer.Typer(
-    help="Recorded attempts: read, export, regrade, forget.",
-    no_args_is_help=True,
-    add_completion=False,
-)
-
-_MOST_SLIPS: Final = 15
-_MOST_LISTED: Final = 1_000_000
-_STILL_THERE: Final = say(
-    "It is still in the file -wal beside the database, because another program is reading. A "
-    "service that uses the database overwrites it within a minute after that program has ended; "
-    "without a service, run this command again then."
-)
-
-
-def encodable(value: str | None) -> str | None:
-    """Return the value of an option; exit if it cannot be encoded as UTF-8."""
-    if value is not None and not value.isascii():
-        try:
-            value.encode()
-        except UnicodeEncodeError:
-            shown = value.encode(errors="replace").decode()
-            give_up(say("{text}: this is not UTF-8 text.", text=shown))
-    return value
-
-
-ExerciseArgument = Annotated[
-    str,
-    typer.Argument(help="The id of an exercise.", show_default=False, callback=encodable),
-]
-ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", callback=encodable)]
+# --- The database of this installation, for all commands that use it
 
 
 @contextmanager
@@ -244,6 +100,42 @@ def usable_database() -> Iterator[None]:
         yield
     except UnusableDatabaseError as error:
         give_up(joined(": ", ["DH_GRADER_DATABASE", error.args[0]]))
+
+
+def encodable(value: str | None) -> str | None:
+    """Return the value of an option; exit if it cannot be encoded as UTF-8."""
+    if value is not None and not value.isascii():
+        try:
+            value.encode()
+        except UnicodeEncodeError:
+            shown = value.encode(errors="replace").decode()
+            give_up(say("{text}: this is not UTF-8 text.", text=shown))
+    return value
+
+
+# --- `dh-grader attempts`: the recorded attempts of this installation
+
+
+attempts_commands = typer.Typer(
+    help="Recorded attempts: read, export, regrade, forget.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+
+_MOST_SLIPS: Final = 15
+_MOST_LISTED: Final = 1_000_000
+_STILL_THERE: Final = say(
+    "It is still in the file -wal beside the database, because another program is reading. A "
+    "service that uses the database overwrites it within a minute after that program has ended; "
+    "without a service, run this command again then."
+)
+
+
+ExerciseArgument = Annotated[
+    str,
+    typer.Argument(help="The id of an exercise.", show_default=False, callback=encodable),
+]
+ExerciseOption = Annotated[str | None, typer.Option(help="Only this exercise.", callback=encodable)]
 
 
 @attempts_commands.command("migrate")
@@ -546,6 +438,119 @@ def _counts(data: LearnerData) -> str:
         overrides=data.overrides,
         courses=data.courses,
     )
+
+
+# --- `dh-grader attempts regrade`: in one process or several
+
+
+# The time between two counts of the queue, and to wait for other processes at the end (seconds).
+_PAUSE: Final = 0.2
+_MOST_SHOWN: Final = 200
+
+
+def show_what_would_change(engine: Engine, exercise: Exercise, course: str | None) -> None:
+    """Grade all outdated attempts; print whose result would change, and why."""
+    regrading = Regrading(exercise, load_settings().feedback, course)
+    changes: list[RegradedAttempt] = []
+    with engine.connect() as connection:
+        numbers = regrading.outdated(connection)
+        with progress(len(numbers)) as bar:
+            for i in range(0, len(numbers), BATCH):
+                for each in regrading.preview(connection, numbers[i : i + BATCH]):
+                    bar.advance()
+                    if each.is_changed:
+                        changes.append(each)
+    screen = stdout()
+    for each in changes[:_MOST_SHOWN]:
+        counted = each.counted or each
+        why = [*each.reasons] or [say("what a late attempt earns")]
+        if counted.awarded is not None:
+            why.append(say("a tutor's {points} stays", points=number(counted.awarded)))
+        line = say(
+            "{learner}, attempt {attempt}: {before} → {after} of {most} ({why})",
+            learner=visible(each.learner),
+            attempt=each.ordinal or "-",
+            before=number(counted.before),
+            after=number(counted.after),
+            most=number(counted.max_points),
+            why=joined("; ", why),
+        )
+        screen.print(spoken(line))
+    if len(changes) > _MOST_SHOWN:
+        screen.print(spoken(say("… and {count} more", count=len(changes) - _MOST_SHOWN)))
+    kept = sum(each.awarded is not None for each in changes)
+    screen.print(spoken(_summary(len(numbers), len(changes), kept)))
+    if numbers:
+        saved = say("Nothing is saved yet: add --apply to save. The old reports are kept.")
+        screen.print(spoken(saved))
+
+
+def _summary(outdated: int, changed: int, kept: int) -> Sentence:
+    if not kept:
+        return say_count(
+            "{count} attempt was graded by another version; {changed} would change.",
+            "{count} attempts were graded by another version; {changed} would change.",
+            count=outdated,
+            changed=changed,
+        )
+    return say_count(
+        "{count} attempt was graded by another version; {changed} would change, of which {kept} "
+        "would keep the points of a tutor.",
+        "{count} attempts were graded by another version; {changed} would change, of which {kept} "
+        "would keep the points of a tutor.",
+        count=outdated,
+        changed=changed,
+        kept=kept,
+    )
+
+
+def regrade_all(engine: Engine, exercise: Exercise, course: str | None, jobs: int) -> None:
+    """Regrade all outdated attempts in ``jobs`` processes; other programs may do so meanwhile."""
+    regrading = Regrading(exercise, load_settings().feedback, course)
+    in_transaction(engine, regrading.enqueue)
+    with engine.connect() as connection:
+        total = left = regrading.waiting(connection)
+    context = get_context("spawn")
+    args = (exercise.id, course)
+    others = [context.Process(target=work, args=args, daemon=True) for _ in range(jobs - 1)]
+    for each in others:
+        each.start()
+    try:
+        with progress(total) as bar:
+            look_again = 0.0
+            while left:
+                done = regrading.next_batch(engine)
+                begun = time.monotonic()
+                if done and begun < look_again:
+                    continue
+                with engine.connect() as connection:
+                    before, left = left, regrading.waiting(connection)
+                # Counting millions of rows takes as long as regrading many attempts.
+                look_again = begun + max(_PAUSE, 20 * (time.monotonic() - begun))
+                for _ in range(before - left):
+                    bar.advance()
+                if left and not done:
+                    time.sleep(_PAUSE)
+    finally:
+        for each in others:
+            each.kill()
+            each.join()
+    stdout().print(spoken(say("Regraded: {total}. The reports before are kept.", total=total)))
+
+
+def work(exercise_id: str, course: str | None) -> None:
+    """Regrade attempts until the queue is empty; this is the main function of a process."""
+    settings = load_settings()
+    assert settings.database is not None
+    try:
+        engine = open_database(settings.database.get_secret_value(), create=False, migrate=False)
+        regrading = Regrading(installed_exercise(exercise_id), settings.feedback, course)
+        while regrading.next_batch(engine):
+            pass
+        engine.dispose()
+    except (SQLAlchemyError, UnusableDatabaseError):
+        # The attempts of this batch stay in the queue for the parent process.
+        return
 
 
 # --- `dh-grader learners`: the data about one learner

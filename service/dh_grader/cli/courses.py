@@ -1,4 +1,7 @@
-"""`dh-grader courses` and `assignments`: courses with learners, links, dates and a gradebook."""
+"""`dh-grader courses` and `assignments`: courses with learners, links, dates and a gradebook.
+
+The rules of courses are in ``dh_grader.courses``; this file knows options and messages.
+"""
 
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -47,7 +50,6 @@ from dh_grader.courses import (
     told_apart,
     with_own_dates,
 )
-from dh_grader.courses import assignments as deletion
 from dh_grader.courses.gradebook import gradebook, gradebook_workbook, missing, written_gradebook
 from dh_grader.courses.roll import issue_links, revoke_links, written_links
 from dh_grader.formats.texts import number, percent, visible
@@ -58,132 +60,6 @@ from dh_grader.submissions.answers import ExerciseAnswers, answers_in, of_file
 from dh_grader.submissions.bodies import field_error, find_exercise
 from dh_grader.submissions.files import HandedIn, all_handed_in
 from dh_grader.translations import Sentence, joined, paragraph, say, say_count, template
-
-# --- `dh-grader courses`: courses with learners, links, assignments and a gradebook
-
-
-# --- Change and delete courses from the command line
-
-
-D = TypeVar("D", bound=DeletionRequest)
-R = TypeVar("R")
-
-# What a deletion counts, by the fields of DeletedData.
-_COUNTS: Final[Mapping[str, str]] = {
-    "assignments": template("assignments: {count}"),
-    "learners": template("learners: {count}"),
-    "extensions": template("extensions: {count}"),
-    "keys": template("keys: {count}"),
-    "attempts": template("attempts: {count}"),
-}
-
-
-def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
-    """Run ``work`` in a transaction and return its result; exit on an error.
-
-    With ``create``, a missing database is created.
-    """
-    with database(create=create) as engine:
-        try:
-            return in_transaction(engine, work)
-        except CourseError as error:
-            give_up(error)
-
-
-def deleted(
-    name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
-) -> None:
-    """Ask the user for confirmation, delete data with ``work``, and print what was deleted.
-
-    ``name`` is the name of the data in messages. ``yes`` skips the question.
-    """
-    found = changed(lambda it: work(it, wanted))
-    if not wanted.with_attempts:
-        # They stay, or they prevent the deletion.
-        found = found.model_copy(update={"attempts": 0})
-    numbers = found.model_dump(exclude={"deleted"})
-    counts = joined(
-        ", ",
-        [Sentence(_COUNTS[kind], {"count": count}) for kind, count in numbers.items() if count],
-    )
-    if not yes:
-        question = say("Delete {name} permanently? {counts}", name=name, counts=counts)
-        typer.confirm(spoken(question), abort=True)
-    apply = wanted.model_copy(update={"apply": True})
-    changed(lambda it: work(it, apply))
-    tell(say("Deleted {name}: {counts}.", name=name, counts=counts))
-
-
-# --- The lines that the command line prints about an assignment of a course
-
-
-def assignment_lines(
-    assignment: CourseAssignment, installed: Callable[[], Mapping[str, Exercise]]
-) -> Iterator[Sentence]:
-    """Yield the lines about an assignment. ``installed`` returns all exercises of the service."""
-    total = number(sum(each.points for each in assignment.exercises))
-    title = visible(assignment.title)
-    yield say("{id}: {title}, {points} points", id=assignment.id, title=title, points=total)
-    for each in assignment.exercises:
-        points = number(each.points)
-        yield say("{exercise}, {points} points", exercise=each.exercise, points=points)
-    if assignment.opens is not None:
-        yield say("opens {time}", time=_time(assignment.opens))
-    yield from ends(assignment)
-    late = _late(assignment)
-    limit = say("attempts not limited")
-    if assignment.limit is not None:
-        limit = say("attempts at most {limit}", limit=assignment.limit)
-    yield joined("; ", [limit, late])
-    levels = ", ".join(FeedbackLevel(each).value for each in assignment.feedback or ())
-    yield say("feedback {level}", level=levels or say("that of each exercise"))
-    yield say(
-        "practice {practice}; solution {solution}",
-        practice=assignment.practice,
-        solution=assignment.solution,
-    )
-    if assignment.hint_prices is not None:
-        prices = ", ".join(f"{each:.0%}" for each in assignment.hint_prices)
-        yield say("the steps of a hint cost {prices} of the points", prices=prices)
-    if assignment.variants:
-        yield say("each learner has variants of their own")
-        catalogue = installed()
-        names = [each.exercise for each in assignment.exercises]
-        same = [name for name in names if name in catalogue and catalogue[name].vary is None]
-        if same:
-            yield say("but not in {exercises}: no variants there", exercises=", ".join(same))
-    yield from _extension_lines(assignment)
-
-
-def _late(assignment: CourseAssignment) -> Sentence:
-    if not assignment.due:
-        return say("no due date")
-    if assignment.closes or any(each.closes for each in assignment.extensions):
-        return say("late attempts earn {share}", share=f"{assignment.late_worth:.0%}")
-    return say("no late attempts")
-
-
-def _extension_lines(assignment: CourseAssignment) -> Iterator[Sentence]:
-    for extension in assignment.extensions:
-        told = [*ends(with_own_dates(assignment, extension))]
-        if extension.limit:
-            told.append(say("at most {limit} attempts", limit=extension.limit))
-        # Without a due date, an extension of the closing date alone has no effect.
-        if told:
-            yield joined(": ", [visible(extension.learner), joined("; ", told)])
-
-
-def ends(dates: CourseAssignment | Extension | MissingLearner) -> Iterator[Sentence]:
-    """Yield lines that say when answers are due and when the assignment closes."""
-    if dates.due is not None:
-        yield say("due {time}", time=_time(dates.due))
-    if dates.closes is not None:
-        yield say("closes {time}", time=_time(dates.closes))
-
-
-def _time(moment: datetime) -> str:
-    return f"{moment:%Y-%m-%d %H:%M %Z}"
-
 
 # --- `dh-grader courses assignments`: the assignments of a course, and extensions
 
@@ -496,6 +372,9 @@ def _print(assignment: CourseAssignment) -> None:
         screen.print("  " * (i > 0) + spoken(line), soft_wrap=True)
 
 
+# --- `dh-grader courses`: courses with learners, links, assignments and a gradebook
+
+
 courses_commands = typer.Typer(
     help="Courses: learners, links, assignments, gradebook.",
     no_args_is_help=True,
@@ -574,7 +453,7 @@ def courses_delete(
     """Delete a course, and end its keys and links; with --with-attempts also its attempts."""
     deleted(
         say("the course {course}", course=visible(course)),
-        lambda it, wanted: deletion.delete_course(it, course, wanted, datetime.now(UTC)),
+        lambda it, wanted: assignments.delete_course(it, course, wanted, datetime.now(UTC)),
         DeletionRequest(with_attempts=with_attempts),
         yes=yes,
     )
@@ -613,7 +492,7 @@ def remove_learner(
             learner=visible(learner),
             course=visible(course),
         ),
-        lambda it, wanted: deletion.remove_learner(it, course, wanted, datetime.now(UTC)),
+        lambda it, wanted: assignments.remove_learner(it, course, wanted, datetime.now(UTC)),
         checked(RemovalRequest, learner=learner, with_attempts=with_attempts),
         yes=yes,
     )
@@ -733,6 +612,129 @@ def show_missing(
         "Not complete: {count} learner.", "Not complete: {count} learners.", count=len(found)
     )
     screen.print(spoken(incomplete))
+
+
+# --- The lines that the command line prints about an assignment of a course
+
+
+def assignment_lines(
+    assignment: CourseAssignment, installed: Callable[[], Mapping[str, Exercise]]
+) -> Iterator[Sentence]:
+    """Yield the lines about an assignment. ``installed`` returns all exercises of the service."""
+    total = number(sum(each.points for each in assignment.exercises))
+    title = visible(assignment.title)
+    yield say("{id}: {title}, {points} points", id=assignment.id, title=title, points=total)
+    for each in assignment.exercises:
+        points = number(each.points)
+        yield say("{exercise}, {points} points", exercise=each.exercise, points=points)
+    if assignment.opens is not None:
+        yield say("opens {time}", time=_time(assignment.opens))
+    yield from ends(assignment)
+    late = _late(assignment)
+    limit = say("attempts not limited")
+    if assignment.limit is not None:
+        limit = say("attempts at most {limit}", limit=assignment.limit)
+    yield joined("; ", [limit, late])
+    levels = ", ".join(FeedbackLevel(each).value for each in assignment.feedback or ())
+    yield say("feedback {level}", level=levels or say("that of each exercise"))
+    yield say(
+        "practice {practice}; solution {solution}",
+        practice=assignment.practice,
+        solution=assignment.solution,
+    )
+    if assignment.hint_prices is not None:
+        prices = ", ".join(f"{each:.0%}" for each in assignment.hint_prices)
+        yield say("the steps of a hint cost {prices} of the points", prices=prices)
+    if assignment.variants:
+        yield say("each learner has variants of their own")
+        catalogue = installed()
+        names = [each.exercise for each in assignment.exercises]
+        same = [name for name in names if name in catalogue and catalogue[name].vary is None]
+        if same:
+            yield say("but not in {exercises}: no variants there", exercises=", ".join(same))
+    yield from _extension_lines(assignment)
+
+
+def _late(assignment: CourseAssignment) -> Sentence:
+    if not assignment.due:
+        return say("no due date")
+    if assignment.closes or any(each.closes for each in assignment.extensions):
+        return say("late attempts earn {share}", share=f"{assignment.late_worth:.0%}")
+    return say("no late attempts")
+
+
+def _extension_lines(assignment: CourseAssignment) -> Iterator[Sentence]:
+    for extension in assignment.extensions:
+        told = [*ends(with_own_dates(assignment, extension))]
+        if extension.limit:
+            told.append(say("at most {limit} attempts", limit=extension.limit))
+        # Without a due date, an extension of the closing date alone has no effect.
+        if told:
+            yield joined(": ", [visible(extension.learner), joined("; ", told)])
+
+
+def ends(dates: CourseAssignment | Extension | MissingLearner) -> Iterator[Sentence]:
+    """Yield lines that say when answers are due and when the assignment closes."""
+    if dates.due is not None:
+        yield say("due {time}", time=_time(dates.due))
+    if dates.closes is not None:
+        yield say("closes {time}", time=_time(dates.closes))
+
+
+def _time(moment: datetime) -> str:
+    return f"{moment:%Y-%m-%d %H:%M %Z}"
+
+
+# --- Run a change in a transaction, and ask before a deletion
+
+
+D = TypeVar("D", bound=DeletionRequest)
+R = TypeVar("R")
+
+# What a deletion counts, by the fields of DeletedData.
+_COUNTS: Final[Mapping[str, str]] = {
+    "assignments": template("assignments: {count}"),
+    "learners": template("learners: {count}"),
+    "extensions": template("extensions: {count}"),
+    "keys": template("keys: {count}"),
+    "attempts": template("attempts: {count}"),
+}
+
+
+def changed(work: Callable[[Connection], R], *, create: bool = False) -> R:
+    """Run ``work`` in a transaction and return its result; exit on an error.
+
+    With ``create``, a missing database is created.
+    """
+    with database(create=create) as engine:
+        try:
+            return in_transaction(engine, work)
+        except CourseError as error:
+            give_up(error)
+
+
+def deleted(
+    name: str, work: Callable[[Connection, D], DeletedData], wanted: D, *, yes: bool
+) -> None:
+    """Ask the user for confirmation, delete data with ``work``, and print what was deleted.
+
+    ``name`` is the name of the data in messages. ``yes`` skips the question.
+    """
+    found = changed(lambda it: work(it, wanted))
+    if not wanted.with_attempts:
+        # They stay, or they prevent the deletion.
+        found = found.model_copy(update={"attempts": 0})
+    numbers = found.model_dump(exclude={"deleted"})
+    counts = joined(
+        ", ",
+        [Sentence(_COUNTS[kind], {"count": count}) for kind, count in numbers.items() if count],
+    )
+    if not yes:
+        question = say("Delete {name} permanently? {counts}", name=name, counts=counts)
+        typer.confirm(spoken(question), abort=True)
+    apply = wanted.model_copy(update={"apply": True})
+    changed(lambda it: work(it, apply))
+    tell(say("Deleted {name}: {counts}.", name=name, counts=counts))
 
 
 # --- `dh-grader assignments`: check assignment files, each of which lists several exercises

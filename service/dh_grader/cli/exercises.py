@@ -1,4 +1,8 @@
-"""`dh-grader exercises` and `bundle`: list, check, import, export, deploy and pack exercises."""
+"""`dh-grader exercises` and `bundle`: list, check, import, export, deploy and pack exercises.
+
+What a check finds is in ``dh_grader.authoring``, what a bundle holds in ``dh_grader.bundles``; this
+file knows options and lines of output.
+"""
 
 import os
 import sys
@@ -73,45 +77,6 @@ from dh_grader.variants.deployment import (
     deploy,
     with_deployed,
 )
-
-# --- `dh-grader exercises`: list, show, check and create exercises
-
-
-# --- Write new exercise files without replacing existing ones
-
-
-def write_new(folder: Path, exercise_id: str, text: str) -> Path:
-    """Write the file of a new exercise and return its path; exit if the file exists."""
-    file = folder / f"{exercise_id}.toml"
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with file.open("x", encoding="utf-8") as new:
-            new.write(text)
-    except FileExistsError:
-        give_up(
-            say(
-                "{file} already exists and was not changed; choose another id or folder",
-                file=str(file),
-            )
-        )
-    except OSError as error:
-        give_up(unwritable(file, error))
-    return file
-
-
-def warn_of_unread(exercises: Iterable[str]) -> None:
-    """Warn that a running service may not have read these new exercises yet."""
-    shipped = shipped_folder()
-    own = [each for each in exercises if not (shipped / f"{each}.toml").is_file()]
-    if own and not load_settings().reload_exercises:
-        complain(
-            say(
-                "{ids}: if the file is new, restart the service. It reads new files only "
-                "when it starts, or at once with DH_GRADER_RELOAD_EXERCISES=true.",
-                ids=", ".join(own),
-            )
-        )
-
 
 # --- `dh-grader exercises import`: a robot from a URDF file or a pasted table -> an exercise file
 
@@ -540,6 +505,9 @@ def _draw(exercise: Exercise, seeds: Iterable[str], folder: Path) -> None:
         give_up(unwritable(folder, error))
 
 
+# --- `dh-grader exercises`: all its commands; list, show and new
+
+
 _NARROWEST = 24
 
 exercises_commands = typer.Typer(
@@ -703,6 +671,42 @@ def _sections(solution: ModelSolution, *, links: bool) -> Iterator[tuple[str, Sh
     answered = [part.text for part in solution.parts]
     if solution.pose is not None and solution.pose.text not in answered:
         yield spoken(say("Pose of the tool in the base frame")), solution.pose
+
+
+# --- Write new exercise files without replacing existing ones
+
+
+def write_new(folder: Path, exercise_id: str, text: str) -> Path:
+    """Write the file of a new exercise and return its path; exit if the file exists."""
+    file = folder / f"{exercise_id}.toml"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with file.open("x", encoding="utf-8") as new:
+            new.write(text)
+    except FileExistsError:
+        give_up(
+            say(
+                "{file} already exists and was not changed; choose another id or folder",
+                file=str(file),
+            )
+        )
+    except OSError as error:
+        give_up(unwritable(file, error))
+    return file
+
+
+def warn_of_unread(exercises: Iterable[str]) -> None:
+    """Warn that a running service may not have read these new exercises yet."""
+    shipped = shipped_folder()
+    own = [each for each in exercises if not (shipped / f"{each}.toml").is_file()]
+    if own and not load_settings().reload_exercises:
+        complain(
+            say(
+                "{ids}: if the file is new, restart the service. It reads new files only "
+                "when it starts, or at once with DH_GRADER_RELOAD_EXERCISES=true.",
+                ids=", ".join(own),
+            )
+        )
 
 
 # --- `dh-grader bundle`: write a zip file for a grading platform

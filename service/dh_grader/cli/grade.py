@@ -90,331 +90,13 @@ if TYPE_CHECKING:
 # --- `dh-grader grade`: grade submissions in files
 
 
-# --- Remember which files earlier runs have written, to protect the files of students
-
-
-def require_no_input(output: Path, read: Iterable[Path]) -> None:
-    """Exit if the output file would replace an input file."""
-    for path in read:
-        if path.is_file() and output.exists() and path.samefile(output):
-            give_up(
-                say(
-                    "{file} is read, and would be overwritten; name another --output",
-                    file=str(output),
-                )
-            )
-
-
-def require_own(output: Path, folders: Iterable[Path], *, force: bool = False) -> None:
-    """Exit with code 2 if the output would replace a file that is no earlier output.
-
-    With ``force``, the output may replace any file that is not among the submissions.
-    """
-    if not output.is_file() or output.name in _written(output):
-        return
-    try:
-        is_own = is_earlier_output(output)
-    except OSError as error:
-        give_up(unreadable(output, error))
-    if is_own:
-        return
-    if _holds(folders, output):
-        give_up(
-            say(
-                "{file} is among the submissions, and no earlier run has written it; name another "
-                "--output",
-                file=str(output),
-            )
-        )
-    if not force:
-        give_up(
-            say(
-                "{file} exists, and is no earlier report of this program; name another --output, "
-                "or add --force to replace the file",
-                file=str(output),
-            )
-        )
-
-
-def written_in(folders: Iterable[Path]) -> list[Path]:
-    """Return the files in these folders that earlier runs have written."""
-    found = [folder / name for folder in folders for name in _written(folder / WRITTEN)]
-    return [path for path in found if path.is_file()]
-
-
-def remember(output: Path | None, folders: Iterable[Path]) -> None:
-    """Record that a run has written this file, so that a later run may replace it."""
-    if output is not None and output.is_file() and _holds(folders, output):
-        names = _written(output)
-        if output.name not in names:
-            lines = "".join(f"{name}\n" for name in [*names, output.name])
-            _list_beside(output).write_text(lines, encoding="utf-8")
-
-
-def _holds(folders: Iterable[Path], output: Path) -> bool:
-    place = output.resolve()
-    return any(place.is_relative_to(folder.resolve()) for folder in folders)
-
-
-def _list_beside(output: Path) -> Path:
-    return output.with_name(WRITTEN)
-
-
-def _written(output: Path) -> list[str]:
-    try:
-        return _list_beside(output).read_text(encoding="utf-8").splitlines()
-    except (OSError, UnicodeDecodeError):
-        return []
-
-
-# --- Write a folder of documents completely or not at all
-
-
-# The name of a folder that is still being written begins with this.
-_UNFINISHED: Final = ".dh-grader-unfinished-"
-_OLD: Final = "old"
-# A file with one of these endings holds all pages.
-_ONE_FILE: Final = (".html", ".htm", ".zip")
-
-
-class UnusableFolderError(Exception):
-    """Documents cannot be written into the folder; the message says why."""
-
-
-def is_for_folder(output: Path, *, several: bool) -> bool:
-    """True if reports go into a folder, False if they go into a single file."""
-    # A new ``output`` becomes a folder if there are several submissions, unless its name ends like
-    # an HTML or zip file.
-    if output.exists():
-        return output.is_dir()
-    return several and output.suffix.lower() not in _ONE_FILE
-
-
-def write_folder(documents: Iterable[Document], folder: Path) -> None:
-    """Write all documents into the folder, or none. Raises UnusableFolderError.
-
-    An existing folder must be empty, or contain only documents of an earlier run.
-    """
-    try:
-        _write_all(documents, folder.resolve())
-    except OSError as error:
-        raise UnusableFolderError(
-            say("cannot be written: {reason}", reason=reason_of(error))
-        ) from error
-
-
-def _write_all(documents: Iterable[Document], folder: Path) -> None:
-    if not folder.exists():
-        with _unfinished(folder.parent) as written:
-            _write(documents, written)
-            written.rename(folder)
-        return
-    old = _replaceable(folder)
-    # Write inside the folder: it may be a mount point, into which nothing outside can be renamed.
-    with _unfinished(folder) as written:
-        _write(documents, written)
-        _exchange(folder, written, old)
-
-
-@contextmanager
-def _unfinished(parent: Path) -> Iterator[Path]:
-    folder = parent / f"{_UNFINISHED}{secrets.token_hex(8)}"
-    folder.mkdir()
-    try:
-        yield folder
-    finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def _write(documents: Iterable[Document], folder: Path) -> None:
-    paths = []
-    for document in documents:
-        file = folder / _within(document.path)
-        file.parent.mkdir(exist_ok=True)
-        with file.open("xb") as opened:
-            opened.writelines(document.pieces)
-        paths.append(f"{document.path}\n")
-    (folder / WRITTEN).write_text("".join(paths), encoding="utf-8")
-
-
-def _within(path: str) -> PurePosixPath:
-    within = PurePosixPath(path)
-    if within.is_absolute() or len(within.parts) > 2 or ".." in within.parts or "\n" in path:
-        raise ValueError(f"{path!r} does not stay in its folder")
-    return within
-
-
-def _replaceable(folder: Path) -> list[Path]:
-    if not folder.is_dir():
-        raise UnusableFolderError(say("is no folder"))
-    found = [path for path in folder.iterdir() if not path.name.startswith(_UNFINISHED)]
-    for path in _foreign(found, _written_before(folder)):
-        raise UnusableFolderError(
-            say(
-                "holds {name!r}, which no earlier run has written; name an empty folder, or "
-                "one that does not exist",
-                name=path.relative_to(folder).as_posix(),
-            )
-        )
-    return found
-
-
-def _written_before(folder: Path) -> set[Path]:
-    try:
-        paths = (folder / WRITTEN).read_text(encoding="utf-8").splitlines()
-    except (FileNotFoundError, UnicodeDecodeError):
-        return set()
-    return {folder / path for path in (WRITTEN, *paths)}
-
-
-def _foreign(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
-    # ``written`` are the files of earlier runs. The files in the folders are also checked.
-    folders = {file.parent for file in written}
-    for path in found:
-        if path.is_symlink() or path not in (written if path.is_file() else folders):
-            yield path
-        elif path.is_dir():
-            yield from (each for each in path.iterdir() if each.is_symlink() or each not in written)
-
-
-def _exchange(folder: Path, written: Path, old: Iterable[Path]) -> None:
-    new = list(written.iterdir())
-    aside = written / _OLD
-    aside.mkdir()
-    moves = [*((path, aside / path.name) for path in old)]
-    moves += [(path, folder / path.name) for path in new]
-    done: list[tuple[Path, Path]] = []
-    try:
-        for source, target in moves:
-            source.rename(target)
-            done.append((source, target))
-    except BaseException:
-        for source, target in reversed(done):
-            target.rename(source)
-        raise
-
-
-# --- Write reports to the screen or to a file. An incomplete file never appears
-
-
-# Larger documents are buffered on the disk (bytes).
-_IN_MEMORY: Final = 1024 * 1024
-
-
-def console_of(output: Path | None) -> Console:
-    """Return the console that lays out reports; a file has 80 columns and no colour."""
-    if output is None:
-        return stdout()
-    page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
-    return Console(file=page, width=80, highlight=False, markup=False)
-
-
-def write(
-    pieces: Iterable[bytes], output: Path | None, *, at_once: bool, quiet: bool = False
-) -> None:
-    """Write the pieces to the file ``output``, or to the screen if ``output`` is None.
-
-    With ``at_once``, the screen shows all pieces at the end.
-    """
-    # A file appears only when it is complete, and a pipe never gets an incomplete document.
-    if output is not None:
-        _write_file(pieces, output)
-    elif quiet:
-        for _ in pieces:
-            pass
-    elif at_once:
-        with SpooledTemporaryFile(_IN_MEMORY) as whole:
-            whole.writelines(pieces)
-            whole.seek(0)
-            _show(iter(lambda: whole.read(_IN_MEMORY), b""))
-    else:
-        _show(pieces)
-
-
-def _show(pieces: Iterable[bytes]) -> None:
-    for piece in pieces:
-        typer.echo(piece, nl=False)
-
-
-def _write_file(pieces: Iterable[bytes], output: Path) -> None:
-    # A pipe or a device cannot be replaced: write to it directly.
-    is_replaced = output.is_file() or not output.exists()
-    written = output.with_name(f".{output.name}.part") if is_replaced else output
-    try:
-        with written.open("wb") as file:
-            file.writelines(pieces)
-        if is_replaced:
-            written.replace(output)
-    except OSError as error:
-        give_up(unwritable(output, error))
-    finally:
-        if is_replaced:
-            # After a failure the file may be missing, or its folder is not a folder.
-            with suppress(OSError):
-                written.unlink()
-
-
-# --- `dh-grader merge`: combine results of a class that several machines have graded
-
-
-merge_commands = typer.Typer(add_completion=False)
-
-
-@merge_commands.command("merge")
-def merge_command(
-    shards: Annotated[
-        list[Path],
-        typer.Argument(
-            metavar="SHARD",
-            show_default=False,
-            help="The files of all shards, in any order.",
-        ),
-    ],
-    output: Annotated[
-        Path | None, typer.Option(metavar="F", help="Write to this file.", show_default=False)
-    ] = None,
-    force: Annotated[
-        bool,
-        typer.Option(
-            "--force", help="Let --output replace an existing file that is no earlier report."
-        ),
-    ] = False,
-) -> None:
-    """Merge the shards that `grade --shard` has written into the JSON lines of one run.
-
-    The lines and the exit code are the same as without --shard.
-    """
-    if output is not None:
-        require_no_input(output, shards)
-        require_own(output, [], force=force)
-    run = _MergeRun(merged(shards))
-    try:
-        write(run.lines(), output, at_once=True)
-    except UnusableShardsError as error:
-        give_up(error)
-    raise SystemExit(run.exit_code)
-
-
-class _MergeRun:
-    def __init__(self, lines: Iterable[bytes]) -> None:
-        self._lines = lines
-        self.exit_code = 0
-
-    def lines(self) -> Iterator[bytes]:
-        for line in self._lines:
-            entry = json.loads(line)
-            if "error" in entry:
-                self.exit_code = UNUSABLE
-            elif not entry["passed"]:
-                self.exit_code = max(self.exit_code, BELOW_PASS_MARK)
-            yield line
-
-
 grade_commands = typer.Typer(add_completion=False)
 
 
 # The most earlier outputs that one sentence names.
 _MOST_NAMED: Final = 10
+# The most files without a part that are named.
+_MOST_WITHOUT_PART: Final = 3
 # The format for people comes first.
 _NAMES: Final = sorted(FORMAT_NAMES, key=lambda name: name != "text")
 
@@ -628,7 +310,8 @@ def grade_command(
     found, left_out = _found(
         paths,
         folder_is_one=one_student or taken.is_single,
-        own=_no_submissions(output, worksheet),
+        # They may be in the folder of the class.
+        own=[*filter(None, [output, worksheet])],
         parts=chosen.part_names,
         sheet=sheet,
     )
@@ -856,7 +539,8 @@ def _found(
         )
     except UnusableClassError as error:
         give_up(error)
-    left_out = [str(path) for path in written if not any(_is_same(path, each) for each in own)]
+    of_this_run = {path.resolve() for path in own}
+    left_out = [str(path) for path in written if path.resolve() not in of_this_run]
     left_out += outputs
     if left_out:
         complain(
@@ -876,15 +560,6 @@ def _found(
             for each in found
         ]
     return found, tuple(left_out)
-
-
-def _is_same(path: Path, other: Path) -> bool:
-    return path.resolve() == other.resolve()
-
-
-def _no_submissions(output: Path | None, worksheet: Path | None) -> list[Path]:
-    # The files of this command, which may be in the folder of the class.
-    return [*filter(None, [output, worksheet])]
 
 
 def _pieces(
@@ -931,7 +606,7 @@ class _GradeRun:
         *,
         has_worksheet: bool,
     ) -> None:
-        # For a worksheet, the grades are kept.
+        # With ``has_worksheet``, the grades are kept.
         self._submissions = submissions
         self._shown = shown
         self._check = check
@@ -961,10 +636,6 @@ class _GradeRun:
             self._shown.complain(told)
 
 
-# The most files without a part that are named.
-_MOST_WITHOUT_PART: Final = 3
-
-
 def _more_without_part(count: int) -> Sentence:
     return say_count(
         "{count} other file has the same problem: name the part with --part.",
@@ -990,3 +661,325 @@ def _exit_code(submission: GradedSubmission) -> int:
     if any(file.problem for file in submission.files):
         return UNUSABLE
     return 0 if submission.passed else BELOW_PASS_MARK
+
+
+# --- `dh-grader merge`: combine results of a class that several machines have graded
+
+
+merge_commands = typer.Typer(add_completion=False)
+
+
+@merge_commands.command("merge")
+def merge_command(
+    shards: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="SHARD",
+            show_default=False,
+            help="The files of all shards, in any order.",
+        ),
+    ],
+    output: Annotated[
+        Path | None, typer.Option(metavar="F", help="Write to this file.", show_default=False)
+    ] = None,
+    force: Annotated[
+        bool,
+        typer.Option(
+            "--force", help="Let --output replace an existing file that is no earlier report."
+        ),
+    ] = False,
+) -> None:
+    """Merge the shards that `grade --shard` has written into the JSON lines of one run.
+
+    The lines and the exit code are the same as without --shard.
+    """
+    if output is not None:
+        require_no_input(output, shards)
+        require_own(output, [], force=force)
+    run = _MergeRun(merged(shards))
+    try:
+        write(run.lines(), output, at_once=True)
+    except UnusableShardsError as error:
+        give_up(error)
+    raise SystemExit(run.exit_code)
+
+
+class _MergeRun:
+    def __init__(self, lines: Iterable[bytes]) -> None:
+        self._lines = lines
+        self.exit_code = 0
+
+    def lines(self) -> Iterator[bytes]:
+        for line in self._lines:
+            entry = json.loads(line)
+            if "error" in entry:
+                self.exit_code = UNUSABLE
+            elif not entry["passed"]:
+                self.exit_code = max(self.exit_code, BELOW_PASS_MARK)
+            yield line
+
+
+# --- Write reports to the screen, or to a file that appears only when it is complete
+
+
+# Larger documents are buffered on the disk (bytes).
+_IN_MEMORY: Final = 1024 * 1024
+
+
+def console_of(output: Path | None) -> Console:
+    """Return the console that lays out reports; a file has 80 columns and no colour."""
+    if output is None:
+        return stdout()
+    page = io.TextIOWrapper(io.BytesIO(), encoding="utf-8")
+    return Console(file=page, width=80, highlight=False, markup=False)
+
+
+def write(
+    pieces: Iterable[bytes], output: Path | None, *, at_once: bool, quiet: bool = False
+) -> None:
+    """Write the pieces to the file ``output``, or to the screen if ``output`` is None.
+
+    With ``at_once``, the screen shows all pieces at the end. A file appears only when it is
+    complete, and a pipe never gets an incomplete document.
+    """
+    if output is not None:
+        _write_file(pieces, output)
+    elif quiet:
+        for _ in pieces:
+            pass
+    elif at_once:
+        with SpooledTemporaryFile(_IN_MEMORY) as whole:
+            whole.writelines(pieces)
+            whole.seek(0)
+            _show(iter(lambda: whole.read(_IN_MEMORY), b""))
+    else:
+        _show(pieces)
+
+
+def _show(pieces: Iterable[bytes]) -> None:
+    for piece in pieces:
+        typer.echo(piece, nl=False)
+
+
+def _write_file(pieces: Iterable[bytes], output: Path) -> None:
+    # A pipe or a device cannot be replaced: write to it directly.
+    is_replaced = output.is_file() or not output.exists()
+    written = output.with_name(f".{output.name}.part") if is_replaced else output
+    try:
+        with written.open("wb") as file:
+            file.writelines(pieces)
+        if is_replaced:
+            written.replace(output)
+    except OSError as error:
+        give_up(unwritable(output, error))
+    finally:
+        if is_replaced:
+            # After a failure the file may be missing, or its folder is not a folder.
+            with suppress(OSError):
+                written.unlink()
+
+
+# --- Write a folder of documents completely or not at all
+
+
+# The name of a folder that is still being written begins with this.
+_UNFINISHED: Final = ".dh-grader-unfinished-"
+_OLD: Final = "old"
+# A file with one of these endings holds all pages.
+_ONE_FILE: Final = (".html", ".htm", ".zip")
+
+
+class UnusableFolderError(Exception):
+    """Documents cannot be written into the folder; the message says why."""
+
+
+def is_for_folder(output: Path, *, several: bool) -> bool:
+    """True if reports go into a folder, False if they go into a single file.
+
+    A new ``output`` becomes a folder if there are several submissions, unless its name ends like an
+    HTML or zip file.
+    """
+    if output.exists():
+        return output.is_dir()
+    return several and output.suffix.lower() not in _ONE_FILE
+
+
+def write_folder(documents: Iterable[Document], folder: Path) -> None:
+    """Write all documents into the folder, or none. Raises UnusableFolderError.
+
+    An existing folder must be empty, or contain only documents of an earlier run.
+    """
+    try:
+        _write_all(documents, folder.resolve())
+    except OSError as error:
+        raise UnusableFolderError(
+            say("cannot be written: {reason}", reason=reason_of(error))
+        ) from error
+
+
+def _write_all(documents: Iterable[Document], folder: Path) -> None:
+    if not folder.exists():
+        with _unfinished(folder.parent) as written:
+            _write(documents, written)
+            written.rename(folder)
+        return
+    old = _replaceable(folder)
+    # Write inside the folder: it may be a mount point, into which nothing outside can be renamed.
+    with _unfinished(folder) as written:
+        _write(documents, written)
+        _exchange(folder, written, old)
+
+
+@contextmanager
+def _unfinished(parent: Path) -> Iterator[Path]:
+    folder = parent / f"{_UNFINISHED}{secrets.token_hex(8)}"
+    folder.mkdir()
+    try:
+        yield folder
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _write(documents: Iterable[Document], folder: Path) -> None:
+    paths = []
+    for document in documents:
+        file = folder / _within(document.path)
+        file.parent.mkdir(exist_ok=True)
+        with file.open("xb") as opened:
+            opened.writelines(document.pieces)
+        paths.append(f"{document.path}\n")
+    (folder / WRITTEN).write_text("".join(paths), encoding="utf-8")
+
+
+def _within(path: str) -> PurePosixPath:
+    within = PurePosixPath(path)
+    if within.is_absolute() or len(within.parts) > 2 or ".." in within.parts or "\n" in path:
+        raise ValueError(f"{path!r} does not stay in its folder")
+    return within
+
+
+def _replaceable(folder: Path) -> list[Path]:
+    if not folder.is_dir():
+        raise UnusableFolderError(say("is no folder"))
+    found = [path for path in folder.iterdir() if not path.name.startswith(_UNFINISHED)]
+    for path in _foreign(found, _written_before(folder)):
+        raise UnusableFolderError(
+            say(
+                "holds {name!r}, which no earlier run has written; name an empty folder, or "
+                "one that does not exist",
+                name=path.relative_to(folder).as_posix(),
+            )
+        )
+    return found
+
+
+def _written_before(folder: Path) -> set[Path]:
+    try:
+        paths = (folder / WRITTEN).read_text(encoding="utf-8").splitlines()
+    except (FileNotFoundError, UnicodeDecodeError):
+        return set()
+    return {folder / path for path in (WRITTEN, *paths)}
+
+
+def _foreign(found: Iterable[Path], written: Set[Path]) -> Iterator[Path]:
+    # ``written`` are the files of earlier runs. The files in the folders are also checked.
+    folders = {file.parent for file in written}
+    for path in found:
+        if path.is_symlink() or path not in (written if path.is_file() else folders):
+            yield path
+        elif path.is_dir():
+            yield from (each for each in path.iterdir() if each.is_symlink() or each not in written)
+
+
+def _exchange(folder: Path, written: Path, old: Iterable[Path]) -> None:
+    new = list(written.iterdir())
+    aside = written / _OLD
+    aside.mkdir()
+    moves = [*((path, aside / path.name) for path in old)]
+    moves += [(path, folder / path.name) for path in new]
+    done: list[tuple[Path, Path]] = []
+    try:
+        for source, target in moves:
+            source.rename(target)
+            done.append((source, target))
+    except BaseException:
+        for source, target in reversed(done):
+            target.rename(source)
+        raise
+
+
+# --- Remember which files earlier runs have written, to protect the files of students
+
+
+def require_no_input(output: Path, read: Iterable[Path]) -> None:
+    """Exit if the output file would replace an input file."""
+    for path in read:
+        if path.is_file() and output.exists() and path.samefile(output):
+            give_up(
+                say(
+                    "{file} is read, and would be overwritten; name another --output",
+                    file=str(output),
+                )
+            )
+
+
+def require_own(output: Path, folders: Iterable[Path], *, force: bool = False) -> None:
+    """Exit with code 2 if the output would replace a file that is no earlier output.
+
+    With ``force``, the output may replace any file that is not among the submissions.
+    """
+    if not output.is_file() or output.name in _written(output):
+        return
+    try:
+        is_own = is_earlier_output(output)
+    except OSError as error:
+        give_up(unreadable(output, error))
+    if is_own:
+        return
+    if _holds(folders, output):
+        give_up(
+            say(
+                "{file} is among the submissions, and no earlier run has written it; name another "
+                "--output",
+                file=str(output),
+            )
+        )
+    if not force:
+        give_up(
+            say(
+                "{file} exists, and is no earlier report of this program; name another --output, "
+                "or add --force to replace the file",
+                file=str(output),
+            )
+        )
+
+
+def written_in(folders: Iterable[Path]) -> list[Path]:
+    """Return the files in these folders that earlier runs have written."""
+    found = [folder / name for folder in folders for name in _written(folder / WRITTEN)]
+    return [path for path in found if path.is_file()]
+
+
+def remember(output: Path | None, folders: Iterable[Path]) -> None:
+    """Record that a run has written this file, so that a later run may replace it."""
+    if output is not None and output.is_file() and _holds(folders, output):
+        names = _written(output)
+        if output.name not in names:
+            lines = "".join(f"{name}\n" for name in [*names, output.name])
+            _list_beside(output).write_text(lines, encoding="utf-8")
+
+
+def _holds(folders: Iterable[Path], output: Path) -> bool:
+    place = output.resolve()
+    return any(place.is_relative_to(folder.resolve()) for folder in folders)
+
+
+def _list_beside(output: Path) -> Path:
+    return output.with_name(WRITTEN)
+
+
+def _written(output: Path) -> list[str]:
+    try:
+        return _list_beside(output).read_text(encoding="utf-8").splitlines()
+    except (OSError, UnicodeDecodeError):
+        return []

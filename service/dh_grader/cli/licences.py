@@ -1,4 +1,7 @@
-"""`python -m dh_grader.cli.licences`: list the required packages with their licences."""
+"""`python -m dh_grader.cli.licences`: list the required packages with their licences.
+
+The container image includes this list as a file.
+"""
 
 import re
 import sys
@@ -7,9 +10,6 @@ from importlib.metadata import Distribution, PackageNotFoundError, distribution
 from typing import Final
 
 from dh_grader.regex import regex
-
-# The container image includes this list as a file.
-
 
 _PROGRAM: Final = "dh-grader"
 _LICENCE_FILE: Final = regex(r"(licen[cs]e|copying|notice|authors)[^/]*$", re.IGNORECASE)

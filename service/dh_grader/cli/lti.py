@@ -1,4 +1,7 @@
-"""`dh-grader lti`: registered platforms, how they join, our keys, and the scores of a course."""
+"""`dh-grader lti`: registered platforms, how they join, our keys, and the scores of a course.
+
+What happens there is in ``dh_grader.lti``; this file knows options and messages.
+"""
 
 import json
 from collections.abc import Callable
@@ -130,7 +133,7 @@ def own_address(option: str | None) -> str:
     return found.rstrip("/")
 
 
-# --- `dh-grader lti`: the registered platforms, and our keys for signing messages to them
+# --- `dh-grader lti`: all its commands; the registered platforms, and our keys for signing
 
 
 R = TypeVar("R")
@@ -170,10 +173,7 @@ def register(
     audience: Annotated[
         str | None, typer.Option(help="The audience of access tokens. \\[the token address]")
     ] = None,
-    address: Annotated[
-        str | None,
-        typer.Option(help="This service: https://grader.example.edu \\[DH_GRADER_PUBLIC_URL]"),
-    ] = None,
+    address: Address = None,
     zone: Annotated[str | None, typer.Option(help="The time zone of its courses. [UTC]")] = None,
     deployment: Annotated[
         list[str] | None, typer.Option(help="Only this deployment. Repeatable. \\[all]")

@@ -1,4 +1,7 @@
-"""`dh-grader serve`, `keys` and `doctor`: run the service, its keys, and a check of all."""
+"""`dh-grader serve`, `keys` and `doctor`: run the service, its keys, and a check of all.
+
+The service itself is in ``dh_grader.server``.
+"""
 
 import gc
 import os
@@ -35,6 +38,169 @@ from dh_grader.store.database import (
 )
 from dh_grader.store.tables import courses
 from dh_grader.translations import Sentence, joined, say, say_count, template
+
+# --- `dh-grader serve`: run the service on this machine
+
+
+serve_commands = typer.Typer(add_completion=False)
+
+
+@serve_commands.command("serve")
+def serve_command(
+    host: Annotated[
+        str | None, typer.Option(help="The address to listen on; 0.0.0.0 for all. [127.0.0.1]")
+    ] = None,
+    port: Annotated[
+        int | None, typer.Option(help="The port; 0 for a free one. [8000]", show_default=False)
+    ] = None,
+    workers: Annotated[
+        int | None, typer.Option(help="The number of processes. [1]", show_default=False)
+    ] = None,
+) -> None:
+    """Start the service. Configure it by environment variables DH_GRADER_…."""
+    settings = load_settings(host=host, port=port, workers=workers)
+    # Until the application has started: loading modules produces no garbage to search for.
+    gc.disable()
+    # Import here: the web framework is half of the program, and grading needs none of it.
+    from dh_grader.server import serve
+
+    if not serve(settings):
+        give_up(
+            say(
+                "The service cannot listen on {host}, port {port}. Choose another with --host and "
+                "--port, or with DH_GRADER_HOST and DH_GRADER_PORT.",
+                host=settings.host,
+                port=settings.port,
+            )
+        )
+
+
+# --- `dh-grader keys`: create, list and revoke API keys
+
+
+keys_commands = typer.Typer(
+    help="API keys of the service: create, list, revoke.",
+    no_args_is_help=True,
+    add_completion=False,
+)
+
+
+@keys_commands.command("create")
+def create(
+    name: Annotated[
+        str,
+        typer.Argument(
+            help="The purpose of the key, such as the name of a course.",
+            show_default=False,
+            callback=encodable,
+        ),
+    ],
+    scope: Annotated[
+        list[Scope] | None, typer.Option(help="A right besides grading. Repeatable.")
+    ] = None,
+    exercise: Annotated[
+        list[str] | None, typer.Option(help="Only this exercise. Repeatable. \\[all]")
+    ] = None,
+    course: Annotated[
+        str | None, typer.Option(help="Only this course. \\[all]", callback=encodable)
+    ] = None,
+    days: Annotated[int, typer.Option(min=1, max=3650, help="The key's lifetime in days.")] = 365,
+) -> None:
+    """Create a key and show it, once."""
+    secret = load_settings().known_secret()
+    if secret is None:
+        give_up(
+            say(
+                "Keys need a secret, which the service must know as well. Make one with "
+                "openssl rand -hex 32, and set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."
+            )
+        )
+    if course is not None and exercise:
+        give_up(say("A key is for a course or for exercises: leave out --course or --exercise."))
+    bound = [installed_exercise(each).id for each in exercise] if exercise else None
+    text = new_key_text()
+    digest = secret.key_digest(text)
+    now = datetime.now(UTC)
+    until = now + timedelta(days=days)
+    scopes = {Scope.GRADE, *(scope or ())}
+
+    def added(connection: Connection) -> Key | None:
+        if not settle(connection, secret, now):
+            return None
+        if course is not None:
+            roll.course(connection, course)
+        return add_key(connection, name[:200], digest, scopes, bound, now, until, course)
+
+    with database(create=True) as engine:
+        try:
+            key = in_transaction(engine, added)
+        except CourseError as error:
+            give_up(error)
+    if key is None:
+        give_up(WRONG_SECRET)
+    # Only the key goes to standard output, for scripts.
+    typer.echo(text)
+    complain(
+        say(
+            "Key {key}, valid until {day}. Keep it now: it is not shown again.",
+            key=key.id,
+            day=f"{key.expires_at:%Y-%m-%d}",
+        )
+    )
+
+
+@keys_commands.command("list")
+def list_keys() -> None:
+    """List the keys, without their texts."""
+    secret = load_settings().known_secret()
+    with database() as engine, engine.connect() as connection:
+        found = all_keys(connection)
+        has_their_secret = secret is None or fits(connection, secret)
+    now = datetime.now(UTC)
+    screen = stdout()
+    for key in found:
+        used = say("never used")
+        if key.last_used_at:
+            used = say("used {time}", time=f"{key.last_used_at:%Y-%m-%d %H:%M}")
+        scopes = " ".join(sorted(key.scopes))
+        told = (key.id, visible(key.name), scopes, _bound(key), _state(key, now), used)
+        screen.print("  ".join(map(spoken, told)), soft_wrap=True)
+    # After the list: if the secret is lost, the list shows which keys to revoke.
+    if not has_their_secret:
+        give_up(WRONG_SECRET)
+
+
+@keys_commands.command("revoke")
+def revoke(
+    key: Annotated[
+        str, typer.Argument(help="The id of a key, as list shows it.", callback=encodable)
+    ],
+) -> None:
+    """Revoke a key and all tokens made with it."""
+    with database() as engine:
+        now = datetime.now(UTC)
+        if not in_transaction(engine, lambda connection: revoke_key(connection, key, now)):
+            give_up(
+                say(
+                    "There is no key {key} that could be revoked; dh-grader keys list shows them.",
+                    key=key,
+                )
+            )
+    tell(say("Revoked. Each running service knows it within seconds."))
+
+
+def _bound(key: Key) -> str:
+    if key.course:
+        return say("course {course}", course=key.course)
+    return say("all exercises") if key.exercises is None else ", ".join(sorted(key.exercises))
+
+
+def _state(key: Key, now: datetime) -> Sentence:
+    if key.revoked_at is not None:
+        return say("revoked {day}", day=f"{key.revoked_at:%Y-%m-%d}")
+    day = f"{key.expires_at:%Y-%m-%d}"
+    return say("expired {day}", day=day) if key.expires_at <= now else say("until {day}", day=day)
+
 
 # --- `dh-grader doctor`: check this installation, and say what is wrong and how to mend it
 
@@ -286,166 +452,3 @@ _CHECKS: Final[dict[str, Callable[[Settings], Iterator[str]]]] = {
     template("keys: {found}"): _keys,
     template("courses: {found}"): _courses,
 }
-
-
-# --- `dh-grader serve`: run the service on this machine
-
-
-serve_commands = typer.Typer(add_completion=False)
-
-
-@serve_commands.command("serve")
-def serve_command(
-    host: Annotated[
-        str | None, typer.Option(help="The address to listen on; 0.0.0.0 for all. [127.0.0.1]")
-    ] = None,
-    port: Annotated[
-        int | None, typer.Option(help="The port; 0 for a free one. [8000]", show_default=False)
-    ] = None,
-    workers: Annotated[
-        int | None, typer.Option(help="The number of processes. [1]", show_default=False)
-    ] = None,
-) -> None:
-    """Start the service. Configure it by environment variables DH_GRADER_…."""
-    settings = load_settings(host=host, port=port, workers=workers)
-    # Until the application has started: loading modules produces no garbage to search for.
-    gc.disable()
-    # Import here: the web framework is half of the program, and grading needs none of it.
-    from dh_grader.server import serve
-
-    if not serve(settings):
-        give_up(
-            say(
-                "The service cannot listen on {host}, port {port}. Choose another with --host and "
-                "--port, or with DH_GRADER_HOST and DH_GRADER_PORT.",
-                host=settings.host,
-                port=settings.port,
-            )
-        )
-
-
-# --- `dh-grader keys`: create, list and revoke API keys
-
-
-keys_commands = typer.Typer(
-    help="API keys of the service: create, list, revoke.",
-    no_args_is_help=True,
-    add_completion=False,
-)
-
-
-@keys_commands.command("create")
-def create(
-    name: Annotated[
-        str,
-        typer.Argument(
-            help="The purpose of the key, such as the name of a course.",
-            show_default=False,
-            callback=encodable,
-        ),
-    ],
-    scope: Annotated[
-        list[Scope] | None, typer.Option(help="A right besides grading. Repeatable.")
-    ] = None,
-    exercise: Annotated[
-        list[str] | None, typer.Option(help="Only this exercise. Repeatable. \\[all]")
-    ] = None,
-    course: Annotated[
-        str | None, typer.Option(help="Only this course. \\[all]", callback=encodable)
-    ] = None,
-    days: Annotated[int, typer.Option(min=1, max=3650, help="The key's lifetime in days.")] = 365,
-) -> None:
-    """Create a key and show it, once."""
-    secret = load_settings().known_secret()
-    if secret is None:
-        give_up(
-            say(
-                "Keys need a secret, which the service must know as well. Make one with "
-                "openssl rand -hex 32, and set DH_GRADER_SECRET, or DH_GRADER_SECRET_FILE."
-            )
-        )
-    if course is not None and exercise:
-        give_up(say("A key is for a course or for exercises: leave out --course or --exercise."))
-    bound = [installed_exercise(each).id for each in exercise] if exercise else None
-    text = new_key_text()
-    digest = secret.key_digest(text)
-    now = datetime.now(UTC)
-    until = now + timedelta(days=days)
-    scopes = {Scope.GRADE, *(scope or ())}
-
-    def added(connection: Connection) -> Key | None:
-        if not settle(connection, secret, now):
-            return None
-        if course is not None:
-            roll.course(connection, course)
-        return add_key(connection, name[:200], digest, scopes, bound, now, until, course)
-
-    with database(create=True) as engine:
-        try:
-            key = in_transaction(engine, added)
-        except CourseError as error:
-            give_up(error)
-    if key is None:
-        give_up(WRONG_SECRET)
-    # Only the key goes to standard output, for scripts.
-    typer.echo(text)
-    complain(
-        say(
-            "Key {key}, valid until {day}. Keep it now: it is not shown again.",
-            key=key.id,
-            day=f"{key.expires_at:%Y-%m-%d}",
-        )
-    )
-
-
-@keys_commands.command("list")
-def list_keys() -> None:
-    """List the keys, without their texts."""
-    secret = load_settings().known_secret()
-    with database() as engine, engine.connect() as connection:
-        found = all_keys(connection)
-        has_their_secret = secret is None or fits(connection, secret)
-    now = datetime.now(UTC)
-    screen = stdout()
-    for key in found:
-        used = say("never used")
-        if key.last_used_at:
-            used = say("used {time}", time=f"{key.last_used_at:%Y-%m-%d %H:%M}")
-        scopes = " ".join(sorted(key.scopes))
-        told = (key.id, visible(key.name), scopes, _bound(key), _state(key, now), used)
-        screen.print("  ".join(map(spoken, told)), soft_wrap=True)
-    # After the list: if the secret is lost, the list shows which keys to revoke.
-    if not has_their_secret:
-        give_up(WRONG_SECRET)
-
-
-@keys_commands.command("revoke")
-def revoke(
-    key: Annotated[
-        str, typer.Argument(help="The id of a key, as list shows it.", callback=encodable)
-    ],
-) -> None:
-    """Revoke a key and all tokens made with it."""
-    with database() as engine:
-        now = datetime.now(UTC)
-        if not in_transaction(engine, lambda connection: revoke_key(connection, key, now)):
-            give_up(
-                say(
-                    "There is no key {key} that could be revoked; dh-grader keys list shows them.",
-                    key=key,
-                )
-            )
-    tell(say("Revoked. Each running service knows it within seconds."))
-
-
-def _bound(key: Key) -> str:
-    if key.course:
-        return say("course {course}", course=key.course)
-    return say("all exercises") if key.exercises is None else ", ".join(sorted(key.exercises))
-
-
-def _state(key: Key, now: datetime) -> Sentence:
-    if key.revoked_at is not None:
-        return say("revoked {day}", day=f"{key.revoked_at:%Y-%m-%d}")
-    day = f"{key.expires_at:%Y-%m-%d}"
-    return say("expired {day}", day=day) if key.expires_at <= now else say("until {day}", day=day)

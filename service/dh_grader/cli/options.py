@@ -1,4 +1,7 @@
-"""Options of commands: exercises, words of a list, and the language of reports."""
+"""Options of commands: exercises, words of a list, and the language of reports.
+
+Options that only one group of commands has are with those commands.
+"""
 
 from collections.abc import Callable, Iterable, Mapping
 from enum import StrEnum
@@ -13,6 +16,8 @@ from dh_grader.settings import Settings, load_settings
 from dh_grader.submissions.bodies import find_exercise, nearest
 from dh_grader.translations import Language, language_named, paragraph, say
 
+# --- Exercises of this installation, and files of exercises
+
 
 def installed() -> Mapping[str, Exercise]:
     """Return the exercises of this installation. Raises SettingsError or CatalogueError."""
@@ -22,9 +27,9 @@ def installed() -> Mapping[str, Exercise]:
 def installed_exercise(exercise_id: str) -> Exercise:
     """Return the installed exercise or variant with this id.
 
-    Raises SettingsError, CatalogueError or UnknownExerciseError.
+    Reads only the file of this exercise. Raises SettingsError, CatalogueError or
+    UnknownExerciseError.
     """
-    # Only the file of this exercise is read.
     plain_id = exercise_id.partition("~")[0]
     plain = load_exercise(installed_file(plain_id))
     return find_exercise({plain_id: plain}, exercise_id)
@@ -53,7 +58,7 @@ def installed_file(exercise_id: str) -> Path:
     return find_exercise(files, exercise_id)
 
 
-# Options that take one of several words.
+# --- Options that take one of several words
 
 
 _Choice = TypeVar("_Choice", bound=StrEnum)
@@ -80,9 +85,11 @@ def listed(of: type[StrEnum]) -> str:
     return f"[{'|'.join(each.value for each in of)}]"
 
 
+# --- The language of reports
+
+
 def report_language(settings: Settings, output_format: str) -> Language:
-    """Return the language of reports."""
-    # Without a setting, reports in the format ``text`` are in the language of the user.
+    """Return the language of reports: the setting, or for ``text`` that of the user."""
     if output_format == "text" and "language" not in settings.model_fields_set:
         return user_language()
     found = language_named(settings.language)

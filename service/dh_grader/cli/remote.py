@@ -1,6 +1,6 @@
-"""Let a server grade instead of this program.
+"""Let a server grade instead of this program, as `dh-grader grade --server` does.
 
-The client is loaded late: most runs have no server.
+Most runs have no server, so the client, and ``remote_grading.py`` with it, is imported late.
 """
 
 from collections.abc import Iterator, Sequence
@@ -14,17 +14,12 @@ from dh_grader.cli.terminal import complain, give_up, spoken
 from dh_grader.formats.graded import GradedSubmission, GradingTerms
 from dh_grader.formats.texts import visible
 from dh_grader.settings import Settings
-from dh_grader.submissions import (
-    Assignment,
-    SetExercise,
-)
+from dh_grader.submissions import Assignment, SetExercise
 from dh_grader.submissions.files import HandedIn
 from dh_grader.translations import say
 
 if TYPE_CHECKING:
     from dh_grader.client import GraderClient
-
-# Modules that load httpx are imported late: most runs have no server.
 
 # Concurrent requests without --jobs: the server has work while answers are on their way.
 REQUESTS: Final = 4
@@ -93,9 +88,9 @@ def graded_by(
 ) -> Iterator[Iterator[GradedSubmission]]:
     """Yield an iterator over the submissions in order, graded by the server.
 
-    ``requests`` is the number of concurrent requests.
+    ``requests`` is the number of concurrent requests. If the server fails, the reports so far stay
+    in the journal beside the output.
     """
-    # If the server fails, the reports so far stay in the journal beside the output.
     from dh_grader.cli.remote_grading import Journal, RemoteGrading, journal_beside
 
     journal = Journal(journal_beside(output))

@@ -1,4 +1,7 @@
-"""Output to the terminal in the language of the user, and errors that end the program."""
+"""The terminal: output in the language of the user, errors that end the program, and signals.
+
+Reports are laid out in ``dh_grader.formats``.
+"""
 
 import gettext
 import os
@@ -29,76 +32,17 @@ from dh_grader.translations import (
     told,
 )
 
-# --- Handle SIGINT and SIGTERM so that no unfinished files and no processes are left
+# --- Output to the terminal, and errors that end the program
 
 
-# The exit codes of a shell: 128 plus the number of the signal.
+# The exit codes of `grade`; others use the second one, too.
+BELOW_PASS_MARK: Final = 1
+UNUSABLE: Final = 2
+# The exit codes of a shell: 128 plus the number of the signal. SIGPIPE comes if the reader of a
+# pipe has gone.
 INTERRUPTED: Final = 130
+BROKEN_PIPE: Final = 141
 TERMINATED: Final = 143
-# A second signal within this time is ignored: many programs send theirs twice (seconds).
-_REPEATED_WITHIN: Final = 1.0
-
-
-class _Signals:
-    def __init__(self) -> None:
-        self._last: tuple[int, float] | None = None
-
-    def receive(self, number: int, _: object) -> None:
-        # A further signal during the cleanup is ignored.
-        now = time.monotonic()
-        if self._last is None or now - self._last[1] > _REPEATED_WITHIN:
-            self._last = number, now
-            _end(number)
-
-    def check(self) -> None:
-        # Python drops exceptions that are raised during garbage collection or the release of a
-        # lock.
-        if self._last is not None:
-            _end(self._last[0])
-
-
-@contextmanager
-def interruptible() -> Iterator[Callable[[], None]]:
-    """Clean up files and processes before SIGTERM or Ctrl-C ends this process.
-
-    Yields a function that ends the process after a signal. Call this function between two pieces of
-    work.
-    """
-    # Without it, the process would go on if the exception of a signal was lost.
-    signals = _Signals()
-    with _handled(signals.receive):
-        try:
-            yield signals.check
-        except BaseException:
-            signals.check()
-            raise
-
-
-@contextmanager
-def _handled(handler: Callable[[int, object], None]) -> Iterator[None]:
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    # Keep ignoring signals that were ignored at the start, as in the background of a script.
-    numbers = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) != signal.SIG_IGN]
-    before = {number: signal.signal(number, handler) for number in numbers}
-    try:
-        yield
-    finally:
-        for number, former in before.items():
-            signal.signal(number, former)
-
-
-def _end(number: int) -> NoReturn:
-    if number == signal.SIGINT:
-        raise KeyboardInterrupt
-    raise SystemExit(TERMINATED)
-
-
-BELOW_PASS_MARK = 1
-UNUSABLE = 2
-# The exit code of a shell for SIGPIPE (the reader of a pipe has gone): 128 plus its number.
-BROKEN_PIPE = 141
 
 
 class _Terminal(Console):
@@ -199,8 +143,6 @@ def progress(total: int) -> Iterator[Progress]:
 # --- Translate the command line into the language of the user
 #
 # Help texts are English in the source; ``translate_help`` translates them when a command is loaded.
-
-
 # Output for programs, the names of commands and options, and exit codes have no language.
 
 
@@ -222,9 +164,11 @@ _TYPER_WORDS: Final = (
 
 
 def user_language(variables: Mapping[str, str] = os.environ) -> Language:
-    """Return the language that the environment names, or English."""
-    # DH_GRADER_LANGUAGE decides. Without it, the first known language of the list LANGUAGE and of
-    # the locale decides. The locales C and POSIX mean English.
+    """Return the language that the environment names, or English.
+
+    DH_GRADER_LANGUAGE decides. Without it, the first known language of the list LANGUAGE and of the
+    locale decides. The locales C and POSIX mean English.
+    """
     if own := variables.get(OWN_VARIABLE):
         return language_named(own) or ENGLISH
     named = (variables.get(name) for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
@@ -281,3 +225,65 @@ class _Formatter(TyperCommand.context_class.formatter_class):  # type: ignore[na
         translation = user_language().translation_of_commands
         shown = translation.gettext(_USAGE) if translation else prefix
         super().write_usage(prog, args, shown)
+
+
+# --- Handle SIGINT and SIGTERM so that no unfinished files and no processes are left
+
+
+# A second signal within this time is ignored: many programs send theirs twice (seconds).
+_REPEATED_WITHIN: Final = 1.0
+
+
+class _Signals:
+    def __init__(self) -> None:
+        self._last: tuple[int, float] | None = None
+
+    def receive(self, number: int, _: object) -> None:
+        # A further signal during the cleanup is ignored.
+        now = time.monotonic()
+        if self._last is None or now - self._last[1] > _REPEATED_WITHIN:
+            self._last = number, now
+            _end(number)
+
+    def check(self) -> None:
+        # Python drops exceptions that are raised during garbage collection or the release of a
+        # lock.
+        if self._last is not None:
+            _end(self._last[0])
+
+
+@contextmanager
+def interruptible() -> Iterator[Callable[[], None]]:
+    """Clean up files and processes before SIGTERM or Ctrl-C ends this process.
+
+    Yields a function that ends the process after a signal. Call this function between two pieces of
+    work: without it, the process would go on if the exception of a signal was lost.
+    """
+    signals = _Signals()
+    with _handled(signals.receive):
+        try:
+            yield signals.check
+        except BaseException:
+            signals.check()
+            raise
+
+
+@contextmanager
+def _handled(handler: Callable[[int, object], None]) -> Iterator[None]:
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    # Keep ignoring signals that were ignored at the start, as in the background of a script.
+    numbers = [n for n in (signal.SIGINT, signal.SIGTERM) if signal.getsignal(n) != signal.SIG_IGN]
+    before = {number: signal.signal(number, handler) for number in numbers}
+    try:
+        yield
+    finally:
+        for number, former in before.items():
+            signal.signal(number, former)
+
+
+def _end(number: int) -> NoReturn:
+    if number == signal.SIGINT:
+        raise KeyboardInterrupt
+    raise SystemExit(TERMINATED)

@@ -1,6 +1,7 @@
 """The bodies that go over HTTP, besides submissions and reports: what requests and answers have.
 
-This package has pydantic models only. What happens to them is in ``dh_grader.api``.
+This package has pydantic models only. Those of courses, and those of previews and drawings, have
+files of their own. What happens to all of them is in ``dh_grader.api``.
 """
 
 from collections.abc import Mapping
@@ -19,89 +20,108 @@ from dh_grader.hints import STEPS
 from dh_grader.kinematics import Convention
 from dh_grader.submissions.bodies import GradeRequest
 
-# --- The bodies of the statistics of an exercise
+# --- Exercises and generated robots, without their answers
 
 
-class ShareCorrect(BaseModel):
-    """The number of answers and of right answers."""
+class PartSummary(BaseModel):
+    """A part in the list of exercises."""
 
-    answered: int = Field(description="The number of answers, including unreadable ones.")
-    correct: int
-    share: float | None = Field(None, description="correct / answered; absent without answers.")
-
-
-class CellFigures(ShareCorrect):
-    """The figures of a cell in all attempts."""
-
-    label: str
+    id: str
+    kind: str = Field(description="The answer kind.")
+    points: float
 
 
-class RowFigures(ShareCorrect):
-    """The figures of a row in all attempts. A row is right if all its cells are."""
+class CatalogueEntry(BaseModel):
+    """What the catalogue says about an exercise."""
 
-    label: str
-    cells: list[CellFigures]
-
-
-class PartFigures(ShareCorrect):
-    """The figures of a part in all attempts."""
-
-    part: str
-    rows: list[RowFigures]
-
-
-class MisconceptionFigures(BaseModel):
-    """The figures of a message code in a part."""
-
-    part: str
-    code: str
-    sentence: ToldText | None = Field(
-        None,
-        description="The message in one of these reports; absent if the report has no messages.",
+    id: str
+    title: str
+    source: str
+    level: ExerciseLevel | None = Field(
+        None, description="The level: `start`, `basics`, `arms` or `industrial`."
     )
-    attempts: int = Field(description="The number of attempts with this code.")
-    by_day: dict[str, int] = Field(description="The number of these attempts by day, in UTC.")
-    by_attempt: list[int] = Field(
-        [],
-        description="The number of learners with this code in their first attempt, in their "
-        "second one, and so on. `learners_by_attempt` has the numbers of all learners.",
+    order: int | None = Field(None, description="The place within the level.")
+    minutes: int | None = Field(None, description="The minutes that a student needs.")
+    summary: str = Field("", description="One line about the exercise.")
+    conventions: list[Convention] = Field(
+        [], description="The DH conventions that the parts ask for."
+    )
+    keywords: list[str] = Field([], description="More words for a search.")
+
+
+class ExerciseSummary(CatalogueEntry):
+    """An exercise in the list."""
+
+    structure: str | None = Field(
+        description="The joints in order: R turns, P slides. Null without a robot."
+    )
+    parts: list[PartSummary]
+
+
+class ExerciseList(BaseModel):
+    """The catalogue."""
+
+    exercises: list[ExerciseSummary]
+
+
+class SymbolView(BaseModel):
+    """A symbol that answers may contain."""
+
+    name: str
+    kind: Kind
+    unit: str
+    description: str
+    joint: int | None = Field(None, description="The joint's number if it is a joint variable.")
+
+
+class PartView(BaseModel):
+    """A part without its answer."""
+
+    id: str
+    title: str
+    prompt: str = Field(description="Markdown, with LaTeX between dollars.")
+    prompt_html: str = Field(description="The prompt as HTML and MathML, like `statement_html`.")
+    kind: str = Field(description="The answer kind.")
+    points: float
+    marking: Marking = Field(description="How points are distributed over the cells.")
+    follows: str | None = Field(
+        None, description="The earlier part that this part follows from; absent if none."
+    )
+    shape: AnyShape
+
+
+class ExerciseView(CatalogueEntry):
+    """An exercise without its answers."""
+
+    version: str
+    structure: str | None = Field(
+        None, description="The joints in order: R turns, P slides. Absent without a robot."
+    )
+    statement: str = Field(description="Markdown, with LaTeX between dollars.")
+    statement_html: str = Field(
+        description="The statement as HTML and MathML, without scripts, styles and pictures."
+    )
+    figure: bool = Field(description="True if the exercise has a robot, which `figure.svg` draws.")
+    feedback: FeedbackLevel = Field(
+        description="The highest feedback level: `full`, `hints`, `verdicts` or `score`."
+    )
+    symbols: list[SymbolView]
+    parts: list[PartView]
+
+
+class PracticeRobot(BaseModel):
+    """A generated robot. Its exercise is found by its id like any other."""
+
+    id: str = Field(description="The id of the exercise.", examples=["practice-2-standard~k3f9"])
+    level: int
+    convention: Convention
+    difficulty: int = Field(
+        description="Counted: joints, changes of direction, offsets, sliding joints, free choices, "
+        "twists other than 90°."
     )
 
 
-class HintFigures(BaseModel):
-    """How often learners took the hints for the messages of a code, at recorded attempts."""
-
-    part: str
-    code: str
-    taken: list[int] = Field(description="The number of times for each of the three steps.")
-
-
-class IdenticalAnswers(BaseModel):
-    """Exactly equal wrong answers of several learners. They do not prove that anybody copied."""
-
-    learners: int
-    attempts: int
-    wrong: list[str] = Field(description="The wrong places: part/row/cell.")
-    among: list[str] = Field(description="The first of these learners, in alphabetical order.")
-
-
-class ExerciseStatistics(BaseModel):
-    """The statistics of the attempts at an exercise."""
-
-    exercise: str
-    attempts: int
-    learners: int
-    parts: list[PartFigures]
-    misconceptions: list[MisconceptionFigures] = Field(description="The most common ones first.")
-    learners_by_attempt: list[int] = Field(
-        [],
-        description="The number of learners who made a first attempt, a second one, and so on.",
-    )
-    hints: list[HintFigures] = Field([], description="The hints most often taken first.")
-    identical: list[IdenticalAnswers] = Field(description="The largest groups first.")
-
-
-# --- RFC 9457 problem details: the body of every unsuccessful response
+# --- Problem details (RFC 9457): the body of every unsuccessful response
 
 
 MEDIA_TYPE: Final = "application/problem+json"
@@ -252,7 +272,7 @@ class ProblemDocument(BaseModel):
     errors: list[Reason] | None = None
 
 
-# --- The bodies of requests about grading, about hints, and about alternatives to a correct table
+# --- Grading, hints, and alternatives to a correct table
 
 
 _Label = Annotated[str, Field(max_length=40)]
@@ -349,108 +369,7 @@ class GradeManyResponse(BaseModel):
     results: list[GradeResult]
 
 
-# --- The bodies that list and describe exercises and generated robots, without their answers
-
-
-class PartSummary(BaseModel):
-    """A part in the list of exercises."""
-
-    id: str
-    kind: str = Field(description="The answer kind.")
-    points: float
-
-
-class CatalogueEntry(BaseModel):
-    """What the catalogue says about an exercise."""
-
-    id: str
-    title: str
-    source: str
-    level: ExerciseLevel | None = Field(
-        None, description="The level: `start`, `basics`, `arms` or `industrial`."
-    )
-    order: int | None = Field(None, description="The place within the level.")
-    minutes: int | None = Field(None, description="The minutes that a student needs.")
-    summary: str = Field("", description="One line about the exercise.")
-    conventions: list[Convention] = Field(
-        [], description="The DH conventions that the parts ask for."
-    )
-    keywords: list[str] = Field([], description="More words for a search.")
-
-
-class ExerciseSummary(CatalogueEntry):
-    """An exercise in the list."""
-
-    structure: str | None = Field(
-        description="The joints in order: R turns, P slides. Null without a robot."
-    )
-    parts: list[PartSummary]
-
-
-class ExerciseList(BaseModel):
-    """The catalogue."""
-
-    exercises: list[ExerciseSummary]
-
-
-class SymbolView(BaseModel):
-    """A symbol that answers may contain."""
-
-    name: str
-    kind: Kind
-    unit: str
-    description: str
-    joint: int | None = Field(None, description="The joint's number if it is a joint variable.")
-
-
-class PartView(BaseModel):
-    """A part without its answer."""
-
-    id: str
-    title: str
-    prompt: str = Field(description="Markdown, with LaTeX between dollars.")
-    prompt_html: str = Field(description="The prompt as HTML and MathML, like `statement_html`.")
-    kind: str = Field(description="The answer kind.")
-    points: float
-    marking: Marking = Field(description="How points are distributed over the cells.")
-    follows: str | None = Field(
-        None, description="The earlier part that this part follows from; absent if none."
-    )
-    shape: AnyShape
-
-
-class ExerciseView(CatalogueEntry):
-    """An exercise without its answers."""
-
-    version: str
-    structure: str | None = Field(
-        None, description="The joints in order: R turns, P slides. Absent without a robot."
-    )
-    statement: str = Field(description="Markdown, with LaTeX between dollars.")
-    statement_html: str = Field(
-        description="The statement as HTML and MathML, without scripts, styles and pictures."
-    )
-    figure: bool = Field(description="True if the exercise has a robot, which `figure.svg` draws.")
-    feedback: FeedbackLevel = Field(
-        description="The highest feedback level: `full`, `hints`, `verdicts` or `score`."
-    )
-    symbols: list[SymbolView]
-    parts: list[PartView]
-
-
-class PracticeRobot(BaseModel):
-    """A generated robot. Its exercise is found by its id like any other."""
-
-    id: str = Field(description="The id of the exercise.", examples=["practice-2-standard~k3f9"])
-    level: int
-    convention: Convention
-    difficulty: int = Field(
-        description="Counted: joints, changes of direction, offsets, sliding joints, free choices, "
-        "twists other than 90°."
-    )
-
-
-# --- The bodies of new and recorded attempts
+# --- New and recorded attempts
 
 
 # Characters that are invisible or look alike in a list (Unicode: controls, format characters, all
@@ -608,7 +527,7 @@ class AttemptDetail(BaseModel):
     )
 
 
-# --- The bodies of requests with which tutors change recorded attempts or get tokens for learners
+# --- Requests of tutors: change recorded attempts, and get tokens for learners
 
 
 # The longest validity, which limits the damage of a lost token. A course page renews its token.
@@ -748,3 +667,85 @@ class TokenResponse(BaseModel):
     token: str
     learner: str
     expires_at: datetime
+
+
+# --- Statistics of an exercise
+
+
+class ShareCorrect(BaseModel):
+    """The number of answers and of right answers."""
+
+    answered: int = Field(description="The number of answers, including unreadable ones.")
+    correct: int
+    share: float | None = Field(None, description="correct / answered; absent without answers.")
+
+
+class CellFigures(ShareCorrect):
+    """The figures of a cell in all attempts."""
+
+    label: str
+
+
+class RowFigures(ShareCorrect):
+    """The figures of a row in all attempts. A row is right if all its cells are."""
+
+    label: str
+    cells: list[CellFigures]
+
+
+class PartFigures(ShareCorrect):
+    """The figures of a part in all attempts."""
+
+    part: str
+    rows: list[RowFigures]
+
+
+class MisconceptionFigures(BaseModel):
+    """The figures of a message code in a part."""
+
+    part: str
+    code: str
+    sentence: ToldText | None = Field(
+        None,
+        description="The message in one of these reports; absent if the report has no messages.",
+    )
+    attempts: int = Field(description="The number of attempts with this code.")
+    by_day: dict[str, int] = Field(description="The number of these attempts by day, in UTC.")
+    by_attempt: list[int] = Field(
+        [],
+        description="The number of learners with this code in their first attempt, in their "
+        "second one, and so on. `learners_by_attempt` has the numbers of all learners.",
+    )
+
+
+class HintFigures(BaseModel):
+    """How often learners took the hints for the messages of a code, at recorded attempts."""
+
+    part: str
+    code: str
+    taken: list[int] = Field(description="The number of times for each of the three steps.")
+
+
+class IdenticalAnswers(BaseModel):
+    """Exactly equal wrong answers of several learners. They do not prove that anybody copied."""
+
+    learners: int
+    attempts: int
+    wrong: list[str] = Field(description="The wrong places: part/row/cell.")
+    among: list[str] = Field(description="The first of these learners, in alphabetical order.")
+
+
+class ExerciseStatistics(BaseModel):
+    """The statistics of the attempts at an exercise."""
+
+    exercise: str
+    attempts: int
+    learners: int
+    parts: list[PartFigures]
+    misconceptions: list[MisconceptionFigures] = Field(description="The most common ones first.")
+    learners_by_attempt: list[int] = Field(
+        [],
+        description="The number of learners who made a first attempt, a second one, and so on.",
+    )
+    hints: list[HintFigures] = Field([], description="The hints most often taken first.")
+    identical: list[IdenticalAnswers] = Field(description="The largest groups first.")

@@ -1,4 +1,7 @@
-"""The bodies of courses: learners, assignments, links, scores, and what a learner sees."""
+"""The bodies of courses: learners, assignments, links, scores, and what a learner sees.
+
+Their rules are in ``dh_grader.courses``, but for what a single body must hold.
+"""
 
 import re
 from datetime import date, datetime, time
@@ -14,7 +17,7 @@ from dh_grader.regex import regex
 from dh_grader.submissions.bodies import GradeRequest
 from dh_grader.translations import say
 
-# --- The bodies of courses: learners, assignments, links and the gradebook
+# --- Courses with learners, assignments, links and the gradebook
 
 
 MOST_LEARNERS: Final = 5000
@@ -421,7 +424,7 @@ class DeletedData(BaseModel):
     )
 
 
-# --- The bodies of routes about the scores that are sent to learning platforms
+# --- Scores that are sent to learning platforms
 
 
 ScoreState = Literal["waiting", "sent", "refused"]
@@ -465,7 +468,7 @@ class SentAgain(BaseModel):
     queued: int
 
 
-# --- The bodies of routes for learners: hand-ins, and the learner's own courses and attempts
+# --- For learners: hand-ins, and the learner's own courses and attempts
 
 
 class HandInRequest(GradeRequest):

@@ -1,4 +1,7 @@
-"""The bodies of previews, and of the numbers with which a table or a mechanism is drawn."""
+"""The bodies of previews, and of the numbers with which a table or a mechanism is drawn.
+
+The numbers are computed in ``dh_grader.figures``.
+"""
 
 from typing import Annotated, Any, Final, Literal
 
@@ -18,7 +21,7 @@ from dh_grader.figures.table_figure import LARGEST
 from dh_grader.kinematics import Convention
 from dh_grader.translations import Sentence, told
 
-# --- The bodies of previews, which show how a text is read while the student types
+# --- Previews, which show how a text is read while the student types
 
 
 def _kept(text: Any, validated: ValidatorFunctionWrapHandler) -> Any:
@@ -142,7 +145,7 @@ class PreviewManyResponse(BaseModel):
     results: list[PreviewAnswer]
 
 
-# --- The bodies of requests for the numbers with which a table or a mechanism is drawn
+# --- Numbers with which a table or a mechanism is drawn
 
 
 # The most configurations in one request: one second of a motion at 30 pictures per second.

@@ -1,6 +1,6 @@
-"""What courses are made of: class lists, names, dates, and errors.
+"""What courses are made of: errors, dates, names, and class lists.
 
-Nothing here loads a database driver.
+Nothing here reads a database or loads its driver; ``roll`` and ``assignments`` do.
 """
 
 import codecs
@@ -26,6 +26,51 @@ from dh_grader.contract.courses import (
 from dh_grader.formats.texts import visible
 from dh_grader.regex import regex
 from dh_grader.translations import say
+
+# --- The errors of courses
+
+
+CourseFault = Literal[
+    "unknown-course",
+    "unknown-assignment",
+    "unknown-learner",
+    "not-assigned",
+    "already-there",
+    "has-attempts",
+    "unusable",
+]
+
+
+class CourseError(Exception):
+    """A request about a course is refused; ``name`` is a code for programs."""
+
+    def __init__(self, name: CourseFault, message: str) -> None:
+        self.name = name
+        super().__init__(message)
+
+
+def unknown_course(course: str) -> CourseError:
+    """Return the error for an unknown course id."""
+    return CourseError("unknown-course", say("There is no course {course}.", course=course))
+
+
+def unknown_learner(learner: str) -> CourseError:
+    """Return the error for a learner who is not in the course."""
+    message = say("The course has no learner {learner}.", learner=learner)
+    return CourseError("unknown-learner", message)
+
+
+def unknown_assignment(assignment: str) -> CourseError:
+    """Return the error for an assignment that the course does not have."""
+    message = say("The course has no assignment {assignment}.", assignment=assignment)
+    return CourseError("unknown-assignment", message)
+
+
+def links_need_a_secret() -> CourseError:
+    """Return the error for a service without a secret to sign links."""
+    message = say("Personal links need a secret: set DH_GRADER_SECRET.")
+    return CourseError("unusable", message)
+
 
 # --- Dates in the time zone of a course
 
@@ -73,9 +118,11 @@ def local(when: datetime | None, zone: ZoneInfo) -> datetime | None:
 def own_dates(
     assignment: Any, due: datetime | None, closes: datetime | None
 ) -> tuple[datetime | None, datetime | None]:
-    """Return the due date and the closing date of a learner with an extension."""
-    # The closing date is the latest date of the assignment and of the extension; None if neither of
-    # them has a closing date.
+    """Return the due date and the closing date of a learner with an extension.
+
+    The closing date is the latest date of the assignment and of the extension; None if neither of
+    them has a closing date.
+    """
     new_due = due or assignment.due
     if new_due is not None and assignment.opens is not None:
         new_due = max(new_due, assignment.opens)
@@ -106,8 +153,10 @@ def told_apart(people: Sequence[CourseLearner | MissingLearner]) -> dict[str, st
 
 
 def place_of(learner: Any) -> tuple[str, str, str]:
-    """Return the key for sorting learners: by family name, then name, then id."""
-    # A learner without a family name is sorted by the name. Capitals and accents do not matter.
+    """Return the key for sorting learners: by family name, then name, then id.
+
+    A learner without a family name is sorted by the name. Capitals and accents do not matter.
+    """
     name = _plain(learner.name)
     return _plain(learner.family_name) if learner.family_name else name, name, learner.learner
 
@@ -115,51 +164,6 @@ def place_of(learner: Any) -> tuple[str, str, str]:
 def _plain(text: str) -> str:
     letters = unicodedata.normalize("NFKD", text.casefold())
     return "".join(each for each in letters if not unicodedata.combining(each))
-
-
-# --- The errors of courses
-
-
-CourseFault = Literal[
-    "unknown-course",
-    "unknown-assignment",
-    "unknown-learner",
-    "not-assigned",
-    "already-there",
-    "has-attempts",
-    "unusable",
-]
-
-
-class CourseError(Exception):
-    """A request about a course is refused; ``name`` is a code for programs."""
-
-    def __init__(self, name: CourseFault, message: str) -> None:
-        self.name = name
-        super().__init__(message)
-
-
-def unknown_course(course: str) -> CourseError:
-    """Return the error for an unknown course id."""
-    return CourseError("unknown-course", say("There is no course {course}.", course=course))
-
-
-def unknown_learner(learner: str) -> CourseError:
-    """Return the error for a learner who is not in the course."""
-    message = say("The course has no learner {learner}.", learner=learner)
-    return CourseError("unknown-learner", message)
-
-
-def unknown_assignment(assignment: str) -> CourseError:
-    """Return the error for an assignment that the course does not have."""
-    message = say("The course has no assignment {assignment}.", assignment=assignment)
-    return CourseError("unknown-assignment", message)
-
-
-def links_need_a_secret() -> CourseError:
-    """Return the error for a service without a secret to sign links."""
-    message = say("Personal links need a secret: set DH_GRADER_SECRET.")
-    return CourseError("unusable", message)
 
 
 # --- Read a class list in CSV, such as an export of Moodle or Canvas
@@ -205,8 +209,10 @@ def decoded(data: bytes) -> str:
 
 
 def read_class_list(text: str) -> list[NewLearner]:
-    """Return the learners of a class list with headings. Raises CourseError."""
-    # Columns with unknown headings are ignored. The error names the line.
+    """Return the learners of a class list; ignore columns with unknown headings.
+
+    Raises CourseError, which names the line.
+    """
     text = text.removeprefix("\ufeff")
     head, _, _ = text.lstrip("\r\n").partition("\n")
     delimiter = max(",;\t", key=head.count)

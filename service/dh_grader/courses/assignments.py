@@ -1,4 +1,8 @@
-"""The assignments of a course: dates, limits and extensions of a learner, variants, deletion."""
+"""The assignments of a course: dates, limits and extensions of a learner, variants, deletion.
+
+It decides what an assignment allows a learner; what learners have handed in is in
+``gradebook.py``.
+"""
 
 import json
 import secrets
@@ -50,7 +54,6 @@ from dh_grader.courses import (
     unknown_course,
     unknown_learner,
 )
-from dh_grader.courses.roll import people
 from dh_grader.store import points_after
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.database import Priority, queue_scores
@@ -60,6 +63,7 @@ from dh_grader.store.tables import (
     attempts,
     contexts,
     course_learners,
+    courses,
     deals,
     extensions,
     keys,
@@ -67,12 +71,11 @@ from dh_grader.store.tables import (
     resource_links,
     scores,
 )
-from dh_grader.store.tables import courses as tables_courses
 from dh_grader.submissions.bodies import nearest
 from dh_grader.translations import paragraph, say, template
 from dh_grader.variants import NoVariantError, choices_of, hidden_variant, pinned, seed_of
 
-# --- Database functions for the assignments of a course and the extensions of learners
+# --- Add, change and read the assignments of a course, and the extensions of learners
 
 
 def add_assignment(
@@ -100,9 +103,11 @@ def change_assignment(
     change: AssignmentChange,
     known: Collection[str],
 ) -> CourseAssignment:
-    """Change an assignment and return it. Raises CourseError."""
-    # A later due date also applies to recorded attempts that were late. An earlier due date makes
-    # no recorded attempt late.
+    """Change an assignment and return it. Raises CourseError.
+
+    A later due date also applies to recorded attempts that were late. An earlier due date makes no
+    recorded attempt late.
+    """
     zone = _zone(connection, course)
     row = assignment_row(connection, course, assignment)
     values = dict(_values(change, zone, known))
@@ -125,9 +130,9 @@ def extend(
 ) -> CourseAssignment:
     """Change the dates or the limit of attempts for one learner. Raises CourseError.
 
-    An empty extension ends the learner's extension.
+    An empty extension ends the learner's extension. Attempts that are no longer late get their
+    points back.
     """
-    # Attempts that are no longer late get their points back.
     zone = _zone(connection, course)
     row = assignment_row(connection, course, assignment)
     enrolled = (course_learners.c.course == course) & (
@@ -198,10 +203,6 @@ def assignments_of(connection: Connection, course: str) -> list[CourseAssignment
     ]
 
 
-def _zone(connection: Connection, course: str) -> ZoneInfo:
-    return ZoneInfo(roll.course(connection, course).zone)
-
-
 def assignment_row(connection: Connection, course: str, assignment: str) -> Row[Any]:
     """Return the row of an assignment. Raises CourseError."""
     mine = (assignments.c.course == course) & (assignments.c.id == assignment)
@@ -209,6 +210,10 @@ def assignment_row(connection: Connection, course: str, assignment: str) -> Row[
     if found is None:
         raise unknown_assignment(assignment)
     return found
+
+
+def _zone(connection: Connection, course: str) -> ZoneInfo:
+    return ZoneInfo(roll.course(connection, course).zone)
 
 
 def _moment(written: datetime | None, zone: ZoneInfo) -> datetime | None:
@@ -309,11 +314,11 @@ _OWN: Final = and_(
 _OF_LEARNER: Final = (
     select(
         assignments,
-        tables_courses.c.zone,
+        courses.c.zone,
         extensions.c.learner.label("extended"),
         *(extensions.c[name].label(f"own_{name}") for name in _EXTENDED),
     )
-    .join_from(course_learners, tables_courses)
+    .join_from(course_learners, courses)
     .join(assignments)
     .join(extensions, _OWN, isouter=True)
     .where(course_learners.c.learner == bindparam("learner"))
@@ -327,12 +332,10 @@ _OF_ASSIGNMENT: Final = _OF_COURSE.where(assignments.c.id == bindparam("assignme
 class LearnerTerms:
     """The rules of an assignment for one learner, including the learner's extension.
 
-    ``exercises`` has the points of each exercise. ``variants`` is the secret that determines the
-    learners' variants, or None.
+    ``number`` is the row number of the assignment. ``exercises`` has the points of each exercise.
+    ``variants`` is the secret that determines the learners' variants, or None. ``choices`` says
+    what the variants may vary, as JSON; None if the exercise files define this.
     """
-
-    # ``number`` is the row number of the assignment. ``choices`` says what the variants may vary,
-    # as JSON; None if the exercise files define this.
 
     number: int
     id: str
@@ -348,8 +351,7 @@ class LearnerTerms:
     choices: str | None = field(default=None, repr=False)
 
     def feedback_at(self, exercise: Exercise, ordinal: int) -> FeedbackLevel:
-        """The highest feedback level for the attempt with this number."""
-        # The level is never higher than the exercise allows.
+        """The highest feedback level for the attempt with this number that the exercise allows."""
         if self.feedback is None:
             return exercise.feedback_at(ordinal)
         most = min(exercise.feedback_by_attempt, key=list(FeedbackLevel).index)
@@ -402,7 +404,7 @@ def terms_of(connection: Connection, course: str, assignment: str, learner: str)
     if found is not None:
         return _terms(found)
     enrolled = and_(course_learners.c.course == course, course_learners.c.learner == learner)
-    if connection.scalar(select(tables_courses.c.id).where(tables_courses.c.id == course)) is None:
+    if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
         raise unknown_course(course)
     if connection.scalar(select(course_learners.c.course).where(enrolled)) is None:
         raise unknown_learner(learner)
@@ -412,11 +414,10 @@ def terms_of(connection: Connection, course: str, assignment: str, learner: str)
 def learner_terms(
     connection: Connection, learner: str, only: str | None = None
 ) -> Iterator[tuple[str, LearnerTerms]]:
-    """Yield the course and the rules of each assignment of a learner.
+    """Yield the course and the rules of each assignment of a learner, as they were added.
 
     ``only`` restricts the result to one course.
     """
-    # The assignments of a course are in the order in which they were added.
     if only is None:
         rows = connection.execute(_OF_LEARNER, {"learner": learner})
     else:
@@ -466,7 +467,206 @@ def extended(
     )
 
 
-# --- Database functions that delete courses and assignments, and that remove learners
+# --- Choose the variant of an exercise for each learner in an assignment
+#
+# A secret of the assignment determines the variants, so that learners cannot guess them.
+
+
+# The most deals that are tried until the seed is another one.
+_TRIES: Final = 1000
+
+
+def assigned(
+    connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
+) -> tuple[LearnerTerms, Exercise]:
+    """Return an assignment's rules for a learner, and the learner's variant of the exercise.
+
+    Raises CourseError.
+    """
+    terms, own, seed = assigned_seed(connection, course, assignment, learner, exercise)
+    return terms, variant_for(own, seed)
+
+
+def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
+    """Return the variant with this seed, or the exercise if ``seed`` is None.
+
+    The variant has the id of the plain exercise. Raises CourseError, whose message does not have
+    the seed.
+    """
+    if seed is None:
+        return exercise
+    try:
+        return hidden_variant(exercise, seed)
+    except NoVariantError:
+        message = say(
+            "Your variant of the exercise {exercise} cannot be made, because its file has a fault. "
+            "Ask your tutor for another one.",
+            exercise=exercise.plain_id,
+        )
+        raise CourseError("unusable", message) from None
+
+
+def assigned_seed(
+    connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
+) -> tuple[LearnerTerms, Exercise, str | None]:
+    """Return three things: the rules of an assignment for a learner, the exercise, and the seed.
+
+    In the exercise, ``[vary]`` has the choices of the assignment. The seed determines the learner's
+    variant, and is None if there are no variants. Raises CourseError.
+    """
+    terms = terms_of(connection, course, assignment, learner)
+    if exercise.id not in terms.exercises:
+        message = say(
+            "The exercise {exercise} is not part of the assignment {assignment}.",
+            exercise=exercise.id,
+            assignment=assignment,
+        )
+        raise CourseError("not-assigned", message)
+    own = pinned(exercise, terms.choices)
+    return terms, own, _dealt_seed(connection, terms, learner, own)
+
+
+def own_variant(
+    connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
+) -> Exercise:
+    """Return the learner's variant of an exercise, or the exercise if none can be made.
+
+    The variant has the id of the plain exercise.
+    """
+    own = pinned(exercise, terms.choices)
+    seed = _dealt_seed(connection, terms, learner, own)
+    try:
+        return exercise if seed is None else variant_for(own, seed)
+    except CourseError:
+        return exercise
+
+
+def learner_variants(
+    connection: Connection,
+    course: str,
+    assignment: str,
+    learner: str,
+    catalogue: Mapping[str, Exercise],
+) -> list[LearnerVariant]:
+    """Return the variants of a learner in an assignment, for tutors. Raises CourseError."""
+    terms = terms_of(connection, course, assignment, learner)
+    found = []
+    for name in terms.exercises:
+        if name not in catalogue:
+            continue
+        exercise = catalogue[name]
+        own = pinned(exercise, terms.choices)
+        seed = _dealt_seed(connection, terms, learner, own)
+        if seed is not None:
+            deal = _number(connection, terms, learner, name) or 0
+            found.append(_told(exercise, own, seed, deal))
+    return found
+
+
+def deal_again(
+    connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
+) -> LearnerVariant:
+    """Give a learner another variant of an exercise. Raises CourseError."""
+    terms, own, _ = assigned_seed(connection, course, assignment, learner, exercise)
+    if terms.variants is None or own.vary is None:
+        reason = say(
+            "The assignment {assignment} has no variants of {exercise}.",
+            assignment=assignment,
+            exercise=exercise.id,
+        )
+        raise CourseError("unusable", reason)
+    dealt = _number(connection, terms, learner, exercise.id)
+    before = seed_of(
+        terms.variants, learner, exercise.id, dealt or 0, deployed := own.vary.deployed
+    )
+    for number in range((dealt or 0) + 1, (dealt or 0) + _TRIES):
+        seed = seed_of(terms.variants, learner, exercise.id, number, deployed)
+        if seed != before:
+            break
+    else:
+        reason = say("There is no other deployed variant of {exercise}.", exercise=exercise.id)
+        raise CourseError("unusable", reason)
+    mine = {"assignment": terms.number, "learner": learner, "exercise": exercise.id}
+    if dealt is None:
+        connection.execute(insert(deals).values(mine | {"number": number}))
+    else:
+        its = [deals.c[name] == value for name, value in mine.items()]
+        connection.execute(update(deals).where(*its).values(number=number))
+    return _told(exercise, own, seed, number)
+
+
+def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
+    """True if the rules by which the exercise varies are not stored in the assignment yet.
+
+    This is so if an earlier version of the program made the assignment, or if the exercise got
+    variants later.
+    """
+    if terms.variants is None or exercise.vary is None:
+        return False
+    return terms.choices is None or exercise.id not in json.loads(terms.choices)
+
+
+def pin_choices(
+    connection: Connection,
+    course: str,
+    assignment: str,
+    catalogue: Mapping[str, Exercise],
+    *,
+    renew: bool = False,
+) -> None:
+    """Store the rules by which the exercises of an assignment vary. Raises CourseError.
+
+    Rules that are stored already stay, unless ``renew`` is True, so a changed exercise file changes
+    no variant.
+    """
+    row = assignment_row(connection, course, assignment)
+    if row.variants is None:
+        return
+    exercises = {
+        each["exercise"]: catalogue[each["exercise"]]
+        for each in json.loads(row.exercises)
+        if each["exercise"] in catalogue
+    }
+    kept = {} if renew or row.choices is None else json.loads(row.choices)
+    written = json.dumps({**choices_of(exercises), **kept})
+    if written != row.choices:
+        mine = assignments.c.number == row.number
+        connection.execute(update(assignments).where(mine).values(choices=written))
+
+
+def _told(exercise: Exercise, own: Exercise, seed: str, deal: int) -> LearnerVariant:
+    assert exercise.vary is not None
+    assert own.vary is not None
+    values = own.vary.written(seed)
+    return LearnerVariant(
+        exercise=exercise.id,
+        variant=f"{exercise.id}~{seed}",
+        seed=seed,
+        deals=deal + 1,
+        values=None if exercise.vary.written(seed) == values else dict(values),
+    )
+
+
+def _dealt_seed(
+    connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
+) -> str | None:
+    if terms.variants is None or exercise.vary is None:
+        return None
+    number = _number(connection, terms, learner, exercise.id) or 0
+    return seed_of(terms.variants, learner, exercise.id, number, exercise.vary.deployed)
+
+
+def _number(connection: Connection, terms: LearnerTerms, learner: str, exercise: str) -> int | None:
+    return connection.scalar(
+        select(deals.c.number).where(
+            deals.c.assignment == terms.number,
+            deals.c.learner == learner,
+            deals.c.exercise == exercise,
+        )
+    )
+
+
+# --- Delete courses and assignments, and remove learners
 
 
 _COURSE_HAS_ATTEMPTS = template(
@@ -502,7 +702,7 @@ def delete_course(
         connection.execute(delete(contexts).where(contexts.c.course == course))
         connection.execute(delete(course_learners).where(enrolled))
         connection.execute(update(keys).where(ending).values(revoked_at=now))
-        connection.execute(delete(tables_courses).where(tables_courses.c.id == course))
+        connection.execute(delete(courses).where(courses.c.id == course))
     return data
 
 
@@ -531,11 +731,11 @@ def remove_learner(
 ) -> DeletedData:
     """Remove a learner from a course. Raises CourseError.
 
-    Without ``with_attempts`` the learner's attempts stay.
+    Without ``with_attempts`` the learner's attempts stay, and count again if the learner comes
+    back.
     """
-    # The attempts count again if the learner comes back.
     learner = wanted.learner
-    if learner not in {each.learner for each in people(connection, course)}:
+    if learner not in {each.learner for each in roll.people(connection, course)}:
         raise unknown_learner(learner)
     mine = _assignments(connection, course, true())
     ending = (keys.c.course == course) & (keys.c.learner == learner) & keys.c.revoked_at.is_(None)
@@ -591,200 +791,3 @@ def _require_none(data: DeletedData, wanted: DeletionRequest, told: str, name: s
 
 def _count(connection: Connection, table: Table, condition: ColumnElement[bool]) -> int:
     return connection.scalar(select(func.count()).select_from(table).where(condition)) or 0
-
-
-# --- Choose the variant of an exercise for each learner in an assignment
-#
-# A secret of the assignment determines the variants, so that learners cannot guess them.
-
-
-# The most deals that are tried until the seed is another one.
-_TRIES: Final = 1000
-
-
-def assigned(
-    connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
-) -> tuple[LearnerTerms, Exercise]:
-    """Return an assignment's rules for a learner, and the learner's variant of the exercise.
-
-    Raises CourseError.
-    """
-    terms, own, seed = assigned_seed(connection, course, assignment, learner, exercise)
-    return terms, variant_for(own, seed)
-
-
-def variant_for(exercise: Exercise, seed: str | None) -> Exercise:
-    """Return the variant with this seed, or the exercise if ``seed`` is None.
-
-    Raises CourseError.
-    """
-    # The variant has the id of the plain exercise. The message of the error does not have the seed.
-    if seed is None:
-        return exercise
-    try:
-        return hidden_variant(exercise, seed)
-    except NoVariantError:
-        message = say(
-            "Your variant of the exercise {exercise} cannot be made, because its file has a fault. "
-            "Ask your tutor for another one.",
-            exercise=exercise.plain_id,
-        )
-        raise CourseError("unusable", message) from None
-
-
-def assigned_seed(
-    connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
-) -> tuple[LearnerTerms, Exercise, str | None]:
-    """Return three things: the rules of an assignment for a learner, the exercise, and the seed.
-
-    The seed determines the learner's variant. The seed is None if there are no variants. Raises
-    CourseError.
-    """
-    # In the exercise, ``[vary]`` has the choices of the assignment.
-    terms = terms_of(connection, course, assignment, learner)
-    if exercise.id not in terms.exercises:
-        message = say(
-            "The exercise {exercise} is not part of the assignment {assignment}.",
-            exercise=exercise.id,
-            assignment=assignment,
-        )
-        raise CourseError("not-assigned", message)
-    own = pinned(exercise, terms.choices)
-    return terms, own, _dealt_seed(connection, terms, learner, own)
-
-
-def own_variant(
-    connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
-) -> Exercise:
-    """Return the learner's variant of an exercise, or the exercise if there is none."""
-    # The variant has the id of the plain exercise. The exercise itself is also returned if the
-    # variant cannot be made.
-    own = pinned(exercise, terms.choices)
-    seed = _dealt_seed(connection, terms, learner, own)
-    try:
-        return exercise if seed is None else variant_for(own, seed)
-    except CourseError:
-        return exercise
-
-
-def needs_choices(terms: LearnerTerms, exercise: Exercise) -> bool:
-    """True if the rules by which the exercise varies are not stored in the assignment yet."""
-    # This is so if an earlier version of the program made the assignment, or if the exercise got
-    # variants later.
-    if terms.variants is None or exercise.vary is None:
-        return False
-    return terms.choices is None or exercise.id not in json.loads(terms.choices)
-
-
-def pin_choices(
-    connection: Connection,
-    course: str,
-    assignment: str,
-    catalogue: Mapping[str, Exercise],
-    *,
-    renew: bool = False,
-) -> None:
-    """Store the rules by which the exercises of an assignment vary. Raises CourseError.
-
-    Rules that are stored already stay, unless ``renew`` is True.
-    """
-    # Thus a changed exercise file changes no variant.
-    row = assignment_row(connection, course, assignment)
-    if row.variants is None:
-        return
-    exercises = {
-        each["exercise"]: catalogue[each["exercise"]]
-        for each in json.loads(row.exercises)
-        if each["exercise"] in catalogue
-    }
-    kept = {} if renew or row.choices is None else json.loads(row.choices)
-    written = json.dumps({**choices_of(exercises), **kept})
-    if written != row.choices:
-        mine = assignments.c.number == row.number
-        connection.execute(update(assignments).where(mine).values(choices=written))
-
-
-def _dealt_seed(
-    connection: Connection, terms: LearnerTerms, learner: str, exercise: Exercise
-) -> str | None:
-    if terms.variants is None or exercise.vary is None:
-        return None
-    number = _number(connection, terms, learner, exercise.id) or 0
-    return seed_of(terms.variants, learner, exercise.id, number, exercise.vary.deployed)
-
-
-def learner_variants(
-    connection: Connection,
-    course: str,
-    assignment: str,
-    learner: str,
-    catalogue: Mapping[str, Exercise],
-) -> list[LearnerVariant]:
-    """Return the variants of a learner in an assignment, for tutors. Raises CourseError."""
-    terms = terms_of(connection, course, assignment, learner)
-    found = []
-    for name in terms.exercises:
-        if name not in catalogue:
-            continue
-        exercise = catalogue[name]
-        own = pinned(exercise, terms.choices)
-        seed = _dealt_seed(connection, terms, learner, own)
-        if seed is not None:
-            deal = _number(connection, terms, learner, name) or 0
-            found.append(_told(exercise, own, seed, deal))
-    return found
-
-
-def _told(exercise: Exercise, own: Exercise, seed: str, deal: int) -> LearnerVariant:
-    assert exercise.vary is not None
-    assert own.vary is not None
-    values = own.vary.written(seed)
-    return LearnerVariant(
-        exercise=exercise.id,
-        variant=f"{exercise.id}~{seed}",
-        seed=seed,
-        deals=deal + 1,
-        values=None if exercise.vary.written(seed) == values else dict(values),
-    )
-
-
-def deal_again(
-    connection: Connection, course: str, assignment: str, learner: str, exercise: Exercise
-) -> LearnerVariant:
-    """Give a learner another variant of an exercise. Raises CourseError."""
-    terms, own, _ = assigned_seed(connection, course, assignment, learner, exercise)
-    if terms.variants is None or own.vary is None:
-        reason = say(
-            "The assignment {assignment} has no variants of {exercise}.",
-            assignment=assignment,
-            exercise=exercise.id,
-        )
-        raise CourseError("unusable", reason)
-    dealt = _number(connection, terms, learner, exercise.id)
-    before = seed_of(
-        terms.variants, learner, exercise.id, dealt or 0, deployed := own.vary.deployed
-    )
-    for number in range((dealt or 0) + 1, (dealt or 0) + _TRIES):
-        seed = seed_of(terms.variants, learner, exercise.id, number, deployed)
-        if seed != before:
-            break
-    else:
-        reason = say("There is no other deployed variant of {exercise}.", exercise=exercise.id)
-        raise CourseError("unusable", reason)
-    mine = {"assignment": terms.number, "learner": learner, "exercise": exercise.id}
-    if dealt is None:
-        connection.execute(insert(deals).values(mine | {"number": number}))
-    else:
-        its = [deals.c[name] == value for name, value in mine.items()]
-        connection.execute(update(deals).where(*its).values(number=number))
-    return _told(exercise, own, seed, number)
-
-
-def _number(connection: Connection, terms: LearnerTerms, learner: str, exercise: str) -> int | None:
-    return connection.scalar(
-        select(deals.c.number).where(
-            deals.c.assignment == terms.number,
-            deals.c.learner == learner,
-            deals.c.exercise == exercise,
-        )
-    )

@@ -1,4 +1,7 @@
-"""The results of a course: the gradebook for tutors, and what one learner sees."""
+"""The results of a course: the gradebook for tutors, and what one learner sees and may do.
+
+It reads the recorded attempts; the rules of assignments are in ``assignments.py``.
+"""
 
 import io
 import json
@@ -39,7 +42,7 @@ from dh_grader.contract.courses import (
     OwnCourses,
     OwnExercise,
 )
-from dh_grader.courses import local, own_dates
+from dh_grader.courses import local, own_dates, roll
 from dh_grader.courses.assignments import (
     LearnerTerms,
     assignment_of,
@@ -47,8 +50,6 @@ from dh_grader.courses.assignments import (
     learner_terms,
     own_variant,
 )
-from dh_grader.courses.roll import course as course_named
-from dh_grader.courses.roll import people
 from dh_grader.formats import texts
 from dh_grader.formats.texts import visible
 from dh_grader.store import ListedAttempt, points_after
@@ -90,7 +91,7 @@ def gradebook(connection: Connection, course: str, assignment: str | None = None
         for one in each.exercises
     ]
     place_of = {(each.assignment, each.exercise): i for i, each in enumerate(columns)}
-    persons = people(connection, course)
+    persons = roll.people(connection, course)
     points_of: dict[str, list[float | None]] = {
         each.learner: [None] * len(columns) for each in persons
     }
@@ -115,7 +116,7 @@ def missing(connection: Connection, course: str, assignment: str) -> list[Missin
     }
     extension_of = {each.learner: each for each in chosen.extensions}
     found = []
-    for person in people(connection, course):
+    for person in roll.people(connection, course):
         absent = [
             each.exercise
             for each in chosen.exercises
@@ -227,7 +228,7 @@ def gradebook_workbook(connection: Connection, course: str, assignment: str | No
 
     The first sheet has the points; the second has the numbers and times of attempts.
     """
-    zone = ZoneInfo(course_named(connection, course).zone)
+    zone = ZoneInfo(roll.course(connection, course).zone)
     book = gradebook(connection, course, assignment)
     return _written(book, _hand_ins(connection, course, assignment), zone)
 
@@ -291,7 +292,9 @@ def _head(sheet: Any, titles: list[str], bold: Any) -> None:
 
 _log = logging.getLogger("uvicorn.error")
 # Full marks, but for rounding.
-_FULL = 1 - 1e-9
+_FULL: Final = 1 - 1e-9
+# What a learner sees of an attempt.
+_SHOWN: Final = ("id", "exercise", "learner", "ordinal", "is_late", "max_points", "hint_points")
 
 
 @dataclass(frozen=True, slots=True)
@@ -378,105 +381,6 @@ def own_view(
     )
 
 
-@cache  # Learners ask often: once is enough.
-def _log_missing(assignment: str, exercise: str) -> None:
-    _log.warning(
-        "The assignment %s sets the exercise %s, which this service does not have. "
-        "If its file is new, restart the service.",
-        assignment,
-        exercise,
-    )
-
-
-def closed_practice(
-    connection: Connection,
-    learner: str,
-    only: str | None,
-    exercise: str,
-    alike: Collection[str],
-    now: datetime,
-) -> tuple[LearnerTerms, str] | None:
-    """Return an assignment that forbids practice now, and the exercise's name in it; or None.
-
-    ``alike`` are the exercises with the same correct table as ``exercise``.
-    """
-    # If no assignment has the exercise itself, assignments with one of ``alike`` decide.
-    for terms, name in _assigned(connection, learner, only, exercise, alike):
-        full = terms.practice == "after" and has_full_marks(connection, learner, terms.number, name)
-        if not terms.may_practise(now, is_full=full):
-            return terms, name
-    return None
-
-
-def hides_solution(
-    connection: Connection,
-    learner: str,
-    only: str | None,
-    exercise: str,
-    alike: Collection[str],
-    now: datetime,
-) -> bool:
-    """True if an assignment hides the solution of the exercise from the learner now.
-
-    ``alike`` are the exercises with the same correct table as ``exercise``.
-    """
-    return any(
-        not terms.shows_solution(
-            now, is_full=has_full_marks(connection, learner, terms.number, name)
-        )
-        for terms, name in _assigned(connection, learner, only, exercise, alike)
-    )
-
-
-def _assigned(
-    connection: Connection, learner: str, only: str | None, exercise: str, alike: Collection[str]
-) -> list[tuple[LearnerTerms, str]]:
-    # The assignments of the exercise, or if there are none, of the exercises ``alike``.
-    found = [terms for _, terms in learner_terms(connection, learner, only)]
-    own = [(terms, exercise) for terms in found if exercise in terms.exercises]
-    return own or [(terms, name) for terms in found for name in terms.exercises if name in alike]
-
-
-def has_priced_hints(
-    connection: Connection,
-    learner: str,
-    only: str | None,
-    exercise: Exercise,
-    alike: Collection[str],
-    now: datetime,
-) -> bool:
-    """True if hints on the exercise have a price in an open assignment of the learner.
-
-    ``alike`` are the exercises with the same correct table as ``exercise``.
-    """
-    return any(
-        terms.hint_prices(exercise) is not None and terms.state(now) in ("open", "late")
-        for terms, _ in _assigned(connection, learner, only, exercise.plain_id, alike)
-    )
-
-
-def has_full_marks(connection: Connection, learner: str, number: int, exercise: str) -> bool:
-    """True if an attempt of the learner has full marks before deductions."""
-    return _is_full(_attempts(connection, learner).get((number, exercise), []))
-
-
-def _attempts(connection: Connection, learner: str) -> _Attempts:
-    found: dict[tuple[int, str], list[_Done]] = {}
-    # Dividing the points by the worth would lose them if it is 0, and digits if it is small.
-    is_reduced = or_(attempts.c.worth != 1, attempts.c.hint_price != 0)
-    reduced = case((is_reduced, attempts.c.report))
-    rows = connection.execute(
-        select(*LISTED, attempts.c.assignment, reduced)
-        .where(attempts.c.learner == learner, attempts.c.assignment.is_not(None))
-        .order_by(attempts.c.number)
-    )
-    for *listed, assignment, report in rows:
-        attempt = ListedAttempt(*listed)
-        whole = attempt.points if report is None else float(json.loads(report)["points"])
-        found.setdefault((assignment, attempt.exercise), []).append(_Done(attempt, whole))
-    return found
-
-
 def _assignment(terms: LearnerTerms, exercises: list[OwnExercise], now: datetime) -> OwnAssignment:
     rules = terms.rules
     return OwnAssignment(
@@ -527,7 +431,106 @@ def _exercise(
     )
 
 
-_SHOWN = ("id", "exercise", "learner", "ordinal", "is_late", "max_points", "hint_points")
+@cache  # Learners ask often: once is enough.
+def _log_missing(assignment: str, exercise: str) -> None:
+    _log.warning(
+        "The assignment %s sets the exercise %s, which this service does not have. "
+        "If its file is new, restart the service.",
+        assignment,
+        exercise,
+    )
+
+
+# --- What the assignments of one learner allow now: practice, solutions, free hints
+
+
+def closed_practice(
+    connection: Connection,
+    learner: str,
+    only: str | None,
+    exercise: str,
+    alike: Collection[str],
+    now: datetime,
+) -> tuple[LearnerTerms, str] | None:
+    """Return an assignment that forbids practice now, and the exercise's name in it; or None.
+
+    ``alike`` are the exercises with the same correct table as ``exercise``. Assignments with one of
+    them decide if no assignment has the exercise itself.
+    """
+    for terms, name in _assigned(connection, learner, only, exercise, alike):
+        full = terms.practice == "after" and has_full_marks(connection, learner, terms.number, name)
+        if not terms.may_practise(now, is_full=full):
+            return terms, name
+    return None
+
+
+def hides_solution(
+    connection: Connection,
+    learner: str,
+    only: str | None,
+    exercise: str,
+    alike: Collection[str],
+    now: datetime,
+) -> bool:
+    """True if an assignment hides the solution of the exercise from the learner now.
+
+    ``alike`` are the exercises with the same correct table as ``exercise``.
+    """
+    return any(
+        not terms.shows_solution(
+            now, is_full=has_full_marks(connection, learner, terms.number, name)
+        )
+        for terms, name in _assigned(connection, learner, only, exercise, alike)
+    )
+
+
+def has_priced_hints(
+    connection: Connection,
+    learner: str,
+    only: str | None,
+    exercise: Exercise,
+    alike: Collection[str],
+    now: datetime,
+) -> bool:
+    """True if hints on the exercise have a price in an open assignment of the learner.
+
+    ``alike`` are the exercises with the same correct table as ``exercise``.
+    """
+    return any(
+        terms.hint_prices(exercise) is not None and terms.state(now) in ("open", "late")
+        for terms, _ in _assigned(connection, learner, only, exercise.plain_id, alike)
+    )
+
+
+def has_full_marks(connection: Connection, learner: str, number: int, exercise: str) -> bool:
+    """True if an attempt of the learner has full marks before deductions."""
+    return _is_full(_attempts(connection, learner).get((number, exercise), []))
+
+
+def _assigned(
+    connection: Connection, learner: str, only: str | None, exercise: str, alike: Collection[str]
+) -> list[tuple[LearnerTerms, str]]:
+    # The assignments of the exercise, or if there are none, of the exercises ``alike``.
+    found = [terms for _, terms in learner_terms(connection, learner, only)]
+    own = [(terms, exercise) for terms in found if exercise in terms.exercises]
+    return own or [(terms, name) for terms in found for name in terms.exercises if name in alike]
+
+
+def _attempts(connection: Connection, learner: str) -> _Attempts:
+    found: dict[tuple[int, str], list[_Done]] = {}
+    # Dividing the points by the worth would lose them if it is 0, and digits if it is small.
+    is_reduced = or_(attempts.c.worth != 1, attempts.c.hint_price != 0)
+    reduced = case((is_reduced, attempts.c.report))
+    rows = connection.execute(
+        select(*LISTED, attempts.c.assignment, reduced)
+        .where(attempts.c.learner == learner, attempts.c.assignment.is_not(None))
+        .order_by(attempts.c.number)
+    )
+    for *listed, assignment, report in rows:
+        attempt = ListedAttempt(*listed)
+        whole = attempt.points if report is None else float(json.loads(report)["points"])
+        found.setdefault((assignment, attempt.exercise), []).append(_Done(attempt, whole))
+    return found
 
 
 def _is_full(done: list[_Done]) -> bool:

@@ -1,4 +1,7 @@
-"""Courses in the database, their learners, and the personal links of learners."""
+"""Courses in the database, their learners, and the personal links of learners.
+
+The assignments of a course are in ``assignments.py``.
+"""
 
 import secrets
 from collections.abc import Collection, Iterable, Iterator, Sequence
@@ -24,6 +27,8 @@ from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.tables import course_learners, courses, keys
 from dh_grader.translations import say
+
+# --- Courses and their learners
 
 
 def add_course(connection: Connection, new: NewCourse, now: datetime) -> Course:
@@ -60,6 +65,22 @@ def all_courses(connection: Connection, only: str | None = None) -> list[Course]
     return _courses(connection, true() if only is None else courses.c.id == only)
 
 
+def learners(connection: Connection, course_id: str, now: datetime) -> list[CourseLearner]:
+    """Return the learners of a course, by name. Raises CourseError."""
+    rows = people(connection, course_id)
+    until = links_until(connection, course_id, now)
+    return [CourseLearner(**row._mapping, link_until=until.get(row.learner)) for row in rows]
+
+
+def people(connection: Connection, course: str) -> list[Row[Any]]:
+    """Return the learners of a course in alphabetical order. Raises CourseError."""
+    if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
+        raise unknown_course(course)
+    of_course = course_learners.c
+    named = select(of_course.learner, of_course.name, of_course.family_name, of_course.email)
+    return sorted(connection.execute(named.where(of_course.course == course)), key=place_of)
+
+
 def _courses(connection: Connection, condition: ColumnElement[bool]) -> list[Course]:
     of_course = course_learners.c.course == courses.c.id
     learners = select(func.count()).where(of_course).scalar_subquery()
@@ -74,13 +95,6 @@ def _courses(connection: Connection, condition: ColumnElement[bool]) -> list[Cou
     for course_id, assignment in connection.execute(ordered.where(of.course.in_(ids))):
         ids[course_id].append(assignment)
     return [Course(**row._mapping, assignments=ids[row.id]) for row in rows]
-
-
-def learners(connection: Connection, course_id: str, now: datetime) -> list[CourseLearner]:
-    """Return the learners of a course, by name. Raises CourseError."""
-    rows = people(connection, course_id)
-    until = links_until(connection, course_id, now)
-    return [CourseLearner(**row._mapping, link_until=until.get(row.learner)) for row in rows]
 
 
 def add_learners(connection: Connection, course_id: str, new: Iterable[NewLearner]) -> int:
@@ -115,10 +129,8 @@ def add_learners(connection: Connection, course_id: str, new: Iterable[NewLearne
 
 # --- Personal links: each contains an API key for one learner
 #
-# The key is computed from the secret of the installation. Only a hash of the key is stored.
-
-
-# The service can compute the key again, so a tutor can print the links of a class twice.
+# The key is computed from the secret of the installation, and only its hash is stored. The service
+# can compute the key again, so a tutor can print the links of a class twice.
 
 
 # The page of a learner, relative to the service. The key is in the fragment, which browsers neither
@@ -185,15 +197,6 @@ def links_until(connection: Connection, course: str, now: datetime) -> dict[str,
 def _valid(connection: Connection, course: str, now: datetime) -> dict[str, Key]:
     found = link_keys(connection, course)
     return {each.learner: each for each in found if each.learner and each.expires_at > now}
-
-
-def people(connection: Connection, course: str) -> list[Row[Any]]:
-    """Return the learners of a course in alphabetical order. Raises CourseError."""
-    if connection.scalar(select(courses.c.id).where(courses.c.id == course)) is None:
-        raise unknown_course(course)
-    of_course = course_learners.c
-    named = select(of_course.learner, of_course.name, of_course.family_name, of_course.email)
-    return sorted(connection.execute(named.where(of_course.course == course)), key=place_of)
 
 
 def _chosen(

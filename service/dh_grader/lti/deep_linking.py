@@ -1,4 +1,7 @@
-"""Deep linking: a platform asks for links to exercises, and gets them signed."""
+"""Deep linking: a platform asks for links to exercises, and gets them signed.
+
+The page on which a tutor chooses them is in ``web/lti_pages.py``.
+"""
 
 import secrets
 from collections.abc import Iterable, Mapping
@@ -33,8 +36,10 @@ _LONGEST_ADDRESS: Final = 2000
 def begin_linking(
     connection: Connection, message: LaunchMessage, secret: Secret, now: datetime
 ) -> LinkingTicket:
-    """Return a ticket with which a tutor may send links to the platform. Raises LtiError."""
-    # No course and no link is recorded yet, because the tutor may cancel.
+    """Return a ticket with which a tutor may send links to the platform. Raises LtiError.
+
+    No course and no link is recorded yet, because the tutor may cancel.
+    """
     if not settle(connection, secret, now):
         raise LtiError("no-secret")
     asked = _asked(message)
@@ -133,11 +138,10 @@ def signed_response(
     now: datetime,
     locale: str = "",
 ) -> str:
-    """Return the signed response that gives the platform links to exercises. Raises LtiError.
+    """Return the signed response that gives the platform links to exercises, perhaps none.
 
-    ``locale`` is the language of reports on files.
+    ``locale`` is the language of reports on files. Raises LtiError.
     """
-    # There may be no links.
     made = [
         _for_files(each, known, locale) if ticket.notices_url else _item(each, ticket, known)
         for each in links

@@ -1,4 +1,7 @@
-"""Files that students hand in at a platform: notices, the queue, grading, and reports."""
+"""Files that students hand in at a platform: notices, the queue, grading, and reports.
+
+How a platform is asked is in ``fetching.py`` and ``grade_services.py``.
+"""
 
 import base64
 import hashlib
@@ -33,7 +36,7 @@ from dh_grader.lti.grade_services import (
     ScoreError,
     ThisLaterError,
     available_key,
-    told,
+    problem_told,
 )
 from dh_grader.lti.launch import (
     LTI,
@@ -43,7 +46,7 @@ from dh_grader.lti.launch import (
     pseudonymous_name,
     signed_claims,
 )
-from dh_grader.lti.outbox import utc_now
+from dh_grader.lti.outbox import pause_after, utc_now
 from dh_grader.lti.registrations import (
     NOTICES_PATH,
     LtiError,
@@ -58,76 +61,7 @@ from dh_grader.store.database import in_transaction
 from dh_grader.store.tables import contexts, course_learners, handed_files
 from dh_grader.submissions import PASS_MARK, Assignment, assigned
 from dh_grader.submissions.files import PASTED_ENDINGS, HandedFile, HandedIn, most_bytes
-from dh_grader.translations import ENGLISH, Language, language_named, say
-from dh_grader.translations import told as translations_told
-
-# --- Database functions: reports on handed-in files that did not reach a platform
-
-
-_OVERVIEW_OF: Final = handed_files.c
-# Waiting reports have a refusal, too, if they were tried in vain.
-_TROUBLED: Final = _OVERVIEW_OF.state.in_(("refused", "waiting")) & _OVERVIEW_OF.refusal.is_not(
-    None
-)
-_MOST: Final = 200
-
-
-@dataclass(frozen=True, slots=True)
-class MissingReport:
-    """A report that did not reach the platform; ``next_try_at`` is None after the last try."""
-
-    learner: str
-    name: str
-    files: list[str]
-    received_at: datetime
-    next_try_at: datetime | None
-    problem: str
-
-
-def missing_reports(
-    connection: Connection, course: str, language: Language, learner: str | None = None
-) -> list[MissingReport]:
-    """Return the reports that did not reach the platform, newest first.
-
-    ``learner`` limits the result to one learner.
-    """
-    of_course = select(contexts).where(contexts.c.course == course)
-    here = {
-        (row.registration, row.deployment, row.context) for row in connection.execute(of_course)
-    }
-    if not here:
-        return []
-    named = select(course_learners.c.learner, course_learners.c.name)
-    mine = named.where(course_learners.c.course == course)
-    names = {row.learner: row.name for row in connection.execute(mine)}
-    chosen = select(handed_files).where(
-        _TROUBLED, _OVERVIEW_OF.registration.in_({registration for registration, *_ in here})
-    )
-    if learner is not None:
-        chosen = chosen.where(_OVERVIEW_OF.learner == learner)
-    found = []
-    for row in connection.execute(chosen.order_by(_OVERVIEW_OF.number.desc())):
-        files = HandedFiles.model_validate_json(row.content)
-        if (row.registration, files.deployment, files.context) in here:
-            found.append(
-                MissingReport(
-                    row.learner,
-                    names.get(row.learner) or pseudonymous_name(row.learner),
-                    [each.filename for each in files.assets if each.filename],
-                    row.received_at,
-                    row.next_try_at if row.state == "waiting" else None,
-                    told(row.refusal, language, of_report=True),
-                )
-            )
-    return found[:_MOST]
-
-
-def missing_counts(connection: Connection) -> Mapping[str, int]:
-    """Return how many reports did not reach each platform, by registration id."""
-    counted = select(_OVERVIEW_OF.registration, func.count().label("number")).where(_TROUBLED)
-    rows = connection.execute(counted.group_by(_OVERVIEW_OF.registration))
-    return {row.registration: row.number for row in rows}
-
+from dh_grader.translations import ENGLISH, Language, language_named, say, told
 
 # --- Notices of platforms (Platform Notification Service) about files that were handed in
 
@@ -200,8 +134,10 @@ def parties_of(token: str) -> tuple[str, str]:
 def notice_in(
     token: str, key: RSAPublicKey, registration: Registration, now: datetime
 ) -> SubmissionNotice | None:
-    """Return the notice in a token, or None if it is only a test. Raises LtiError."""
-    # A platform may send the same notice again, with the same id.
+    """Return the notice in a token, or None if it is only a test. Raises LtiError.
+
+    A platform may send the same notice again, with the same id.
+    """
     claims = signed_claims(token, key)
     check_parties(claims, registration)
     check_times(claims, now.timestamp())
@@ -273,7 +209,7 @@ QUEUED: Final = "files_queued"
 LEASE: Final = timedelta(minutes=5)
 # How long the addresses of files are kept: as long as a report may be opened.
 _KEPT: Final = timedelta(days=400)
-_QUEUE_OF: Final = handed_files.c
+_OF: Final = handed_files.c
 
 
 @dataclass(frozen=True, slots=True)
@@ -294,11 +230,10 @@ def queue_files(
     learner: str,
     now: datetime,
 ) -> None:
-    """Add the files of a notice to the queue. Raises LtiError."""
-    # A repeated notice changes nothing.
+    """Add the files of a notice to the queue, unless it is a repeated one. Raises LtiError."""
     if not known.any_deployment and notice.deployment not in deployments_of(connection, known.id):
         raise LtiError("unknown-deployment", deployment=notice.deployment)
-    connection.execute(delete(handed_files).where(_QUEUE_OF.received_at < now - _KEPT))
+    connection.execute(delete(handed_files).where(_OF.received_at < now - _KEPT))
     values = {
         "registration": known.id,
         "notice": notice.id,
@@ -317,16 +252,14 @@ def queue_files(
 
 def take(connection: Connection, now: datetime) -> TakenFiles | None:
     """Lease and return the files of the next submission, or return None if none is due."""
-    free = or_(_QUEUE_OF.leased_until.is_(None), _QUEUE_OF.leased_until <= now)
-    chosen = select(handed_files).where(
-        _QUEUE_OF.state == "waiting", _QUEUE_OF.next_try_at <= now, free
-    )
-    ordered = chosen.order_by(_QUEUE_OF.next_try_at).limit(1).with_for_update(skip_locked=True)
+    free = or_(_OF.leased_until.is_(None), _OF.leased_until <= now)
+    chosen = select(handed_files).where(_OF.state == "waiting", _OF.next_try_at <= now, free)
+    ordered = chosen.order_by(_OF.next_try_at).limit(1).with_for_update(skip_locked=True)
     row = connection.execute(ordered).one_or_none()
     if row is None:
         return None
     taken = {"leased_until": now + LEASE, "tries": row.tries + 1}
-    connection.execute(update(handed_files).where(_QUEUE_OF.number == row.number).values(taken))
+    connection.execute(update(handed_files).where(_OF.number == row.number).values(taken))
     return TakenFiles(
         row.number,
         registration(connection, row.registration),
@@ -347,16 +280,14 @@ def note_later(connection: Connection, number: int, at: datetime, refusal: str) 
 
 
 def _note(connection: Connection, number: int, **values: Any) -> None:
-    mine = update(handed_files).where(_QUEUE_OF.number == number)
+    mine = update(handed_files).where(_OF.number == number)
     connection.execute(mine.values(leased_until=None, **values))
 
 
 def next_due(connection: Connection) -> datetime | None:
     """Return when the next submission is due, or None if none waits."""
-    waiting = select(_QUEUE_OF.next_try_at, _QUEUE_OF.leased_until).where(
-        _QUEUE_OF.state == "waiting"
-    )
-    row = connection.execute(waiting.order_by(_QUEUE_OF.next_try_at).limit(1)).one_or_none()
+    waiting = select(_OF.next_try_at, _OF.leased_until).where(_OF.state == "waiting")
+    row = connection.execute(waiting.order_by(_OF.next_try_at).limit(1)).one_or_none()
     return None if row is None else max(row.next_try_at, row.leased_until or row.next_try_at)
 
 
@@ -367,10 +298,8 @@ def files_of(
 
     Return None if no such submission contains the file ``asset``.
     """
-    mine = (_QUEUE_OF.registration == registration_id) & (_QUEUE_OF.submission == submission)
-    newest = (
-        select(_QUEUE_OF.content, _QUEUE_OF.learner).where(mine).order_by(_QUEUE_OF.number.desc())
-    )
+    mine = (_OF.registration == registration_id) & (_OF.submission == submission)
+    newest = select(_OF.content, _OF.learner).where(mine).order_by(_OF.number.desc())
     for row in connection.execute(newest.limit(10)):
         files = HandedFiles.model_validate_json(row.content)
         if any(each.asset_id == asset for each in files.assets):
@@ -414,8 +343,7 @@ class PlatformFiles:
         self._send(registration, service, "PUT", NOTICES, asked)
 
     def send_report(self, registration: Registration, url: str, report: Mapping[str, Any]) -> None:
-        """Send a report. Raises ScoreError."""
-        # If the platform already has a newer report, nothing is raised.
+        """Send a report, unless the platform already has a newer one. Raises ScoreError."""
         try:
             self._send(registration, url, "POST", REPORT, report)
         except ThisLaterError as error:
@@ -519,9 +447,9 @@ def graded_files(
     """Grade all files of a submission together.
 
     ``contents`` has the content of each file, or an error, by file id. ``ceiling`` is the highest
-    feedback level for students.
+    feedback level for students. Without a ``language``, the reports are in the language of the
+    tutor who chose the exercises.
     """
-    # Without a ``language``, the reports are in the language of the tutor who chose the exercises.
     language = language or language_named(files.custom.get("locale", "")) or ENGLISH
     failures = {key: each for key, each in contents.items() if isinstance(each, NoFileError)}
     assignment = _assignment(files.custom, catalogue, ceiling)
@@ -564,9 +492,7 @@ def report_on(file: FileAtPlatform, found: GradedFiles, now: datetime) -> dict[s
     failure, submission = found.failures.get(file.asset_id), found.submission
     if failure is not None or submission is None:
         code = "DOWNLOAD_FAILED" if failure is None else failure.code
-        reason = (
-            "" if failure is None else translations_told(failure.reason, found.language.translation)
-        )
+        reason = "" if failure is None else told(failure.reason, found.language.translation)
         return report | {
             "processingProgress": "Failed",
             "errorCode": code,
@@ -635,9 +561,7 @@ def _problem(found: GradedSubmission, name: str) -> str:
 
 _log = logging.getLogger(__name__)
 
-# The pause after the first failure, the longest one, and how long files are tried.
-_FIRST: Final = timedelta(seconds=5)
-_LONGEST: Final = timedelta(hours=4)
+# How long files are tried.
 _GIVEN_UP: Final = timedelta(days=3)
 
 
@@ -695,11 +619,75 @@ class FileReporting:
 
     def _later(self, taken: TakenFiles, problem: ScoreError) -> None:
         now, number = self.now(), taken.number
-        pause = min(_FIRST * 2 ** min(taken.tries, 20), _LONGEST)
-        at = now + pause * (0.5 + 0.5 * self._chance())
+        at = now + pause_after(taken.tries, self._chance())
         refusal = problem.stored
         if at > taken.received_at + _GIVEN_UP:
             in_transaction(self._engine, lambda it: note_done(it, number, refusal))
         else:
             in_transaction(self._engine, lambda it: note_later(it, number, at, refusal))
         _log.warning("LTI: handed-in files wait (%s): %s", taken.registration.id, problem)
+
+
+# --- For tutors: the reports on handed-in files that did not reach a platform
+
+
+# Waiting reports have a refusal, too, if they were tried in vain.
+_TROUBLED: Final = _OF.state.in_(("refused", "waiting")) & _OF.refusal.is_not(None)
+_MOST: Final = 200
+
+
+@dataclass(frozen=True, slots=True)
+class MissingReport:
+    """A report that did not reach the platform; ``next_try_at`` is None after the last try."""
+
+    learner: str
+    name: str
+    files: list[str]
+    received_at: datetime
+    next_try_at: datetime | None
+    problem: str
+
+
+def missing_reports(
+    connection: Connection, course: str, language: Language, learner: str | None = None
+) -> list[MissingReport]:
+    """Return the reports that did not reach the platform, newest first.
+
+    ``learner`` limits the result to one learner.
+    """
+    of_course = select(contexts).where(contexts.c.course == course)
+    here = {
+        (row.registration, row.deployment, row.context) for row in connection.execute(of_course)
+    }
+    if not here:
+        return []
+    named = select(course_learners.c.learner, course_learners.c.name)
+    mine = named.where(course_learners.c.course == course)
+    names = {row.learner: row.name for row in connection.execute(mine)}
+    chosen = select(handed_files).where(
+        _TROUBLED, _OF.registration.in_({registration for registration, *_ in here})
+    )
+    if learner is not None:
+        chosen = chosen.where(_OF.learner == learner)
+    found = []
+    for row in connection.execute(chosen.order_by(_OF.number.desc())):
+        files = HandedFiles.model_validate_json(row.content)
+        if (row.registration, files.deployment, files.context) in here:
+            found.append(
+                MissingReport(
+                    row.learner,
+                    names.get(row.learner) or pseudonymous_name(row.learner),
+                    [each.filename for each in files.assets if each.filename],
+                    row.received_at,
+                    row.next_try_at if row.state == "waiting" else None,
+                    problem_told(row.refusal, language, of_report=True),
+                )
+            )
+    return found[:_MOST]
+
+
+def missing_counts(connection: Connection) -> Mapping[str, int]:
+    """Return how many reports did not reach each platform, by registration id."""
+    counted = select(_OF.registration, func.count().label("number")).where(_TROUBLED)
+    rows = connection.execute(counted.group_by(_OF.registration))
+    return {row.registration: row.number for row in rows}

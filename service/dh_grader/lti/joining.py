@@ -1,4 +1,7 @@
-"""How a platform joins: our description, invitations, registration, and a self-test."""
+"""How a platform joins: our description, invitations, registration, and a self-test.
+
+What is stored of a platform is in ``registrations.py``.
+"""
 
 import json
 import secrets
@@ -16,7 +19,7 @@ from sqlalchemy import Connection, insert, select, update
 from dh_grader.courses import CourseError, zone_named
 from dh_grader.formats.texts import visible
 from dh_grader.lti.fetching import FetchError, SigningKey, answer, content, usable_keys
-from dh_grader.lti.grade_services import SEND, ScoreError, fetched_token
+from dh_grader.lti.grade_services import AGS, SEND, ScoreError, fetched_token
 from dh_grader.lti.handed_files import NOTICES, READ, REPORT
 from dh_grader.lti.launch import DEEP_LINKING, digest
 from dh_grader.lti.registrations import (
@@ -42,12 +45,11 @@ from dh_grader.translations import joined, say
 NAME: Final = "DH Grader"
 DESCRIPTION: Final = "Forward kinematics and Denavit-Hartenberg tables, graded at once."
 TOOL: Final = "https://purl.imsglobal.org/spec/lti-tool-configuration"
-_AGS: Final = "https://purl.imsglobal.org/spec/lti-ags/scope/"
 SCOPES: Final = (
-    f"{_AGS}lineitem",
-    f"{_AGS}lineitem.readonly",
-    f"{_AGS}result.readonly",
-    f"{_AGS}score",
+    f"{AGS}lineitem",
+    f"{AGS}lineitem.readonly",
+    f"{AGS}result.readonly",
+    f"{AGS}score",
     "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly",
 )
 # For files that students hand in at the platform: notices, the files, and reports on them.
@@ -131,10 +133,9 @@ def canvas_configuration(address: str, *, files: bool = False) -> dict[str, Any]
 
 # --- Invitations: one-time links by which a platform registers itself
 #
-# The database has only a digest of the secret text in a link.
-#
-# The secret text begins with ``held-`` if the registration must wait for ``dh-grader lti allow``.
-# Nobody can remove ``held-``, because it is part of the digested text.
+# The database has only a digest of the secret text in a link. The text begins with ``held-`` if the
+# registration must wait for ``dh-grader lti allow``; nobody can remove that, because it is part of
+# the digested text.
 
 
 LONGEST_DAYS: Final = 90
@@ -263,10 +264,9 @@ _LONGEST_ANSWER: Final = 600
 def register_at(invitation: Invitation, configuration: str, token: str) -> dict[str, Any]:
     """Register this service at a platform; return the values of the registration.
 
-    ``configuration`` is the address of the platform's OpenID configuration. Raises
-    RegistrationError.
+    ``configuration`` is the address of the platform's OpenID configuration. ``token`` is "" for
+    platforms that send no registration token. Raises RegistrationError.
     """
-    # Some platforms send no registration token; then ``token`` is "".
     local = invitation.is_development
     if reason := unusable(configuration, local=local):
         raise RegistrationError(

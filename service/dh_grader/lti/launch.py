@@ -1,4 +1,7 @@
-"""A launch: tickets, logins, the check of its message, and the course that it opens."""
+"""A launch: its login, the check of its message, the course that it opens, and tickets.
+
+The routes are in ``web/lti_routes.py``; why a launch is refused is said in ``registrations.py``.
+"""
 
 import hmac
 import json
@@ -35,87 +38,7 @@ from dh_grader.lti.registrations import (
 from dh_grader.store import tables
 from dh_grader.store.attempts import insert_or_ignore
 from dh_grader.store.tables import assignments, course_learners, launches
-from dh_grader.store.tables import courses as tables_courses
 from dh_grader.translations import say
-
-# --- Tickets: short-lived signed texts in a tutor's page, which prove what the launch has allowed
-#
-# A page in a frame has no cookie; its forms send the ticket instead.
-
-
-TICKETS_LIFETIME: Final = timedelta(hours=1)
-_TICKETS_ALGORITHM: Final = "HS256"
-_TICKETS_JWS: Final = jwt.PyJWS()
-
-
-class FormTicket(BaseModel):
-    """The common fields of all tickets (signed texts in the forms of a page)."""
-
-    # Each kind of ticket has its own ``iss``, so kinds cannot be confused.
-
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
-
-    iss: str
-    registration: str
-    exp: int = 0
-
-
-class LtiTicket(FormTicket):
-    """The ticket (signed text) in a tutor's page about a course and a link to exercises.
-
-    ``learner`` is the learner whose attempts the tutor wants to see, or "".
-    """
-
-    iss: Literal["dh-grader lti"] = "dh-grader lti"
-    context: int
-    link: int
-    learner: str = ""
-
-
-class LinkingTicket(FormTicket):
-    """The ticket (signed text) in a page on which a tutor chooses exercises for the platform.
-
-    ``data`` is sent back unchanged.
-    """
-
-    # ``course`` is "" until somebody launches the course. ``notices_url`` is "" unless the
-    # exercises are for files that students hand in at the platform.
-
-    iss: Literal["dh-grader lti deep linking"] = "dh-grader lti deep linking"
-    deployment: str
-    course: str
-    return_url: str
-    data: str | None
-    takes_several: bool
-    takes_line_items: bool
-    notices_url: str = ""
-
-
-_T = TypeVar("_T", bound=FormTicket)
-
-
-def signed_ticket(ticket: FormTicket, secret: Secret, now: datetime) -> str:
-    """Return a ticket as a signed text."""
-    until = int((now + TICKETS_LIFETIME).timestamp())
-    return jwt.encode(ticket.model_dump() | {"exp": until}, _key(secret), _TICKETS_ALGORITHM)
-
-
-def ticket_in(text: str, kind: type[_T], secret: Secret) -> _T:
-    """Return the ticket of this kind from its signed text. Raises LtiError."""
-    try:
-        ticket = kind.model_validate_json(
-            _TICKETS_JWS.decode(text, _key(secret), [_TICKETS_ALGORITHM])
-        )
-    except (jwt.InvalidTokenError, ValidationError) as error:
-        raise LtiError("ticket-expired") from error
-    if ticket.exp <= time.time():
-        raise LtiError("ticket-expired")
-    return ticket
-
-
-def _key(secret: Secret) -> bytes:
-    return hmac.digest(secret.lti_secret, b"tickets", "sha256")
-
 
 # --- Logins of a platform's users; each login can be used once
 #
@@ -286,7 +209,7 @@ _OLDEST: Final = 3600
 _LONGEST_TOKEN: Final = 48_000
 _LONGEST_NAME: Final = 255
 _LONGEST_ADDRESS: Final = 1000
-_MESSAGES_JWS: Final = jwt.PyJWS()
+_JWS: Final = jwt.PyJWS()
 
 
 @dataclass(frozen=True, slots=True)
@@ -352,7 +275,7 @@ def message_in(
 def signed_claims(token: str, key: RSAPublicKey) -> dict[str, Any]:
     """Return the claims of a token that is signed with this key. Raises LtiError."""
     try:
-        claims = json.loads(_MESSAGES_JWS.decode(token, key, [_MESSAGES_ALGORITHM]))
+        claims = json.loads(_JWS.decode(token, key, [_MESSAGES_ALGORITHM]))
     except jwt.InvalidSignatureError as error:
         raise LtiError("wrong-signature") from error
     except (jwt.InvalidTokenError, ValueError, RecursionError) as error:
@@ -514,9 +437,7 @@ def _address(value: Any) -> str | None:
 # --- Find the course, the assignment and the learner of a launch, or make them
 #
 # A context of the platform is a course here, a resource link is an assignment, and a user is a
-# learner.
-#
-# Everything is done on one connection, in the transaction that uses up the login.
+# learner. Everything is done on one connection, in the transaction that uses up the login.
 
 
 # The lifetime of the key of a course, and how long before its end the next one is made.
@@ -554,8 +475,10 @@ def enter(
     catalogue: Mapping[str, Exercise],
     now: datetime,
 ) -> Landing:
-    """Record a launch and return what it opens. Raises LtiError."""
-    # For previews and guests nothing is recorded; they see only what exists already.
+    """Record a launch and return what it opens. Raises LtiError.
+
+    For previews and guests nothing is recorded; they see only what exists already.
+    """
     if not settle(connection, secret, now):
         raise LtiError("no-secret")
     check_deployment(connection, message, now)
@@ -591,8 +514,10 @@ def enter(
 
 
 def pseudonym(registration: str, sub: str, secret: Secret) -> str:
-    """Return the pseudonym of a platform's user, which is the learner's id."""
-    # Users of two platforms get different ids, even if their ``sub`` is the same.
+    """Return the pseudonym of a platform's user, which is the learner's id.
+
+    Users of two platforms get different ids, even if their ``sub`` is the same.
+    """
     content = json.dumps([registration, sub]).encode()
     return f"lti-{hmac.digest(secret.lti_secret, b'learner ' + content, 'sha256').hex()[:24]}"
 
@@ -631,7 +556,7 @@ def context_of(connection: Connection, message: LaunchMessage, now: datetime) ->
         course = f"lti-{_short(message.registration.id, message.deployment, message.context)}"
         title = message.context_title or f"Course of {message.registration.name}"[:200]
         if (
-            connection.scalar(select(tables_courses.c.id).where(tables_courses.c.id == course))
+            connection.scalar(select(tables.courses.c.id).where(tables.courses.c.id == course))
             is None
         ):
             new = NewCourse(id=course, title=title, zone=message.registration.zone)
@@ -851,3 +776,78 @@ def _set_assignment(connection: Connection, link: int, course: str, assignment: 
 
 def _short(*parts: str) -> str:
     return sha256(json.dumps(parts).encode()).hexdigest()[:12]
+
+
+# --- Tickets: short-lived signed texts in a tutor's page, which prove what the launch has allowed
+#
+# A page in a frame has no cookie; its forms send the ticket instead.
+
+
+TICKETS_LIFETIME: Final = timedelta(hours=1)
+_TICKETS_ALGORITHM: Final = "HS256"
+
+
+class FormTicket(BaseModel):
+    """The common fields of all tickets (signed texts in the forms of a page).
+
+    Each kind of ticket has its own ``iss``, so kinds cannot be confused.
+    """
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+    iss: str
+    registration: str
+    exp: int = 0
+
+
+class LtiTicket(FormTicket):
+    """The ticket (signed text) in a tutor's page about a course and a link to exercises.
+
+    ``learner`` is the learner whose attempts the tutor wants to see, or "".
+    """
+
+    iss: Literal["dh-grader lti"] = "dh-grader lti"
+    context: int
+    link: int
+    learner: str = ""
+
+
+class LinkingTicket(FormTicket):
+    """The ticket (signed text) in a page on which a tutor chooses exercises for the platform.
+
+    ``data`` is sent back unchanged. ``course`` is "" until somebody launches the course.
+    ``notices_url`` is "" unless the exercises are for files that students hand in at the platform.
+    """
+
+    iss: Literal["dh-grader lti deep linking"] = "dh-grader lti deep linking"
+    deployment: str
+    course: str
+    return_url: str
+    data: str | None
+    takes_several: bool
+    takes_line_items: bool
+    notices_url: str = ""
+
+
+_T = TypeVar("_T", bound=FormTicket)
+
+
+def signed_ticket(ticket: FormTicket, secret: Secret, now: datetime) -> str:
+    """Return a ticket as a signed text."""
+    until = int((now + TICKETS_LIFETIME).timestamp())
+    return jwt.encode(ticket.model_dump() | {"exp": until}, _key(secret), _TICKETS_ALGORITHM)
+
+
+def ticket_in(text: str, kind: type[_T], secret: Secret) -> _T:
+    """Return the ticket of this kind from its signed text. Raises LtiError."""
+    try:
+        ticket = kind.model_validate_json(_JWS.decode(text, _key(secret), [_TICKETS_ALGORITHM]))
+    except (jwt.InvalidTokenError, ValidationError) as error:
+        raise LtiError("ticket-expired") from error
+    if ticket.exp <= time.time():
+        raise LtiError("ticket-expired")
+    return ticket
+
+
+def _key(secret: Secret) -> bytes:
+    return hmac.digest(secret.lti_secret, b"tickets", "sha256")

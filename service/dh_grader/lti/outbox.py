@@ -1,4 +1,7 @@
-"""Scores on their way to platforms: the queue, the message, and the thread that sends."""
+"""Scores on their way to platforms: the thread that sends, the message, and the queue.
+
+Scores are queued by ``store/database.py``, and sent by means of ``grade_services.py``.
+"""
 
 import json
 import logging
@@ -40,7 +43,7 @@ from dh_grader.lti.grade_services import (
     ScoreError,
     ThisLaterError,
     available_key,
-    told,
+    problem_told,
 )
 from dh_grader.lti.registrations import Registration, registration
 from dh_grader.store.database import FORGOTTEN, QUEUED, Priority, in_transaction
@@ -55,15 +58,10 @@ from dh_grader.store.tables import (
 )
 from dh_grader.translations import ENGLISH, Language
 
-# --- The queue of scores to send; each score is leased to one process
-#
-# If a process dies, its lease ends, and another process sends the score again.
-
-
 # --- Threads that send what is queued in the database
 
 
-_sending_log = logging.getLogger(__name__)
+_log = logging.getLogger(__name__)
 
 # How often a thread looks for work that other processes have queued (seconds).
 _LOOK: Final = 20.0
@@ -121,109 +119,10 @@ class BackgroundSending:
                     wait = (due - self._sender.now()) / timedelta(seconds=1)
                     seconds = min(_LOOK, max(_LEAST, wait))
             except SQLAlchemyError:
-                _sending_log.warning("LTI: the database does not respond")
+                _log.warning("LTI: the database does not respond")
             except Exception:  # noqa: BLE001 - the next one may be sent
-                _sending_log.exception("LTI: sending failed (%s)", self._queued)
+                _log.exception("LTI: sending failed (%s)", self._queued)
             self._wake.wait(seconds)
-
-
-# --- Database functions: list a course's scores for tutors, and queue scores again
-
-
-def scores_of(
-    connection: Connection, course: str, wanted: SendAgainRequest, language: Language = ENGLISH
-) -> list[PlatformScore]:
-    """Return the scores of a course, ordered by assignment and learner. Raises CourseError.
-
-    The problems of scores are in ``language``.
-    """
-    _check(connection, course, wanted)
-    enrolled = and_(
-        course_learners.c.course == course, course_learners.c.learner == scores.c.learner
-    )
-    rows = connection.execute(
-        select(
-            scores,
-            course_learners.c.name,
-            course_learners.c.family_name,
-            line_items.c.assignment.label("of_assignment"),
-            assignments.c.id.label("assignment"),
-            resource_links.c.title.label("link"),
-        )
-        .join_from(scores, line_items)
-        .join(assignments, assignments.c.number == line_items.c.assignment)
-        .join(resource_links, resource_links.c.number == line_items.c.resource_link)
-        .join(course_learners, enrolled)
-        .where(_chosen(course, wanted))
-    ).all()
-    ordered = sorted(rows, key=lambda it: (it.of_assignment, place_of(it), it.line_item))
-    return [
-        PlatformScore(
-            learner=row.learner,
-            name=row.name,
-            assignment=row.assignment,
-            link=row.link,
-            state=row.state,
-            sent_points=row.sent_points,
-            sent_at=row.sent_at,
-            max_points=row.max_points,
-            tries=row.tries,
-            next_try_at=row.next_try_at if row.state == "waiting" else None,
-            problem=told(row.refusal, language) or None,
-        )
-        for row in ordered
-    ]
-
-
-def send_again(connection: Connection, course: str, wanted: SendAgainRequest, now: datetime) -> int:
-    """Queue scores to be sent again; return their number. Raises CourseError."""
-    # A score whose attempts have expired and were deleted is not sent: it stays at the platform as
-    # it is.
-    _check(connection, course, wanted)
-    has_attempt = exists().where(
-        attempts.c.assignment == line_items.c.assignment,
-        attempts.c.learner == scores.c.learner,
-        or_(attempts.c.ordinal.is_not(None), attempts.c.awarded.is_not(None)),
-    )
-    chosen = (
-        select(scores.c.line_item, scores.c.learner)
-        .join_from(scores, line_items)
-        .join(assignments, assignments.c.number == line_items.c.assignment)
-        .where(_chosen(course, wanted), has_attempt)
-    )
-    places = connection.execute(chosen).all()
-    for line_item, learner in places:
-        mine = (scores.c.line_item == line_item) & (scores.c.learner == learner)
-        # A try without success: the score is sent even if the platform has these points.
-        values = {
-            "state": "waiting",
-            "version": scores.c.version + 1,
-            "priority": int(Priority.CHANGE),
-            "tries": 1,
-            "next_try_at": now,
-        }
-        connection.execute(update(scores).where(mine).values(values))
-    if places:
-        connection.info[QUEUED] = True
-    return len(places)
-
-
-def _check(connection: Connection, course: str, wanted: SendAgainRequest) -> None:
-    roll.course(connection, course)
-    if wanted.assignment is not None:
-        assignment_of(connection, course, wanted.assignment)
-
-
-def _chosen(course: str, wanted: SendAgainRequest) -> ColumnElement[bool]:
-    chosen: Any = assignments.c.course == course
-    if wanted.assignment is not None:
-        chosen &= assignments.c.id == wanted.assignment
-    if wanted.learner is not None:
-        chosen &= scores.c.learner == wanted.learner
-    if wanted.failed:
-        tried_in_vain = (scores.c.state == "waiting") & scores.c.refusal.is_not(None)
-        chosen &= (scores.c.state == "refused") | tried_in_vain
-    return and_(chosen)
 
 
 # --- Compute a learner's score in an assignment, and make the message that sends it to a platform
@@ -275,9 +174,9 @@ def learner_score(connection: Connection, assignment: int, learner: str) -> Lear
 def score_message(score: LearnerScore, sub: str, stamp: datetime, address: str) -> dict[str, Any]:
     """Return the message that sends a score to a platform.
 
-    A score without points deletes the platform's score.
+    A score without points deletes the platform's score. ``address`` launches the assignment.
     """
-    # ``address`` launches the assignment. Some fields of the message are only for Canvas.
+    # Some fields of the message are only for Canvas.
     message: dict[str, Any] = {"userId": sub, "timestamp": _written(stamp)}
     if score.points is None:
         return message | {"activityProgress": "Initialized", "gradingProgress": "NotReady"}
@@ -303,8 +202,10 @@ def _written(moment: datetime) -> str:
     return moment.isoformat(timespec="milliseconds").replace("+00:00", "Z")
 
 
-# The second time, the score has a later timestamp, so that in the end the platform has the correct
-# score.
+# --- The queue of scores to send; each score is leased to one process
+#
+# If a process dies, its lease ends, and another process sends the score again: with a later
+# timestamp, so that in the end the platform has the correct score.
 
 
 # How long a score belongs to the process that has taken it. Sending takes at most half of that.
@@ -345,9 +246,9 @@ def take(
 ) -> TakenScore | None:
     """Lease the next score to ``sender`` and return it; None if none is due.
 
-    Registrations in ``without`` are skipped.
+    Registrations in ``without`` are skipped. Scores that the platform already has are marked as
+    sent.
     """
-    # Scores that the platform already has are marked as sent.
     for _ in range(_MOST_PASSED):
         row = connection.execute(_next(now, without)).one_or_none()
         if row is None:
@@ -454,8 +355,7 @@ def _taken(
 
 
 def note_sent(connection: Connection, taken: TakenScore, sender: str, now: datetime) -> None:
-    """Mark a score as sent."""
-    # A score that has changed meanwhile stays queued.
+    """Mark a score as sent, unless it has changed meanwhile."""
     mine = _is(taken.line_item, taken.learner) & (scores.c.leased_by == sender)
     if taken.is_forgotten:
         connection.execute(delete(scores).where(mine))
@@ -541,14 +441,10 @@ def _is(line_item: int, learner: str) -> Any:
     return (scores.c.line_item == line_item) & (scores.c.learner == learner)
 
 
-# --- Send queued scores to platforms, one after the other
-#
-# Several processes may send.
+# --- Send queued scores to platforms, one after the other; several processes may do so
 
 
-_sender_log = logging.getLogger(__name__)
-
-# The pause after the first failure, and the longest one. Each failure doubles it.
+# The pause after the first failure, and the longest one.
 _FIRST: Final = timedelta(seconds=5)
 _LONGEST: Final = timedelta(hours=4)
 _MOST_ASKED: Final = timedelta(hours=24)
@@ -559,6 +455,14 @@ _LINE_ITEM: Final = timedelta(seconds=3)
 def utc_now() -> datetime:
     """Return the current time in UTC."""
     return datetime.now(UTC)
+
+
+def pause_after(failures: int, chance: float) -> timedelta:
+    """Return the pause after some failures, each of which doubles it.
+
+    ``chance`` is a random number from 0 to 1, on which half of the pause depends.
+    """
+    return min(_FIRST * 2 ** min(failures, 20), _LONGEST) * (0.5 + 0.5 * chance)
 
 
 @dataclass(slots=True)
@@ -599,13 +503,13 @@ class ScoreSender:
             self._pauses.pop(taken.registration.id, None)
             problem = error
             in_transaction(self._engine, lambda it: note_refused(it, taken, self._name, problem))
-            _sender_log.warning("LTI: the score was refused (%s): %s", taken.registration.id, error)
+            _log.warning("LTI: the score was refused (%s): %s", taken.registration.id, error)
         except LaterError as error:
             self._rest(taken, error)
         except ThisLaterError as error:
             self._later(taken, self._doubled(taken.tries), error)
         except Exception:  # noqa: BLE001 - other scores must go on
-            _sender_log.exception("LTI: a score could not be sent")
+            _log.exception("LTI: a score could not be sent")
             self._later(taken, self._doubled(taken.tries), ScoreError("failed"))
         return True
 
@@ -668,13 +572,110 @@ class ScoreSender:
             until = max(now + asked, until if failures else now)
         self._pauses[name] = _Pause(until, failures + 1)
         self._later(taken, until, error)
-        _sender_log.warning("LTI: %s gets no scores until %s: %s", name, until.isoformat(), error)
+        _log.warning("LTI: %s gets no scores until %s: %s", name, until.isoformat(), error)
 
     def _later(self, taken: TakenScore, at: datetime, problem: ScoreError | None) -> None:
         in_transaction(self._engine, lambda it: note_later(it, taken, self._name, at, problem))
 
     def _doubled(self, failures: int) -> datetime:
-        # Each failure doubles the pause, which is partly random.
-        pause = min(_FIRST * 2 ** min(failures, 20), _LONGEST)
-        end: datetime = self.now() + pause * (0.5 + 0.5 * self._chance())
-        return end
+        return self.now() + pause_after(failures, self._chance())
+
+
+# --- For tutors: list a course's scores, and queue scores again
+
+
+def scores_of(
+    connection: Connection, course: str, wanted: SendAgainRequest, language: Language = ENGLISH
+) -> list[PlatformScore]:
+    """Return the scores of a course, ordered by assignment and learner. Raises CourseError.
+
+    The problems of scores are in ``language``.
+    """
+    _check(connection, course, wanted)
+    enrolled = and_(
+        course_learners.c.course == course, course_learners.c.learner == scores.c.learner
+    )
+    rows = connection.execute(
+        select(
+            scores,
+            course_learners.c.name,
+            course_learners.c.family_name,
+            line_items.c.assignment.label("of_assignment"),
+            assignments.c.id.label("assignment"),
+            resource_links.c.title.label("link"),
+        )
+        .join_from(scores, line_items)
+        .join(assignments, assignments.c.number == line_items.c.assignment)
+        .join(resource_links, resource_links.c.number == line_items.c.resource_link)
+        .join(course_learners, enrolled)
+        .where(_chosen(course, wanted))
+    ).all()
+    ordered = sorted(rows, key=lambda it: (it.of_assignment, place_of(it), it.line_item))
+    return [
+        PlatformScore(
+            learner=row.learner,
+            name=row.name,
+            assignment=row.assignment,
+            link=row.link,
+            state=row.state,
+            sent_points=row.sent_points,
+            sent_at=row.sent_at,
+            max_points=row.max_points,
+            tries=row.tries,
+            next_try_at=row.next_try_at if row.state == "waiting" else None,
+            problem=problem_told(row.refusal, language) or None,
+        )
+        for row in ordered
+    ]
+
+
+def send_again(connection: Connection, course: str, wanted: SendAgainRequest, now: datetime) -> int:
+    """Queue scores to be sent again; return their number. Raises CourseError.
+
+    A score whose attempts have expired and were deleted stays at the platform as it is.
+    """
+    _check(connection, course, wanted)
+    has_attempt = exists().where(
+        attempts.c.assignment == line_items.c.assignment,
+        attempts.c.learner == scores.c.learner,
+        or_(attempts.c.ordinal.is_not(None), attempts.c.awarded.is_not(None)),
+    )
+    chosen = (
+        select(scores.c.line_item, scores.c.learner)
+        .join_from(scores, line_items)
+        .join(assignments, assignments.c.number == line_items.c.assignment)
+        .where(_chosen(course, wanted), has_attempt)
+    )
+    places = connection.execute(chosen).all()
+    for line_item, learner in places:
+        mine = (scores.c.line_item == line_item) & (scores.c.learner == learner)
+        # A try without success: the score is sent even if the platform has these points.
+        values = {
+            "state": "waiting",
+            "version": scores.c.version + 1,
+            "priority": int(Priority.CHANGE),
+            "tries": 1,
+            "next_try_at": now,
+        }
+        connection.execute(update(scores).where(mine).values(values))
+    if places:
+        connection.info[QUEUED] = True
+    return len(places)
+
+
+def _check(connection: Connection, course: str, wanted: SendAgainRequest) -> None:
+    roll.course(connection, course)
+    if wanted.assignment is not None:
+        assignment_of(connection, course, wanted.assignment)
+
+
+def _chosen(course: str, wanted: SendAgainRequest) -> ColumnElement[bool]:
+    chosen: Any = assignments.c.course == course
+    if wanted.assignment is not None:
+        chosen &= assignments.c.id == wanted.assignment
+    if wanted.learner is not None:
+        chosen &= scores.c.learner == wanted.learner
+    if wanted.failed:
+        tried_in_vain = (scores.c.state == "waiting") & scores.c.refusal.is_not(None)
+        chosen &= (scores.c.state == "refused") | tried_in_vain
+    return and_(chosen)

@@ -1,4 +1,7 @@
-"""The members of a course from its platform, page by page, and what they change here."""
+"""The members of a course from its platform, page by page, and what they change here.
+
+Tutors who add learners by hand, or by a class list, do so by ``dh_grader.courses``.
+"""
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
@@ -57,8 +60,10 @@ class Member:
 
 
 def read_members(registration: Registration, url: str, token: str) -> list[Member]:
-    """Return the active learners of a course, each once. Raises FetchError."""
-    # Inactive and deleted members, test users and members with other roles are left out.
+    """Return the active learners of a course, each once. Raises FetchError.
+
+    Inactive and deleted members, test users and members with other roles are left out.
+    """
     found: dict[str, Member] = {}
     for page in _pages(registration, url, token):
         listed = page.get("members")
@@ -173,13 +178,6 @@ class RosterChange:
     renamed: int
 
 
-def roster_context(connection: Connection, course: str) -> Row[Any] | None:
-    """Return the row that connects a course with its platform's roster, or None."""
-    of = tables.contexts.c
-    mine = (of.course == course) & of.memberships_url.is_not(None)
-    return connection.execute(select(tables.contexts).where(mine).limit(1)).one_or_none()
-
-
 def ask_for_roster(
     connection: Connection, course: str, secret: Secret, now: datetime
 ) -> RosterQuestion:
@@ -271,6 +269,13 @@ def enrol_members(
     noted = update(tables.contexts).where(tables.contexts.c.number == context.number)
     connection.execute(noted.values(shows_names=shows_names, roster_at=now))
     return RosterChange(len(wanted), len(new), len(gone), len(renamed))
+
+
+def roster_context(connection: Connection, course: str) -> Row[Any] | None:
+    """Return the row that connects a course with its platform's roster, or None."""
+    of = tables.contexts.c
+    mine = (of.course == course) & of.memberships_url.is_not(None)
+    return connection.execute(select(tables.contexts).where(mine).limit(1)).one_or_none()
 
 
 def _enrolled(

@@ -1,9 +1,12 @@
-"""`python -m dh_grader.server.alive`: the health check of the container image."""
+"""`python -m dh_grader.server.alive`: the health check of the container image.
+
+It imports nothing else of the program, so the check is cheap to run.
+"""
 
 import os
 from http.client import HTTPConnection, HTTPException
 
-# This module imports nothing else of the program, so the check is cheap to run.
+_ANYWHERE = {"0.0.0.0": "127.0.0.1", "::": "::1"}
 
 
 def main() -> int:
@@ -20,8 +23,6 @@ def main() -> int:
     finally:
         connection.close()
 
-
-_ANYWHERE = {"0.0.0.0": "127.0.0.1", "::": "::1"}
 
 if __name__ == "__main__":
     raise SystemExit(main())

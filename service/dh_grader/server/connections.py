@@ -1,6 +1,7 @@
-"""uvicorn's protocol with limits: open connections, flow, framing, and early refusals.
+"""uvicorn's protocol with limits: open connections, framing, flow, and early refusals.
 
-Nothing here knows routes; a request is passed on only when it is complete.
+It knows bytes and connections, and no routes but those of health checks. How complete requests
+take turns is in ``turns.py``.
 """
 
 import asyncio
@@ -31,173 +32,6 @@ from dh_grader.api.http import HEADER, Monitor, ProblemError, begin_request, end
 from dh_grader.regex import regex
 from dh_grader.submissions.bodies import MAX_BODY_SIZE
 from dh_grader.translations import say
-
-# --- The state that all connections of a server share
-
-
-class GuardedState(ServerState):
-    """The state that all connections of a server share.
-
-    Web pages of ``origins`` may read the responses to refused requests.
-    """
-
-    def __init__(self, origins: Sequence[str] = (), monitor: Monitor | None = None) -> None:
-        super().__init__()
-        self.open_connections = OpenConnections(allowed_here())
-        self._origins = origins
-        self._monitor = monitor
-
-    def note_refusal(self, answer: str) -> None:
-        """Count a refused request; ``answer`` is the status code of the response, or "none"."""
-        if self._monitor is not None:
-            self._monitor.refused(answer)
-
-    def refusal(
-        self, problem: ProblemError, path: str, origin: str, headers: Headers | None = None
-    ) -> Response:
-        """Count a refused request from a page of ``origin``, and return the error response."""
-        self.note_refusal(str(problem.status.value))
-        answer = refusal_response(problem, path, headers)
-        answer.headers.update(cors_headers(self._origins, origin))
-        return answer
-
-
-# --- Flow control: when a connection reads, and how it closes
-
-
-class LingeringTransport:
-    """A transport whose ``close`` lets the client read the last response first."""
-
-    def __init__(self, transport: asyncio.Transport, finish: Any) -> None:
-        self._transport = transport
-        self.close = finish
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self._transport, name)
-
-
-class Valve(FlowControl):
-    """Flow control that keeps reading paused from ``hold`` to ``release``."""
-
-    # uvicorn cannot resume it while the next request has to wait.
-
-    shut = False
-
-    def resume_reading(self) -> None:
-        """Resume reading, unless ``hold`` has paused it."""
-        if not self.shut:
-            super().resume_reading()
-
-    def hold(self) -> None:
-        """Pause reading until ``release``."""
-        self.shut = True
-        self.pause_reading()
-
-    def release(self) -> None:
-        """Resume reading."""
-        self.shut = False
-        self.resume_reading()
-
-
-# --- CORS headers for requests that are refused before they reach the application
-
-
-_ORIGIN: Final = regex(rb"\r\nOrigin:[ \t]*([^\r\n]*?)[ \t]*\r\n", re.IGNORECASE)
-
-
-def origin_in(head: bytes) -> str:
-    """Return the origin in a request's head, or "". The head may be incomplete or invalid."""
-    found = _ORIGIN.search(head)
-    return found[1].decode("latin-1") if found else ""
-
-
-def cors_headers(origins: Sequence[str], origin: str) -> Mapping[str, str]:
-    """Return the headers that allow a page of ``origin`` to read the response."""
-    # ``origin`` is "" if the request was refused before its head was read. In this case, the only
-    # entry of ``origins`` is used, if there is only one.
-    if "*" in origins:
-        allowed = "*"
-    elif origin in origins:
-        allowed = origin
-    elif not origin and len(origins) == 1:
-        allowed = origins[0]
-    else:
-        return {}
-    return {
-        "Access-Control-Allow-Origin": allowed,
-        "Access-Control-Expose-Headers": ", ".join(EXPOSED_HEADERS),
-        "Vary": "Origin",
-    }
-
-
-# --- The errors for requests that are refused before they reach a route
-
-
-_CLOSE: Final = {"Connection": "close"}
-
-
-def refusal_response(problem: ProblemError, path: str, headers: Headers | None = None) -> Response:
-    """Return the error response to a request that does not reach the application.
-
-    ``headers`` are the request's headers, or None if they have not been read.
-    """
-    request = begin_request(headers.get(HEADER) if headers else None)
-    answer = problem.response(path)
-    answer.headers[HEADER] = request.id
-    return answer
-
-
-def malformed(detail: str) -> ProblemError:
-    """Return the error for bytes that are no HTTP request."""
-    title = "This is no HTTP request"
-    return ProblemError(HTTPStatus.BAD_REQUEST, detail, "malformed-request", title, headers=_CLOSE)
-
-
-def late() -> ProblemError:
-    """Return the error for a request that did not arrive in time."""
-    detail = (
-        f"The head of a request must arrive within {HEAD_TIMEOUT:.0f} seconds, and the whole "
-        f"request within {TIMEOUT:.0f}."
-    )
-    return ProblemError(HTTPStatus.REQUEST_TIMEOUT, detail, headers=_CLOSE)
-
-
-def long_address() -> ProblemError:
-    """Return the error for a URL that is too long."""
-    detail = f"An address may have {MAX_URL} characters; this one has more."
-    return ProblemError(HTTPStatus.REQUEST_URI_TOO_LONG, detail, headers=_CLOSE)
-
-
-def too_many_headers() -> ProblemError:
-    """Return the error for a request with too many headers."""
-    return large_frame(f"A request may have {MAX_HEADERS} headers; this one has more.")
-
-
-def large_frame(detail: str) -> ProblemError:
-    """Return the error for a head, chunk size or trailer that is too large."""
-    return ProblemError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE, detail, headers=_CLOSE)
-
-
-def too_many(seconds: int) -> ProblemError:
-    """Return the error for a client that has too many requests waiting."""
-    return ProblemError(
-        HTTPStatus.TOO_MANY_REQUESTS,
-        say(
-            "Too many requests from this address are waiting already. Wait, then send this one "
-            "again."
-        ),
-        headers={"Retry-After": str(seconds)},
-    )
-
-
-def too_busy(seconds: int) -> ProblemError:
-    """Return the error for a service that has too much to do."""
-    return ProblemError(
-        HTTPStatus.SERVICE_UNAVAILABLE,
-        say("The service has too much to do. Wait, then send this request again."),
-        headers={"Retry-After": str(seconds)},
-    )
-
 
 # --- The limits that one process sets for its clients
 
@@ -243,329 +77,34 @@ FORCED_EXIT: Final = 1.3
 HEALTH: Final = frozenset({"/healthz", "/readyz"})
 
 
-# --- The open connections of one process, with limits for their number and their bytes
-#
-# Beyond a limit, the process closes connections that have no complete request.
+# --- The state that all connections of a server share
 
 
-# One connection in 16 is closed at once, so that choosing them costs little for each.
-_CLOSED_SHARE: Final = 16
+class GuardedState(ServerState):
+    """The state that all connections of a server share.
 
-
-class OpenConnection(Protocol):
-    """The interface of a connection that ``OpenConnections`` uses."""
-
-    address: str
-    # The time of the event loop at which the connection expires.
-    deadline: float
-    # The time since which it waits for its client; None while a request is being answered.
-    waiting_since: float | None
-    # Bytes of an unfinished request and of unread answers.
-    unfinished: int
-
-    def expire(self) -> None:
-        """Close the connection because its time limit has passed."""
-
-    def reset(self) -> None:
-        """Close the connection at once."""
-
-
-@dataclass(frozen=True, slots=True)
-class ConnectionLimits:
-    """The largest number of connections, and of bytes in their unfinished requests."""
-
-    connections: int = MAX_CONNECTIONS
-    unfinished: int = MAX_UNFINISHED
-
-
-class OpenConnections:
-    """The connections of one process."""
-
-    def __init__(self, limits: ConnectionLimits) -> None:
-        self._limits = limits
-        self._connections: dict[OpenConnection, None] = {}
-        self._unfinished = 0
-        self._sweeping: asyncio.TimerHandle | None = None
-
-    def __len__(self) -> int:
-        """The number of connections."""
-        return len(self._connections)
-
-    @property
-    def full(self) -> bool:
-        """True if there are too many connections."""
-        # The service then answers only health checks.
-        return len(self._connections) > self._limits.connections
-
-    def enter(self, connection: OpenConnection, loop: asyncio.AbstractEventLoop) -> bool:
-        """Add a connection; return False if there are too many."""
-        # Waiting connections are closed first.
-        if len(self._connections) >= self._limits.connections:
-            self._close_waiting(_one, 1 + self._limits.connections // _CLOSED_SHARE)
-        if len(self._connections) >= self._limits.connections + RESERVE:
-            return False
-        self._connections[connection] = None
-        if self._sweeping is None:
-            self._sweeping = loop.call_later(SWEEP, self._sweep, loop)
-        return True
-
-    def leave(self, connection: OpenConnection) -> None:
-        """Remove a connection."""
-        if connection in self._connections:
-            del self._connections[connection]
-            self._unfinished -= connection.unfinished
-            connection.unfinished = 0
-
-    def set_unfinished(self, connection: OpenConnection, size: int) -> None:
-        """Set the size of a connection's unfinished request; limit the sum of all sizes."""
-        if connection not in self._connections:
-            return
-        self._unfinished += size - connection.unfinished
-        connection.unfinished = size
-        if self._unfinished > self._limits.unfinished:
-            excess = self._unfinished - self._limits.unfinished
-            self._close_waiting(_bytes, excess + self._limits.unfinished // 4)
-
-    def _close_waiting(self, weight: Callable[[OpenConnection], int], wanted: int) -> None:
-        waiting = [
-            each for each in self._connections if each.waiting_since is not None and weight(each)
-        ]
-        shares: Counter[str] = Counter()
-        for connection in waiting:
-            shares[connection.address] += weight(connection)
-        for connection in closing_order(waiting, shares, weight):
-            if wanted <= 0:
-                break
-            wanted -= weight(connection)
-            self.leave(connection)
-            connection.reset()
-
-    def _sweep(self, loop: asyncio.AbstractEventLoop) -> None:
-        now = loop.time()
-        for connection in [each for each in self._connections if each.deadline < now]:
-            connection.expire()
-        self._sweeping = loop.call_later(SWEEP, self._sweep, loop) if self._connections else None
-
-
-def _one(_: OpenConnection) -> int:
-    return 1
-
-
-def _bytes(connection: OpenConnection) -> int:
-    return connection.unfinished
-
-
-def closing_order(
-    waiting: Iterable[OpenConnection], shares: Counter[str], weight: Callable[[OpenConnection], int]
-) -> Iterable[OpenConnection]:
-    """Yield waiting connections in the order in which to close them.
-
-    The address with the most connections or bytes comes first.
-    """
-    queues: dict[str, list[OpenConnection]] = {}
-    for connection in sorted(waiting, key=lambda each: each.waiting_since or 0.0, reverse=True):
-        queues.setdefault(connection.address, []).append(connection)
-    while queues:
-        address = max(queues, key=shares.__getitem__)
-        connection = queues[address].pop()
-        shares[address] -= weight(connection)
-        if not queues[address]:
-            del queues[address]
-        yield connection
-
-
-def allowed_here() -> ConnectionLimits:
-    """Raise the limit of open files, and return the connection limits that result from it."""
-    try:
-        import resource
-    except ImportError:  # Windows, which has no such limit
-        return ConnectionLimits()
-    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
-    wanted = MAX_CONNECTIONS + RESERVE + OTHER_FILES
-    if soft != resource.RLIM_INFINITY and soft < wanted:
-        soft = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
-        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
-        return ConnectionLimits(
-            connections=max(1, min(MAX_CONNECTIONS, soft - RESERVE - OTHER_FILES))
-        )
-    return ConnectionLimits()
-
-
-# --- Cut the bytes of a connection into pieces that each belong to one request
-#
-# The parser gets one piece at a time. This module only finds where the pieces end (RFC 9112); the
-# parser decides whether they are valid.
-#
-# The parser reads all bytes that it gets, stores a head of any size, and begins the next request of
-# a pipeline before the previous one is answered. So it gets only what it should read now.
-
-
-_END: Final = b"\r\n"
-_BARE_NEWLINE: Final = regex(rb"(?<!\r)\n")
-_CHUNK_SIZE: Final = regex(rb"([0-9A-Fa-f]{1,8})[ \t]*(?:;.*)?")
-# The least number of bytes that a line of a chunked body counts: even a short line costs work.
-_LEAST_LINE: Final = 64
-# The bytes of a body or chunk that are passed on at once; fewer only at its end. Each piece wakes
-# the task of its request, which costs much more than to keep a byte of a slow client.
-_PART: Final = 16 * 1024
-# The most bytes of a request line besides its address: the method and the version.
-_REST_OF_LINE: Final = 64
-
-
-class _Expected(Enum):
-    HEAD = auto()
-    BODY = auto()
-    CHUNK_SIZE = auto()
-    CHUNK = auto()
-    TRAILERS = auto()
-
-
-class Framing:
-    """Cuts the bytes of one connection into pieces that each belong to one request.
-
-    ``whole`` is True after the last piece of a request.  ``content`` is the number of bytes of the
-    request's body so far.
+    Web pages of ``origins`` may read the responses to refused requests.
     """
 
-    def __init__(self) -> None:
-        self._buffer = bytearray()
-        self._expected = _Expected.HEAD
-        # Bytes still missing from the body, or from a chunk and its line end.
-        self._left = 0
-        # Bytes of the request that are not content.
-        self._overhead = 0
-        self._searched = 0
-        self.content = 0
-        self.whole = False
+    def __init__(self, origins: Sequence[str] = (), monitor: Monitor | None = None) -> None:
+        super().__init__()
+        self.open_connections = OpenConnections(allowed_here())
+        self._origins = origins
+        self._monitor = monitor
 
-    def __len__(self) -> int:
-        return len(self._buffer)
+    def note_refusal(self, answer: str) -> None:
+        """Count a refused request; ``answer`` is the status code of the response, or "none"."""
+        if self._monitor is not None:
+            self._monitor.refused(answer)
 
-    @property
-    def pending(self) -> bytes:
-        """The received bytes that have not been returned yet."""
-        return bytes(self._buffer)
-
-    @property
-    def begun(self) -> bool:
-        """True if any byte of a request has been received."""
-        return self._expected is not _Expected.HEAD or len(self._buffer) > 0
-
-    @property
-    def in_head(self) -> bool:
-        """True until the head of the request has been returned."""
-        return self._expected is _Expected.HEAD and not self.whole
-
-    def receive(self, data: bytes) -> None:
-        """Add received bytes."""
-        self._buffer += data
-
-    def start_next(self) -> None:
-        """Begin with the next request of the connection."""
-        self._expected, self._overhead, self._searched = _Expected.HEAD, 0, 0
-        self.content, self.whole = 0, False
-
-    def expect_body(self, length: int | None) -> None:
-        """Set the length of the body that follows the head; None if the body is chunked."""
-        if length is None:
-            self._expected = _Expected.CHUNK_SIZE
-        else:
-            self._expected, self._left = _Expected.BODY, length
-            self.whole = length == 0
-
-    def piece(self) -> bytes | None:
-        """Return the next bytes of the request, or None if more must be received first.
-
-        Raises ProblemError.
-        """
-        match self._expected:
-            case _Expected.HEAD:
-                return self._head()
-            case _Expected.BODY:
-                piece = self._part_of_body()
-                self.whole = self._left == 0
-            case _Expected.CHUNK_SIZE:
-                return self._chunk_size()
-            case _Expected.CHUNK:
-                piece = self._part_of_body()
-                if self._left == 0:
-                    self._expected = _Expected.CHUNK_SIZE
-            case _:
-                piece = self._line()
-                self.whole = piece == _END
-        return piece
-
-    def _head(self) -> bytes | None:
-        pending = self._buffer
-        if not pending[:2].strip(b"\r\n"):
-            # Empty lines before a request are ignored.
-            self._count_overhead(len(pending) - len(pending.lstrip(b"\r\n")))
-            self._buffer = pending = pending.lstrip(b"\r\n")
-        if pending and not 65 <= pending[0] <= 90:
-            raise malformed("The request does not begin with a method, such as GET.")
-        end = pending.find(b"\r\n\r\n", max(self._searched - 3, 0))
-        if _BARE_NEWLINE.search(pending, self._searched, len(pending) if end < 0 else end):
-            raise malformed("A line of the head ends without a carriage return.")
-        self._searched = len(pending)
-        size = len(pending) if end < 0 else end + 4
-        self._check_line(pending[: MAX_URL + _REST_OF_LINE + 1])
-        if self._overhead + size > MAX_FRAME:
-            raise large_frame("The head of a request may hold 64 kB; this one is larger.")
-        if end < 0:
-            return None
-        if pending.count(_END, 0, end + 2) > MAX_HEADERS + 1:
-            raise too_many_headers()
-        self._count_overhead(size)
-        return self._take(size)
-
-    def _check_line(self, begin: bytearray) -> None:
-        line, found, _ = begin.partition(_END)
-        too_long = len(line) > MAX_URL + _REST_OF_LINE if not found else False
-        if too_long or max(map(len, line.split(b" ")), default=0) > MAX_URL:
-            raise long_address()
-
-    def _chunk_size(self) -> bytes | None:
-        line = self._line()
-        if line is None:
-            return None
-        size = _CHUNK_SIZE.fullmatch(line[:-2])
-        if size is None:
-            raise malformed("The size of a chunk is no hexadecimal number.")
-        self._left = int(size[1], 16)
-        if self._left:
-            self._left += len(_END)
-            self._expected = _Expected.CHUNK
-        else:
-            self._expected = _Expected.TRAILERS
-        return line
-
-    def _line(self) -> bytes | None:
-        end = self._buffer.find(_END, max(self._searched - 1, 0))
-        size = len(self._buffer) if end < 0 else end + 2
-        if self._overhead + size > MAX_FRAME:
-            raise large_frame("Sizes of chunks and trailers may hold 64 kB; these are larger.")
-        if end < 0:
-            self._searched = size
-            return None
-        self._count_overhead(max(size, _LEAST_LINE))
-        return self._take(size)
-
-    def _part_of_body(self) -> bytes | None:
-        if len(self._buffer) < min(self._left, _PART):
-            return None
-        piece = self._take(min(self._left, len(self._buffer)))
-        self._left -= len(piece)
-        self.content += len(piece)
-        return piece or None
-
-    def _take(self, size: int) -> bytes:
-        piece = bytes(self._buffer[:size])
-        del self._buffer[:size]
-        self._searched = 0
-        return piece
-
-    def _count_overhead(self, size: int) -> None:
-        self._overhead += size
+    def refusal(
+        self, problem: ProblemError, path: str, origin: str, headers: Headers | None = None
+    ) -> Response:
+        """Count a refused request from a page of ``origin``, and return the error response."""
+        self.note_refusal(str(problem.status.value))
+        answer = refusal_response(problem, path, headers)
+        answer.headers.update(cors_headers(self._origins, origin))
+        return answer
 
 
 # --- uvicorn's HTTP/1.1 protocol with limits, which gets one request at a time
@@ -587,7 +126,7 @@ class GuardedProtocol(HttpToolsProtocol):
     """One connection of a client."""
 
     server_state: GuardedState
-    flow: Valve
+    flow: "Valve"
     waiting_since: float | None
 
     def __init__(
@@ -612,7 +151,7 @@ class GuardedProtocol(HttpToolsProtocol):
         self._wait(HEAD_TIMEOUT)
 
     @property
-    def open_connections(self) -> OpenConnections:
+    def open_connections(self) -> "OpenConnections":
         """The open connections of this process."""
         return self.server_state.open_connections
 
@@ -900,3 +439,453 @@ class GuardedProtocol(HttpToolsProtocol):
         headers = Headers(scope=scope)
         answer = self.server_state.refusal(too_busy(1), scope["path"], self._origin, headers)
         await answer(scope, receive, send)
+
+
+# --- The open connections of one process, with limits for their number and their bytes
+#
+# Beyond a limit, the process closes connections that have no complete request.
+
+
+# One connection in 16 is closed at once, so that choosing them costs little for each.
+_CLOSED_SHARE: Final = 16
+
+
+class OpenConnection(Protocol):
+    """The interface of a connection that ``OpenConnections`` uses."""
+
+    address: str
+    # The time of the event loop at which the connection expires.
+    deadline: float
+    # The time since which it waits for its client; None while a request is being answered.
+    waiting_since: float | None
+    # Bytes of an unfinished request and of unread answers.
+    unfinished: int
+
+    def expire(self) -> None:
+        """Close the connection because its time limit has passed."""
+
+    def reset(self) -> None:
+        """Close the connection at once."""
+
+
+@dataclass(frozen=True, slots=True)
+class ConnectionLimits:
+    """The largest number of connections, and of bytes in their unfinished requests."""
+
+    connections: int = MAX_CONNECTIONS
+    unfinished: int = MAX_UNFINISHED
+
+
+class OpenConnections:
+    """The connections of one process."""
+
+    def __init__(self, limits: ConnectionLimits) -> None:
+        self._limits = limits
+        self._connections: dict[OpenConnection, None] = {}
+        self._unfinished = 0
+        self._sweeping: asyncio.TimerHandle | None = None
+
+    def __len__(self) -> int:
+        """The number of connections."""
+        return len(self._connections)
+
+    @property
+    def full(self) -> bool:
+        """True if there are too many connections."""
+        # The service then answers only health checks.
+        return len(self._connections) > self._limits.connections
+
+    def enter(self, connection: OpenConnection, loop: asyncio.AbstractEventLoop) -> bool:
+        """Add a connection; return False if there are too many."""
+        # Waiting connections are closed first.
+        if len(self._connections) >= self._limits.connections:
+            self._close_waiting(lambda _: 1, 1 + self._limits.connections // _CLOSED_SHARE)
+        if len(self._connections) >= self._limits.connections + RESERVE:
+            return False
+        self._connections[connection] = None
+        if self._sweeping is None:
+            self._sweeping = loop.call_later(SWEEP, self._sweep, loop)
+        return True
+
+    def leave(self, connection: OpenConnection) -> None:
+        """Remove a connection."""
+        if connection in self._connections:
+            del self._connections[connection]
+            self._unfinished -= connection.unfinished
+            connection.unfinished = 0
+
+    def set_unfinished(self, connection: OpenConnection, size: int) -> None:
+        """Set the size of a connection's unfinished request; limit the sum of all sizes."""
+        if connection not in self._connections:
+            return
+        self._unfinished += size - connection.unfinished
+        connection.unfinished = size
+        if self._unfinished > self._limits.unfinished:
+            excess = self._unfinished - self._limits.unfinished
+            wanted = excess + self._limits.unfinished // 4
+            self._close_waiting(lambda each: each.unfinished, wanted)
+
+    def _close_waiting(self, weight: Callable[[OpenConnection], int], wanted: int) -> None:
+        waiting = [
+            each for each in self._connections if each.waiting_since is not None and weight(each)
+        ]
+        shares: Counter[str] = Counter()
+        for connection in waiting:
+            shares[connection.address] += weight(connection)
+        for connection in closing_order(waiting, shares, weight):
+            if wanted <= 0:
+                break
+            wanted -= weight(connection)
+            self.leave(connection)
+            connection.reset()
+
+    def _sweep(self, loop: asyncio.AbstractEventLoop) -> None:
+        now = loop.time()
+        for connection in [each for each in self._connections if each.deadline < now]:
+            connection.expire()
+        self._sweeping = loop.call_later(SWEEP, self._sweep, loop) if self._connections else None
+
+
+def closing_order(
+    waiting: Iterable[OpenConnection], shares: Counter[str], weight: Callable[[OpenConnection], int]
+) -> Iterable[OpenConnection]:
+    """Yield waiting connections in the order in which to close them.
+
+    The address with the most connections or bytes comes first.
+    """
+    queues: dict[str, list[OpenConnection]] = {}
+    for connection in sorted(waiting, key=lambda each: each.waiting_since or 0.0, reverse=True):
+        queues.setdefault(connection.address, []).append(connection)
+    while queues:
+        address = max(queues, key=shares.__getitem__)
+        connection = queues[address].pop()
+        shares[address] -= weight(connection)
+        if not queues[address]:
+            del queues[address]
+        yield connection
+
+
+def allowed_here() -> ConnectionLimits:
+    """Raise the limit of open files, and return the connection limits that result from it."""
+    try:
+        import resource
+    except ImportError:  # Windows, which has no such limit
+        return ConnectionLimits()
+    soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)
+    wanted = MAX_CONNECTIONS + RESERVE + OTHER_FILES
+    if soft != resource.RLIM_INFINITY and soft < wanted:
+        soft = wanted if hard == resource.RLIM_INFINITY else min(wanted, hard)
+        resource.setrlimit(resource.RLIMIT_NOFILE, (soft, hard))
+        return ConnectionLimits(
+            connections=max(1, min(MAX_CONNECTIONS, soft - RESERVE - OTHER_FILES))
+        )
+    return ConnectionLimits()
+
+
+# --- Cut the bytes of a connection into pieces that each belong to one request
+#
+# The parser gets one piece at a time. ``Framing`` only finds where the pieces end (RFC 9112); the
+# parser decides whether they are valid.
+#
+# The parser reads all bytes that it gets, stores a head of any size, and begins the next request of
+# a pipeline before the previous one is answered. So it gets only what it should read now.
+
+
+_END: Final = b"\r\n"
+_BARE_NEWLINE: Final = regex(rb"(?<!\r)\n")
+_CHUNK_SIZE: Final = regex(rb"([0-9A-Fa-f]{1,8})[ \t]*(?:;.*)?")
+# The least number of bytes that a line of a chunked body counts: even a short line costs work.
+_LEAST_LINE: Final = 64
+# The bytes of a body or chunk that are passed on at once; fewer only at its end. Each piece wakes
+# the task of its request, which costs much more than to keep a byte of a slow client.
+_PART: Final = 16 * 1024
+# The most bytes of a request line besides its address: the method and the version.
+_REST_OF_LINE: Final = 64
+
+
+class _Expected(Enum):
+    HEAD = auto()
+    BODY = auto()
+    CHUNK_SIZE = auto()
+    CHUNK = auto()
+    TRAILERS = auto()
+
+
+class Framing:
+    """Cuts the bytes of one connection into pieces that each belong to one request.
+
+    ``whole`` is True after the last piece of a request.  ``content`` is the number of bytes of the
+    request's body so far.
+    """
+
+    def __init__(self) -> None:
+        self._buffer = bytearray()
+        self._expected = _Expected.HEAD
+        # Bytes still missing from the body, or from a chunk and its line end.
+        self._left = 0
+        # Bytes of the request that are not content.
+        self._overhead = 0
+        self._searched = 0
+        self.content = 0
+        self.whole = False
+
+    def __len__(self) -> int:
+        return len(self._buffer)
+
+    @property
+    def pending(self) -> bytes:
+        """The received bytes that have not been returned yet."""
+        return bytes(self._buffer)
+
+    @property
+    def begun(self) -> bool:
+        """True if any byte of a request has been received."""
+        return self._expected is not _Expected.HEAD or len(self._buffer) > 0
+
+    @property
+    def in_head(self) -> bool:
+        """True until the head of the request has been returned."""
+        return self._expected is _Expected.HEAD and not self.whole
+
+    def receive(self, data: bytes) -> None:
+        """Add received bytes."""
+        self._buffer += data
+
+    def start_next(self) -> None:
+        """Begin with the next request of the connection."""
+        self._expected, self._overhead, self._searched = _Expected.HEAD, 0, 0
+        self.content, self.whole = 0, False
+
+    def expect_body(self, length: int | None) -> None:
+        """Set the length of the body that follows the head; None if the body is chunked."""
+        if length is None:
+            self._expected = _Expected.CHUNK_SIZE
+        else:
+            self._expected, self._left = _Expected.BODY, length
+            self.whole = length == 0
+
+    def piece(self) -> bytes | None:
+        """Return the next bytes of the request, or None if more must be received first.
+
+        Raises ProblemError.
+        """
+        match self._expected:
+            case _Expected.HEAD:
+                return self._head()
+            case _Expected.BODY:
+                piece = self._part_of_body()
+                self.whole = self._left == 0
+            case _Expected.CHUNK_SIZE:
+                return self._chunk_size()
+            case _Expected.CHUNK:
+                piece = self._part_of_body()
+                if self._left == 0:
+                    self._expected = _Expected.CHUNK_SIZE
+            case _:
+                piece = self._line()
+                self.whole = piece == _END
+        return piece
+
+    def _head(self) -> bytes | None:
+        pending = self._buffer
+        if not pending[:2].strip(b"\r\n"):
+            # Empty lines before a request are ignored.
+            self._count_overhead(len(pending) - len(pending.lstrip(b"\r\n")))
+            self._buffer = pending = pending.lstrip(b"\r\n")
+        if pending and not 65 <= pending[0] <= 90:
+            raise malformed("The request does not begin with a method, such as GET.")
+        end = pending.find(b"\r\n\r\n", max(self._searched - 3, 0))
+        if _BARE_NEWLINE.search(pending, self._searched, len(pending) if end < 0 else end):
+            raise malformed("A line of the head ends without a carriage return.")
+        self._searched = len(pending)
+        size = len(pending) if end < 0 else end + 4
+        self._check_line(pending[: MAX_URL + _REST_OF_LINE + 1])
+        if self._overhead + size > MAX_FRAME:
+            raise large_frame("The head of a request may hold 64 kB; this one is larger.")
+        if end < 0:
+            return None
+        if pending.count(_END, 0, end + 2) > MAX_HEADERS + 1:
+            raise too_many_headers()
+        self._count_overhead(size)
+        return self._take(size)
+
+    def _check_line(self, begin: bytearray) -> None:
+        line, found, _ = begin.partition(_END)
+        too_long = len(line) > MAX_URL + _REST_OF_LINE if not found else False
+        if too_long or max(map(len, line.split(b" ")), default=0) > MAX_URL:
+            raise long_address()
+
+    def _chunk_size(self) -> bytes | None:
+        line = self._line()
+        if line is None:
+            return None
+        size = _CHUNK_SIZE.fullmatch(line[:-2])
+        if size is None:
+            raise malformed("The size of a chunk is no hexadecimal number.")
+        self._left = int(size[1], 16)
+        if self._left:
+            self._left += len(_END)
+            self._expected = _Expected.CHUNK
+        else:
+            self._expected = _Expected.TRAILERS
+        return line
+
+    def _line(self) -> bytes | None:
+        end = self._buffer.find(_END, max(self._searched - 1, 0))
+        size = len(self._buffer) if end < 0 else end + 2
+        if self._overhead + size > MAX_FRAME:
+            raise large_frame("Sizes of chunks and trailers may hold 64 kB; these are larger.")
+        if end < 0:
+            self._searched = size
+            return None
+        self._count_overhead(max(size, _LEAST_LINE))
+        return self._take(size)
+
+    def _part_of_body(self) -> bytes | None:
+        if len(self._buffer) < min(self._left, _PART):
+            return None
+        piece = self._take(min(self._left, len(self._buffer)))
+        self._left -= len(piece)
+        self.content += len(piece)
+        return piece or None
+
+    def _take(self, size: int) -> bytes:
+        piece = bytes(self._buffer[:size])
+        del self._buffer[:size]
+        self._searched = 0
+        return piece
+
+    def _count_overhead(self, size: int) -> None:
+        self._overhead += size
+
+
+# --- Flow control: when a connection reads, and how it closes
+
+
+class LingeringTransport:
+    """A transport whose ``close`` lets the client read the last response first."""
+
+    def __init__(self, transport: asyncio.Transport, finish: Any) -> None:
+        self._transport = transport
+        self.close = finish
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self._transport, name)
+
+
+class Valve(FlowControl):
+    """Flow control that keeps reading paused from ``hold`` to ``release``."""
+
+    # uvicorn cannot resume it while the next request has to wait.
+
+    shut = False
+
+    def resume_reading(self) -> None:
+        """Resume reading, unless ``hold`` has paused it."""
+        if not self.shut:
+            super().resume_reading()
+
+    def hold(self) -> None:
+        """Pause reading until ``release``."""
+        self.shut = True
+        self.pause_reading()
+
+    def release(self) -> None:
+        """Resume reading."""
+        self.shut = False
+        self.resume_reading()
+
+
+# --- Requests that are refused before they reach the application: errors and CORS headers
+
+
+_CLOSE: Final = {"Connection": "close"}
+_ORIGIN: Final = regex(rb"\r\nOrigin:[ \t]*([^\r\n]*?)[ \t]*\r\n", re.IGNORECASE)
+
+
+def refusal_response(problem: ProblemError, path: str, headers: Headers | None = None) -> Response:
+    """Return the error response to a request that does not reach the application.
+
+    ``headers`` are the request's headers, or None if they have not been read.
+    """
+    request = begin_request(headers.get(HEADER) if headers else None)
+    answer = problem.response(path)
+    answer.headers[HEADER] = request.id
+    return answer
+
+
+def malformed(detail: str) -> ProblemError:
+    """Return the error for bytes that are no HTTP request."""
+    title = "This is no HTTP request"
+    return ProblemError(HTTPStatus.BAD_REQUEST, detail, "malformed-request", title, headers=_CLOSE)
+
+
+def late() -> ProblemError:
+    """Return the error for a request that did not arrive in time."""
+    detail = (
+        f"The head of a request must arrive within {HEAD_TIMEOUT:.0f} seconds, and the whole "
+        f"request within {TIMEOUT:.0f}."
+    )
+    return ProblemError(HTTPStatus.REQUEST_TIMEOUT, detail, headers=_CLOSE)
+
+
+def long_address() -> ProblemError:
+    """Return the error for a URL that is too long."""
+    detail = f"An address may have {MAX_URL} characters; this one has more."
+    return ProblemError(HTTPStatus.REQUEST_URI_TOO_LONG, detail, headers=_CLOSE)
+
+
+def too_many_headers() -> ProblemError:
+    """Return the error for a request with too many headers."""
+    return large_frame(f"A request may have {MAX_HEADERS} headers; this one has more.")
+
+
+def large_frame(detail: str) -> ProblemError:
+    """Return the error for a head, chunk size or trailer that is too large."""
+    return ProblemError(HTTPStatus.REQUEST_HEADER_FIELDS_TOO_LARGE, detail, headers=_CLOSE)
+
+
+def too_many(seconds: int) -> ProblemError:
+    """Return the error for a client that has too many requests waiting."""
+    return ProblemError(
+        HTTPStatus.TOO_MANY_REQUESTS,
+        say(
+            "Too many requests from this address are waiting already. Wait, then send this one "
+            "again."
+        ),
+        headers={"Retry-After": str(seconds)},
+    )
+
+
+def too_busy(seconds: int) -> ProblemError:
+    """Return the error for a service that has too much to do."""
+    return ProblemError(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        say("The service has too much to do. Wait, then send this request again."),
+        headers={"Retry-After": str(seconds)},
+    )
+
+
+def origin_in(head: bytes) -> str:
+    """Return the origin in a request's head, or "". The head may be incomplete or invalid."""
+    found = _ORIGIN.search(head)
+    return found[1].decode("latin-1") if found else ""
+
+
+def cors_headers(origins: Sequence[str], origin: str) -> Mapping[str, str]:
+    """Return the headers that allow a page of ``origin`` to read the response."""
+    # ``origin`` is "" if the request was refused before its head was read. In this case, the only
+    # entry of ``origins`` is used, if there is only one.
+    if "*" in origins:
+        allowed = "*"
+    elif origin in origins:
+        allowed = origin
+    elif not origin and len(origins) == 1:
+        allowed = origins[0]
+    else:
+        return {}
+    return {
+        "Access-Control-Allow-Origin": allowed,
+        "Access-Control-Expose-Headers": ", ".join(EXPOSED_HEADERS),
+        "Vary": "Origin",
+    }

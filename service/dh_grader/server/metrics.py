@@ -1,7 +1,7 @@
 """Metrics for Prometheus.
 
-A label has few values, and never contains text from a client. This module is imported only if
-metrics are switched on.
+A label has few values, and never contains text from a client. This file is imported only if metrics
+are switched on.
 """
 
 import os
@@ -31,9 +31,6 @@ from dh_grader.grading import Report
 from dh_grader.grading.report import messages_of
 from dh_grader.server.turns import FairAdmission
 from dh_grader.server.watching import FOLDER
-
-# This module is imported only if metrics are switched on.
-
 
 PATH: Final = "/metrics"
 _METHODS: Final = frozenset({"GET", "HEAD", "POST", "OPTIONS", "PUT", "PATCH", "DELETE"})

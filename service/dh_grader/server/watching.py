@@ -1,4 +1,7 @@
-"""The log of the service, and the folder in which processes share their metrics."""
+"""The log of the service, and the folder in which processes share their metrics.
+
+The metrics themselves are in ``metrics.py``, which a service without metrics does not import.
+"""
 
 import json
 import logging
@@ -13,51 +16,6 @@ from dh_grader.api.http import current_request
 from dh_grader.catalogue.files import temporary_place
 from dh_grader.settings import Settings, SettingsError
 from dh_grader.translations import say
-
-# --- The folder in which processes share their metrics
-
-
-# This module does not import the metrics.
-
-
-# The environment variable in which prometheus_client looks for the folder.
-FOLDER: Final = "PROMETHEUS_MULTIPROC_DIR"
-
-
-@contextmanager
-def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]:
-    """Create a metrics folder for processes started in this context. Raises SettingsError.
-
-    Yields a function that removes the gauges of an ended process.
-    """
-    if settings.metrics == "off" or settings.workers == 1:
-        yield lambda _: None
-        return
-    try:
-        place = temporary_place()
-        folder = tempfile.TemporaryDirectory(prefix="dh-grader-metrics-", dir=place)
-    except OSError as error:
-        raise SettingsError(
-            say(
-                "DH_GRADER_METRICS: with several workers a folder for temporary files must be "
-                "writable: {reason}",
-                reason=str(error),
-            )
-        ) from error
-    with folder as name:
-        os.environ[FOLDER] = name
-        try:
-            yield _forget
-        finally:
-            del os.environ[FOLDER]
-
-
-def _forget(process: int) -> None:
-    # The counters of the process stay.
-    from prometheus_client.multiprocess import mark_process_dead
-
-    mark_process_dead(process)  # type: ignore[no-untyped-call]
-
 
 # --- The format of the log: text, or one JSON object for each line
 
@@ -160,3 +118,45 @@ def set_up_access_log(*, addresses: bool) -> None:
     for old in [f for f in logger.filters if isinstance(f, _AccessLogFilter)]:
         logger.removeFilter(old)
     logger.addFilter(_AccessLogFilter(addresses=addresses))
+
+
+# --- The folder in which processes share their metrics
+
+
+# The environment variable in which prometheus_client looks for the folder.
+FOLDER: Final = "PROMETHEUS_MULTIPROC_DIR"
+
+
+@contextmanager
+def shared_metrics_folder(settings: Settings) -> Iterator[Callable[[int], None]]:
+    """Create a metrics folder for processes started in this context. Raises SettingsError.
+
+    Yields a function that removes the gauges of an ended process.
+    """
+    if settings.metrics == "off" or settings.workers == 1:
+        yield lambda _: None
+        return
+    try:
+        place = temporary_place()
+        folder = tempfile.TemporaryDirectory(prefix="dh-grader-metrics-", dir=place)
+    except OSError as error:
+        raise SettingsError(
+            say(
+                "DH_GRADER_METRICS: with several workers a folder for temporary files must be "
+                "writable: {reason}",
+                reason=str(error),
+            )
+        ) from error
+    with folder as name:
+        os.environ[FOLDER] = name
+        try:
+            yield _forget
+        finally:
+            del os.environ[FOLDER]
+
+
+def _forget(process: int) -> None:
+    # The counters of the process stay.
+    from prometheus_client.multiprocess import mark_process_dead
+
+    mark_process_dead(process)  # type: ignore[no-untyped-call]

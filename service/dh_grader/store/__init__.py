@@ -1,6 +1,7 @@
 """What is recorded of an attempt, what counts, and what may go wrong.
 
-Nothing here loads a database driver, so that a service without a database does without.
+Nothing here loads a database driver, so a service without a database needs none; the other files of
+this package do.
 """
 
 import hashlib
@@ -22,6 +23,8 @@ from dh_grader.grading import GradedAnswers, Report, graded_answers
 from dh_grader.grading.report import PartReport
 from dh_grader.submissions.bodies import GradeRequest
 from dh_grader.translations import Language, Sentence, say, say_count, told
+
+# --- Whether an attempt is taken, and what its points are worth
 
 
 class AttemptRefusedError(Exception):
@@ -72,199 +75,22 @@ def points_after(points: float, max_points: float, hint_price: float, worth: flo
     return round(max(0.0, points - hint_points(hint_price, max_points)) * worth, 6)
 
 
-def _formatted(moment: datetime) -> str:
-    return moment.strftime("%Y-%m-%d at %H:%M %Z").rstrip()
-
-
-# --- Recorded reports: JSON in English, with the sentences that can be translated
-#
-# A recorded report begins with ``sentences``, a list of templates with their values. The rest is
-# the
-# report as it was sent.
-
-
-_START: Final = '{"sentences":'
-_BRACES: Final = frozenset("{}")
-_DECODER: Final = json.JSONDecoder()
-
-
-def recorded_report(report: Report) -> str:
-    """Return a report as JSON for the database, with its translatable sentences."""
-    text = rendered(report).decode()
-    found: dict[str, Sentence] = {}
-
-    def collect(text: str) -> str:
-        if isinstance(text, Sentence):
-            found[text] = text
-        return text
-
-    with_texts(report, collect)
-    if not found:
-        return text
-    kept = [_written(each) for each in found.values() if each.values or _BRACES & set(each)]
-    listed = json.dumps(kept, ensure_ascii=False, separators=(",", ":"))
-    return f"{_START}{listed},{text[1:]}"
-
-
-def shown_report(recorded: str, language: Language) -> str:
-    """Return a recorded report as JSON in a language."""
-    sentences, text = _divided(recorded)
-    translation = language.translation
-    if translation is None or sentences is None:
-        return text
-    known = _known(sentences)
-    try:
-        report = read_report(text.encode())
-    except ValidationError:
-        # A report of another version may have another shape.
-        return text
-    return rendered(with_texts(report, lambda each: told(known(each), translation))).decode()
-
-
-def sentence_in(report: Mapping[str, Any], text: str) -> str:
-    """Find the sentence that has this English text in a recorded report."""
-    sentences = report.get("sentences")
-    return text if sentences is None else _known(sentences)(text)
-
-
-def _divided(recorded: str) -> tuple[list[Any] | None, str]:
-    if not recorded.startswith(_START):
-        return None, recorded
-    sentences, end = _DECODER.raw_decode(recorded, len(_START))
-    return sentences, "{" + recorded[end + 1 :]
-
-
-def _known(sentences: list[Any]) -> Callable[[str], str]:
-    known = {str(each): each for each in map(_read, sentences)}
-
-    def sentence(text: str) -> str:
-        if text in known or not text or _BRACES & set(text):
-            return known.get(text, text)
-        return Sentence(text)
-
-    return sentence
-
-
-def _written(sentence: Sentence) -> list[Any]:
-    values = {
-        name: _written(value) if isinstance(value, Sentence) else value
-        for name, value in sentence.values.items()
-    }
-    return [sentence.template, values, *filter(None, [sentence.plural])]
-
-
-def _read(written: list[Any]) -> Sentence:
-    template, values, *plural = written
-    read = {
-        name: _read(value) if isinstance(value, list) else value for name, value in values.items()
-    }
-    return Sentence(template, read, *plural)
-
-
-# --- The outcome of a report: verdicts and message codes, without the answers
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """The verdicts and message codes of one report, as JSON in ``content``."""
-
-    exercise: str
-    content: str
-
-    @cached_property
-    def digest(self) -> str:
-        """The SHA-256 of the content; equal outcomes have equal digests."""
-        return hashlib.sha256(self.content.encode()).hexdigest()
-
-
-def outcome_of(report: Report) -> Outcome:
-    """Return the verdicts and message codes of a report.
-
-    The feedback level of the report must be higher than ``score``.
-    """
-    content = {part.part: _part(part) for part in report.parts}
-    return Outcome(report.exercise.partition("~")[0], json.dumps(content, separators=(",", ":")))
-
-
-def _part(part: PartReport) -> dict[str, object]:
-    cells = {
-        f"{row.label}/{cell.label}": str(cell.verdict) for row in part.rows for cell in row.cells
-    }
-    messages = [
-        *part.feedback,
-        *(message for row in part.rows for message in row.feedback),
-        *(message for row in part.rows for cell in row.cells for message in cell.feedback),
-    ]
-    codes = sorted({message.code for message in messages if message.severity != "info"})
-    return {"verdict": str(part.verdict), "cells": cells, "codes": codes}
-
-
-# --- Grade an attempt: the report for the learner, and the outcome for statistics
-
-
-@dataclass(frozen=True, slots=True)
-class AttemptReport:
-    """A report, its JSON, and its outcome (verdicts and message codes) for statistics."""
-
-    report: Report
-    text: str
-    outcome: Outcome
-
-
-class AttemptGrading:
-    """Grades the answers of one request, and makes reports at different feedback levels."""
-
-    def __init__(self, exercise: Exercise, body: GradeRequest) -> None:
-        self._exercise = exercise
-        self._body = body
-        self._graded: dict[FeedbackLevel, GradedAnswers] = {}
-        self._reports: dict[FeedbackLevel, AttemptReport] = {}
-
-    def has(self, most: FeedbackLevel) -> bool:
-        """True if ``at(most)`` can return the report without grading again."""
-        return _grading_level(self._level(most)) in self._graded
-
-    def at(self, most: FeedbackLevel) -> AttemptReport:
-        """Return the report at the requested feedback level, or at ``most`` if that is lower."""
-        level = self._level(most)
-        if level not in self._reports:
-            self._reports[level] = self._report(most, level)
-        return self._reports[level]
-
-    def _report(self, most: FeedbackLevel, level: FeedbackLevel) -> AttemptReport:
-        # The outcome needs rows, which the report at level ``score`` does not have.
-        enough = _grading_level(level)
-        if enough not in self._graded:
-            submission = replace(self._body.submission(most), feedback=enough)
-            self._graded[enough] = graded_answers(self._exercise, submission)
-        graded = self._graded[enough]
-        report = graded.report(enough)
-        outcome = outcome_of(report)
-        shown = report if level is enough else graded.report(level)
-        return AttemptReport(shown, recorded_report(shown), outcome)
-
-    def _level(self, most: FeedbackLevel) -> FeedbackLevel:
-        return self._body.submission(most).feedback
-
-
-def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
-    return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS
-
-
-# --- Data classes for new, recorded and listed attempts, and for filters of attempts
-#
-# This module loads no database driver.
-
-
-MOST_ON_A_PAGE: Final = 100
-
-
 def hint_points(price: float, max_points: float) -> float:
     """Return the points that hints cost, at most ``max_points``.
 
     ``price`` is the price of the hints as a fraction of ``max_points``.
     """
     return round(min(price, 1.0) * max_points, 6)
+
+
+def _formatted(moment: datetime) -> str:
+    return moment.strftime("%Y-%m-%d at %H:%M %Z").rstrip()
+
+
+# --- Data classes for new, recorded and listed attempts, and for filters of attempts
+
+
+MOST_ON_A_PAGE: Final = 100
 
 
 class GradesFormat(StrEnum):
@@ -386,7 +212,181 @@ class ListedAttempt:
         return self.points if self.awarded is None else self.awarded
 
 
-# The errors that the store of attempts raises.
+# --- The outcome of a report: verdicts and message codes, without the answers
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """The verdicts and message codes of one report, as JSON in ``content``."""
+
+    exercise: str
+    content: str
+
+    @cached_property
+    def digest(self) -> str:
+        """The SHA-256 of the content; equal outcomes have equal digests."""
+        return hashlib.sha256(self.content.encode()).hexdigest()
+
+
+def outcome_of(report: Report) -> Outcome:
+    """Return the verdicts and message codes of a report.
+
+    The feedback level of the report must be higher than ``score``.
+    """
+    content = {part.part: _part(part) for part in report.parts}
+    return Outcome(report.exercise.partition("~")[0], json.dumps(content, separators=(",", ":")))
+
+
+def _part(part: PartReport) -> dict[str, object]:
+    cells = {
+        f"{row.label}/{cell.label}": str(cell.verdict) for row in part.rows for cell in row.cells
+    }
+    messages = [
+        *part.feedback,
+        *(message for row in part.rows for message in row.feedback),
+        *(message for row in part.rows for cell in row.cells for message in cell.feedback),
+    ]
+    codes = sorted({message.code for message in messages if message.severity != "info"})
+    return {"verdict": str(part.verdict), "cells": cells, "codes": codes}
+
+
+# --- Grade an attempt: the report for the learner, and the outcome for statistics
+
+
+@dataclass(frozen=True, slots=True)
+class AttemptReport:
+    """A report, its JSON, and its outcome (verdicts and message codes) for statistics."""
+
+    report: Report
+    text: str
+    outcome: Outcome
+
+
+class AttemptGrading:
+    """Grades the answers of one request, and makes reports at different feedback levels."""
+
+    def __init__(self, exercise: Exercise, body: GradeRequest) -> None:
+        self._exercise = exercise
+        self._body = body
+        self._graded: dict[FeedbackLevel, GradedAnswers] = {}
+        self._reports: dict[FeedbackLevel, AttemptReport] = {}
+
+    def has(self, most: FeedbackLevel) -> bool:
+        """True if ``at(most)`` can return the report without grading again."""
+        return _grading_level(self._level(most)) in self._graded
+
+    def at(self, most: FeedbackLevel) -> AttemptReport:
+        """Return the report at the requested feedback level, or at ``most`` if that is lower."""
+        level = self._level(most)
+        if level not in self._reports:
+            self._reports[level] = self._report(most, level)
+        return self._reports[level]
+
+    def _report(self, most: FeedbackLevel, level: FeedbackLevel) -> AttemptReport:
+        # The outcome needs rows, which the report at level ``score`` does not have.
+        enough = _grading_level(level)
+        if enough not in self._graded:
+            submission = replace(self._body.submission(most), feedback=enough)
+            self._graded[enough] = graded_answers(self._exercise, submission)
+        graded = self._graded[enough]
+        report = graded.report(enough)
+        outcome = outcome_of(report)
+        shown = report if level is enough else graded.report(level)
+        return AttemptReport(shown, recorded_report(shown), outcome)
+
+    def _level(self, most: FeedbackLevel) -> FeedbackLevel:
+        return self._body.submission(most).feedback
+
+
+def _grading_level(level: FeedbackLevel) -> FeedbackLevel:
+    return FeedbackLevel.FULL if level is FeedbackLevel.FULL else FeedbackLevel.HINTS
+
+
+# --- Recorded reports: JSON in English, with the sentences that can be translated
+#
+# A recorded report begins with ``sentences``, a list of templates with their values. The rest is
+# the report as it was sent.
+
+
+_START: Final = '{"sentences":'
+_BRACES: Final = frozenset("{}")
+_DECODER: Final = json.JSONDecoder()
+
+
+def recorded_report(report: Report) -> str:
+    """Return a report as JSON for the database, with its translatable sentences."""
+    text = rendered(report).decode()
+    found: dict[str, Sentence] = {}
+
+    def collect(text: str) -> str:
+        if isinstance(text, Sentence):
+            found[text] = text
+        return text
+
+    with_texts(report, collect)
+    if not found:
+        return text
+    kept = [_written(each) for each in found.values() if each.values or _BRACES & set(each)]
+    listed = json.dumps(kept, ensure_ascii=False, separators=(",", ":"))
+    return f"{_START}{listed},{text[1:]}"
+
+
+def shown_report(recorded: str, language: Language) -> str:
+    """Return a recorded report as JSON in a language."""
+    sentences, text = _divided(recorded)
+    translation = language.translation
+    if translation is None or sentences is None:
+        return text
+    known = _known(sentences)
+    try:
+        report = read_report(text.encode())
+    except ValidationError:
+        # A report of another version may have another shape.
+        return text
+    return rendered(with_texts(report, lambda each: told(known(each), translation))).decode()
+
+
+def sentence_in(report: Mapping[str, Any], text: str) -> str:
+    """Find the sentence that has this English text in a recorded report."""
+    sentences = report.get("sentences")
+    return text if sentences is None else _known(sentences)(text)
+
+
+def _divided(recorded: str) -> tuple[list[Any] | None, str]:
+    if not recorded.startswith(_START):
+        return None, recorded
+    sentences, end = _DECODER.raw_decode(recorded, len(_START))
+    return sentences, "{" + recorded[end + 1 :]
+
+
+def _known(sentences: list[Any]) -> Callable[[str], str]:
+    known = {str(each): each for each in map(_read, sentences)}
+
+    def sentence(text: str) -> str:
+        if text in known or not text or _BRACES & set(text):
+            return known.get(text, text)
+        return Sentence(text)
+
+    return sentence
+
+
+def _written(sentence: Sentence) -> list[Any]:
+    values = {
+        name: _written(value) if isinstance(value, Sentence) else value
+        for name, value in sentence.values.items()
+    }
+    return [sentence.template, values, *filter(None, [sentence.plural])]
+
+
+def _read(written: list[Any]) -> Sentence:
+    template, values, *plural = written
+    read = {
+        name: _read(value) if isinstance(value, list) else value for name, value in values.items()
+    }
+    return Sentence(template, read, *plural)
+
+
+# --- The errors that the store of attempts raises
 
 
 class StoreDownError(Exception):

@@ -1,4 +1,7 @@
-"""The store of attempts that the HTTP routes use: recorded, listed, regraded, forgotten."""
+"""The store of attempts that the HTTP routes use: recorded, listed, regraded, forgotten.
+
+It knows threads, time limits and failures; the SQL is in the other files of this package.
+"""
 
 import asyncio
 import tempfile

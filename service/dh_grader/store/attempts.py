@@ -1,4 +1,7 @@
-"""Record attempts and the hints that learners take in the database, each exactly once."""
+"""Record attempts and the hints that learners take in the database, each exactly once.
+
+What is read from recorded attempts is in ``results.py``; threads are in ``attempt_store.py``.
+"""
 
 import secrets
 from collections import Counter
@@ -31,11 +34,10 @@ from dh_grader.store.database import Priority, queue_score
 from dh_grader.store.tables import assignments, attempts, hints, line_items, outcomes
 from dh_grader.translations import say
 
-# --- Database functions for the hints that learners take at recorded attempts
+# --- The hints that learners take at recorded attempts
 #
 # A hint explains a message of a report. Its price reduces the points of the learner's later
-# attempts
-# at the exercise.
+# attempts at the exercise.
 
 
 # What the learner's hints cost the next attempt, as a share of its points: a part of a statement

@@ -1,6 +1,7 @@
 """The database: opened, migrated, copied, erased, and written to by one thread.
 
-It also has the queue of scores.
+It also has the queue of scores that go to platforms; ``lti/outbox.py`` sends them. Attempts are
+recorded and read in the other files.
 """
 
 import asyncio
@@ -49,215 +50,452 @@ from dh_grader.store import StoreDownError, UnusableDatabaseError
 from dh_grader.store.tables import UtcTime, attempts, contexts, learners, line_items, scores
 from dh_grader.translations import Sentence, joined, say
 
-# --- The queue of scores to be sent to learning platforms
-#
-# A row belongs to a learner and a line item (a column of the platform's gradebook). Points are read
-# when they are sent, so the last change counts.
+# --- Open and migrate a database, and run transactions
 
 
-# In ``Connection.info``: True if the transaction has queued a score.
-QUEUED: Final = "scores_queued"
-# How the learners of scores begin that are to be cleared.
-FORGOTTEN: Final = "forgotten-"
+R = TypeVar("R")
+
+_log = logging.getLogger(__name__)
+
+_MIGRATIONS: Final = Path(__file__).parent / "migrations"
+# How long a statement waits for another process that is writing (seconds).
+_LOCK_WAIT: Final = 5.0
+# How long a starting process waits for another one that migrates SQLite (milliseconds).
+_MIGRATION_WAIT: Final = 600_000
+# The PostgreSQL advisory lock that lets only one of several starting processes migrate.
+_MIGRATION_LOCK: Final = 0x6468_6772
+# The most tries of a transaction after deadlocks (PostgreSQL, appendix A, "deadlock_detected").
+_TRANSACTION_TRIES: Final = 5
+_DEADLOCK: Final = "40P01"
+# Give up a server whose machine is gone after half a minute (libpq, "keepalives_idle" and
+# following). By default TCP would wait a quarter of an hour.
+_WHEN_SILENT: Final = {
+    "keepalives_idle": 10,
+    "keepalives_interval": 5,
+    "keepalives_count": 3,
+    "tcp_user_timeout": 25_000,
+}
 
 
-class Priority(IntEnum):
-    """The priority of a queued score; the lowest number is sent first."""
+@dataclass(frozen=True, slots=True)
+class Revisions:
+    """The revision of a database's tables (None without tables), and that of this program."""
 
-    HAND_IN = 0
-    CHANGE = 1
-    REGRADE = 2
-
-
-_COLUMNS: Final = (
-    "line_item", "learner", "sub", "max_points", "version", "wanted_at", "state", "priority",
-    "tries", "next_try_at",
-)  # fmt: skip
-# Build the statements once: building one takes longer than running it.
-_RECEIVERS: Final = (
-    select(
-        line_items.c.number,
-        learners.c.learner,
-        learners.c.sub,
-        line_items.c.max_points,
-        literal(1).label("version"),
-        bindparam("now", type_=UtcTime).label("wanted_at"),
-        literal("waiting").label("state"),
-        bindparam("priority", type_=scores.c.priority.type).label("priority"),
-        literal(0).label("tries"),
-        bindparam("now", type_=UtcTime).label("next_try_at"),
-    )
-    .join_from(line_items, contexts)
-    .join(learners, learners.c.registration == contexts.c.registration)
-)
-_OF_LEARNER: Final = _RECEIVERS.where(
-    line_items.c.assignment == bindparam("assignment"), learners.c.learner == bindparam("learner")
-)
+    found: str | None
+    known: str
+    # True if the tables are those of a newer version of the program.
+    is_newer: bool = False
 
 
-def _upsert(dialect: Any, chosen: Any) -> Any:
-    new = dialect.insert(scores).from_select(_COLUMNS, chosen)
-    more_urgent = case(
-        (
-            (scores.c.state == "waiting") & (scores.c.priority < new.excluded.priority),
-            scores.c.priority,
-        ),
-        else_=new.excluded.priority,
-    )
-    return new.on_conflict_do_update(
-        index_elements=[scores.c.line_item, scores.c.learner],
-        set_={
-            "sub": new.excluded.sub,
-            "version": scores.c.version + 1,
-            "wanted_at": new.excluded.wanted_at,
-            "state": "waiting",
-            "priority": more_urgent,
-            "next_try_at": new.excluded.next_try_at,
-        },
-    )
+def open_database(url: str, *, create: bool = True, migrate: bool = True) -> Engine:
+    """Open the database at the URL, with the tables of this version of the program.
 
-
-_DIALECTS: Final = {"postgresql": postgresql, "sqlite": sqlite}
-_QUEUE_ONE: Final = {name: _upsert(each, _OF_LEARNER) for name, each in _DIALECTS.items()}
-
-
-def queue_score(
-    connection: Connection, assignment: int | None, learner: str, priority: Priority
-) -> None:
-    """Queue the score of a learner in an assignment, if a platform has a column for this score."""
-    if assignment is not None:
-        _queue(
-            connection,
-            _QUEUE_ONE[connection.dialect.name],
-            priority,
-            assignment=assignment,
-            learner=learner,
-        )
-
-
-def queue_scores(
-    connection: Connection, chosen: ColumnElement[bool], priority: Priority = Priority.CHANGE
-) -> None:
-    """Queue the scores of the chosen attempts; ``chosen`` is an SQL condition."""
-    having = select(attempts.c.assignment, attempts.c.learner).where(
-        chosen, attempts.c.assignment.is_not(None)
-    )
-    having_them = having.distinct().subquery()
-    receivers = _RECEIVERS.join(
-        having_them,
-        (having_them.c.assignment == line_items.c.assignment)
-        & (having_them.c.learner == learners.c.learner),
-    )
-    # SQLite reads "ON CONFLICT" after a join as a part of the join, unless there is a WHERE.
-    receivers = receivers.where(line_items.c.number.is_not(None))
-    _queue(connection, _upsert(_DIALECTS[connection.dialect.name], receivers), priority)
-
-
-def forget_scores(connection: Connection, learner: str) -> None:
-    """Delete a learner's scores: at the platforms if they were sent, else in the queue."""
-    mine = scores.c.learner == learner
-    connection.execute(scores.delete().where(mine, scores.c.stamp.is_(None)))
-    # The platform's id of the learner stays until the platform has cleared the score.
-    now = datetime.now(UTC)
-    left = update(scores).where(mine)
-    changed = connection.execute(
-        left.values(
-            learner=FORGOTTEN + secrets.token_hex(16),
-            version=scores.c.version + 1,
-            points=None,
-            submitted_at=None,
-            wanted_at=now,
-            state="waiting",
-            priority=int(Priority.CHANGE),
-            next_try_at=now,
-            refusal=None,
-        )
-    )
-    if changed.rowcount:
-        connection.info[QUEUED] = True
-
-
-def _queue(connection: Connection, statement: Any, priority: Priority, **more: object) -> None:
-    values = {"now": datetime.now(UTC), "priority": int(priority), **more}
-    if connection.execute(statement, values).rowcount:
-        connection.info[QUEUED] = True
-
-
-# --- Erase deleted rows from SQLite's write-ahead log (the file ``-wal``)
-#
-# Deleted rows stay in the log until it is truncated, which is possible only while nobody reads.
-
-
-# How long one try waits for readers and blocks writers (milliseconds).
-_WAIT: Final = 100
-# The seconds between two such tries of a service.
-_INTERVAL: Final = 60.0
-# How often a service looks for a large log (seconds), and how long it then waits (milliseconds).
-_LOOK: Final = 1.0
-_SHORT_WAIT: Final = 5
-# The number of tries before the caller gets False, and the seconds in between.
-_ERASURE_TRIES: Final = 8
-_PAUSE: Final = 0.2
-
-
-def overwrite_deleted(
-    engine: Engine, tries: int = _ERASURE_TRIES, wait: int = _WAIT
-) -> bool | None:
-    """Truncate SQLite's write-ahead log; return False if a reader prevents it.
-
-    Each of the tries waits for ``wait`` milliseconds. Return None for PostgreSQL, which overwrites
-    deleted rows by itself.
+    ``url`` is an SQLAlchemy URL or the path of an SQLite file. With ``create``, a missing file and
+    missing tables are created. With ``migrate``, older tables are updated. Raises
+    UnusableDatabaseError.
     """
-    if engine.dialect.name != "sqlite":
-        return None
-    with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
-        before = connection.exec_driver_sql("PRAGMA busy_timeout").scalar_one()
-        connection.exec_driver_sql(f"PRAGMA busy_timeout = {wait}")
+    engine, _ = _opened(url, create=create, migrate=migrate)
+    return engine
+
+
+def migrate_database(url: str) -> Revisions:
+    """Create or update the tables at the URL; return the revision before and that of this program.
+
+    Raises UnusableDatabaseError.
+    """
+    engine, revisions = _opened(url, create=True, migrate=True)
+    engine.dispose()
+    return revisions
+
+
+def _opened(url: str, *, create: bool, migrate: bool) -> tuple[Engine, Revisions]:
+    engine = unmigrated_database(url)
+    if (path := file_of(engine)) is not None and not path.exists():
+        _check_missing(engine, path, create=create)
+        make_private(str(path))
+    try:
+        with engine.connect() as connection:
+            if _is_in_memory(connection):
+                raise UnusableDatabaseError(say("would be kept in memory and lost; name a file"))
+            connection.rollback()
+            revisions = revisions_of(connection)
+            connection.rollback()
+            if revisions.found != revisions.known:
+                if not (migrate or (create and revisions.found is None)):
+                    raise UnusableDatabaseError(_at(engine, unfit(revisions)))
+                revisions = _migrate(connection)
+    except ValueError as error:
+        raise UnusableDatabaseError(say("has parts that the database does not know")) from error
+    except SQLAlchemyError as error:
+        raise UnusableDatabaseError(_at(engine, reason(error))) from error
+    finally:
+        engine.dispose()
+    return engine, revisions
+
+
+def _check_missing(engine: Engine, path: Path, *, create: bool) -> None:
+    # After a killed restore, no program may begin with an empty database.
+    kept = before(path)
+    if kept.exists():
+        problem = say(
+            "there is no such file, but {kept} is there, the database from before a restore. Run "
+            "dh-grader restore again, or move {kept} back to {file}, or away",
+            kept=str(kept),
+            file=str(path),
+        )
+        raise UnusableDatabaseError(_at(engine, problem))
+    for left in unfinished(path):
+        problem = say(
+            "there is no such file, but {left} is there: a restore was interrupted. Run dh-grader "
+            "restore again, or delete {left}",
+            left=str(left),
+        )
+        raise UnusableDatabaseError(_at(engine, problem))
+    if not create:
+        raise UnusableDatabaseError(_at(engine, say("there is no such file")))
+
+
+def _is_in_memory(connection: Connection) -> bool:
+    if connection.dialect.name != "sqlite":
+        return False
+    return not connection.exec_driver_sql("PRAGMA database_list").one()[2]
+
+
+def file_of(engine: Engine) -> Path | None:
+    """Return the file of an SQLite database; None for PostgreSQL, and for an URI of SQLite."""
+    path = engine.url.database or ""
+    return Path(path) if engine.dialect.name == "sqlite" and is_plain(path) else None
+
+
+def revisions_of(connection: Connection) -> Revisions:
+    """Return the revision of the tables, and that of this version of the program."""
+    return compared(MigrationContext.configure(connection).get_current_revision())
+
+
+def compared(found: str | None) -> Revisions:
+    """Compare the revision of a database's tables with that of this version of the program."""
+    scripts = ScriptDirectory.from_config(_config())
+    known = scripts.get_current_head()
+    assert known is not None
+    all_known = {script.revision for script in scripts.walk_revisions()}
+    return Revisions(found, known, found is not None and found not in all_known)
+
+
+def unfit(revisions: Revisions) -> Sentence:
+    """Say why this version of the program cannot use tables of another revision, and what to do."""
+    if revisions.is_newer:
+        return say(
+            "its tables ({found}) are those of a newer version of the program; this version knows "
+            "tables up to {known}",
+            found=str(revisions.found),
+            known=revisions.known,
+        )
+    if revisions.found is None:
+        return say("it has no tables. Create them: dh-grader attempts migrate")
+    return say(
+        "its tables ({found}) are those of an older version of the program; this version needs "
+        "{known}. Back up the database, stop services of the older version, and run: dh-grader "
+        "attempts migrate",
+        found=revisions.found,
+        known=revisions.known,
+    )
+
+
+def unmigrated_database(url: str) -> Engine:
+    """Open the database at the URL without a migration. Raises UnusableDatabaseError."""
+    try:
+        return _engine(url)
+    except (ArgumentError, ValueError) as error:
+        # Do not repeat the URL: it may contain a password.
+        problem = say("is no URL of a database and no path of a file")
+        raise UnusableDatabaseError(problem) from error
+
+
+def _at(engine: Engine, problem: str) -> str:
+    return joined(": ", [safe_url(engine), problem])
+
+
+def _engine(url: str) -> Engine:
+    parsed = make_url(url if "://" in url else f"sqlite:///{url}")
+    match parsed.get_backend_name():
+        case "sqlite" if parsed.drivername in ("sqlite", "sqlite+pysqlite"):
+            engine = create_engine(
+                parsed, connect_args={"timeout": _LOCK_WAIT}, hide_parameters=True
+            )
+            DatabaseFile(engine, _LOCK_WAIT)
+            event.listen(engine, "begin", _begin_sqlite)
+            return engine
+        case "postgresql":
+            # The server releases the locks of a client whose machine is gone after a minute.
+            options = (
+                f"-c lock_timeout={_LOCK_WAIT:.0f}s -c statement_timeout=60s "
+                "-c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10 -c tcp_keepalives_count=3"
+            )
+            return create_engine(
+                parsed.set(drivername="postgresql+psycopg"),
+                pool_pre_ping=True,
+                # Logged errors must not contain answers of students.
+                hide_parameters=True,
+                connect_args=_WHEN_SILENT | {"connect_timeout": 3, "options": options},
+            )
+        case _:
+            raise UnusableDatabaseError(
+                say("{driver} is not supported; use SQLite or PostgreSQL", driver=parsed.drivername)
+            )
+
+
+def _begin_sqlite(connection: Connection) -> None:
+    # A deferred transaction that reads first would fail at its first write beside another writer.
+    writes = connection.get_execution_options().get("writes", False)
+    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
+
+
+def _migrate(connection: Connection) -> Revisions:
+    # Return the revision before. Raises UnusableDatabaseError for tables of a newer version.
+    connection = connection.execution_options(writes=True)
+    with _patient(connection), connection.begin():
+        without_time_limit(connection)
+        if connection.dialect.name == "postgresql":
+            lock = text("SELECT pg_advisory_xact_lock(:key)")
+            connection.execute(lock, {"key": _MIGRATION_LOCK})
+        # Another process may have migrated meanwhile.
+        revisions = revisions_of(connection)
+        if revisions.is_newer:
+            raise UnusableDatabaseError(_at(connection.engine, unfit(revisions)))
+        if revisions.found == revisions.known:
+            return revisions
+        config = _config()
+        config.attributes["connection"] = connection
+        command.upgrade(config, "head")
+    if revisions.found is not None:
+        # At its start, the service has not set up its log yet: only warnings are written.
+        _log.warning("The tables were migrated from %s to %s", revisions.found, revisions.known)
+    return revisions
+
+
+def _config() -> Config:
+    config = Config()
+    config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
+    return config
+
+
+@contextmanager
+def _patient(connection: Connection) -> Iterator[None]:
+    driver = connection.connection.driver_connection
+    if connection.dialect.name != "sqlite" or driver is None:
+        yield
+        return
+    # Not by SQLAlchemy, which would begin a transaction and so wait for the lock.
+    driver.execute(f"PRAGMA busy_timeout = {_MIGRATION_WAIT}")
+    try:
+        yield
+    finally:
+        driver.execute(f"PRAGMA busy_timeout = {_LOCK_WAIT * 1000:.0f}")
+
+
+def without_time_limit(connection: Connection) -> None:
+    """Remove the time limits of the connection's transaction."""
+    if connection.dialect.name == "postgresql":
+        for limit in ("lock_timeout", "statement_timeout"):
+            connection.exec_driver_sql(f"SET LOCAL {limit} = 0")
+
+
+def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
+    """Run ``work`` in a transaction and return its result; try again after a deadlock."""
+    tries = 0
+    while True:
         try:
-            for _ in range(tries - 1):
-                if _truncate(connection):
-                    return True
-                time.sleep(_PAUSE)
-            return _truncate(connection)
-        finally:
-            connection.exec_driver_sql(f"PRAGMA busy_timeout = {before}")
+            with engine.connect() as connection:
+                connection = connection.execution_options(writes=True)
+                with connection.begin():
+                    return work(connection)
+        except SQLAlchemyError as error:
+            tries += 1
+            if tries == _TRANSACTION_TRIES or not is_deadlock(error):
+                raise
 
 
-class LogCutter:
-    """Truncates SQLite's write-ahead log every minute, and a large log within seconds.
+def is_deadlock(error: Exception) -> bool:
+    """True if PostgreSQL ended the transaction because of a deadlock."""
+    return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
 
-    While a program reads for long, the log grows and cannot be truncated.
+
+def safe_url(engine: Engine) -> str:
+    """The URL of a database without its password."""
+    return engine.url.render_as_string(hide_password=True)
+
+
+def reason(error: SQLAlchemyError) -> str:
+    """Return the database driver's error message in one line, without values of rows."""
+    said = str(getattr(error, "orig", None) or error).partition("\nDETAIL:")[0]
+    return " ".join(said.split())[:300]
+
+
+# --- The thread that writes to the database, and commits several waiting attempts at once
+
+
+_SILENT: Final = "the database does not react"
+
+# The most jobs in one transaction, and in the queue before further jobs are refused.
+_MAX_TOGETHER: Final = 64
+_MAX_WAITING: Final = 4096
+# The time until the next call of ``tidy`` after one that failed (seconds).
+_TIDY_AGAIN: Final = 60.0
+# How long a job waits for the database in all (seconds). A paused server raises no error, and
+# waiting for a lock takes up to five seconds.
+_TIMEOUT: Final = 15.0
+# How long the first of several concurrent jobs waits for others (seconds): a commit for each would
+# cost twice the processor time. A client that sends one attempt after the other never waits.
+_GATHER: Final = 0.01
+
+
+@dataclass(frozen=True, slots=True)
+class _Job:
+    work: Callable[[Connection], Any]
+    loop: asyncio.AbstractEventLoop
+    done: "asyncio.Future[Any]"
+
+
+# A job with its result or its exception.
+_Finished = tuple[_Job, Any, Exception | None]
+
+
+class AttemptWriter:
+    """Runs jobs (functions that write) in order, many jobs in one transaction.
+
+    A job gets its result only after the commit. A failing job does not affect others.
     """
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: Engine, tidy: Callable[[], float] = lambda: 3600.0) -> None:
+        """Start the thread, which calls ``tidy``, and again after the seconds that it returns."""
         self._engine = engine
-        self._due = time.monotonic()
+        self._tidy = tidy
+        self._tidy_at = monotonic()
+        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
+        # The start of the current transaction; None while the thread is idle.
+        self._begun_at: float | None = None
+        # The time of the last job that the database failed or refused, or that waited too long.
+        self.failed_at = -inf
+        self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
+        self._thread.start()
 
-    def next(self) -> float:
-        """Truncate the log if it is due or large; return the seconds until the next call."""
-        if self._engine.dialect.name != "sqlite":
-            return _INTERVAL
-        is_due = time.monotonic() >= self._due
-        with suppress(SQLAlchemyError, OSError):
-            size = self._size_of_log()
-            if size > LARGE_LOG or (size and is_due):
-                overwrite_deleted(self._engine, 1, _WAIT if is_due else _SHORT_WAIT)
-        if is_due:
-            self._due = time.monotonic() + _INTERVAL
-        return _LOOK
+    async def run(self, work: Callable[[Connection], R]) -> R:
+        """Return the result of ``work`` after its commit. Raises StoreDownError."""
+        begun_at = self._begun_at
+        if begun_at is not None and monotonic() - begun_at > _TIMEOUT:
+            raise self._failed(_SILENT)
+        if self._jobs.qsize() >= _MAX_WAITING:
+            raise self._failed("too many attempts wait to be written")
+        loop = asyncio.get_running_loop()
+        job = _Job(work, loop, loop.create_future())
+        self._jobs.put(job)
+        try:
+            async with asyncio.timeout(_TIMEOUT):
+                result: R = await job.done
+        except TimeoutError as error:
+            raise self._failed(_SILENT) from error
+        return result
 
-    def _size_of_log(self) -> int:
-        path = self._engine.url.database or ""
-        if not is_plain(path):
-            with self._engine.connect() as connection:
-                path = connection.exec_driver_sql("PRAGMA database_list").one()[2]
-        log = Path(f"{path}-wal")
-        return log.stat().st_size if log.exists() else 0
+    def _failed(self, why: str) -> StoreDownError:
+        self.failed_at = monotonic()
+        return StoreDownError(why)
+
+    def close(self) -> None:
+        """Flush pending jobs and stop the writer thread."""
+        self._jobs.put(None)
+        self._thread.join()
+
+    def _run(self) -> None:
+        ended = is_busy = False
+        while not ended:
+            jobs, ended = self._waiting(_GATHER if is_busy else 0)
+            # Skip jobs whose caller has gone.
+            jobs = [job for job in jobs if not job.done.cancelled()]
+            if jobs:
+                self._process(jobs)
+                self._begun_at = None
+                is_busy = len(jobs) > 1
+            if monotonic() >= self._tidy_at and not ended:
+                pause = _TIDY_AGAIN
+                try:
+                    pause = self._tidy()
+                except Exception:  # noqa: BLE001 - recording must go on
+                    _log.exception("The database could not be tidied up")
+                self._tidy_at = monotonic() + pause
+
+    def _waiting(self, gather: float) -> tuple[list[_Job], bool]:
+        jobs: list[_Job] = []
+        try:
+            found = self._jobs.get(timeout=max(0.0, self._tidy_at - monotonic()))
+        except queue.Empty:
+            return jobs, False
+        if gather and found is not None:
+            sleep(gather)
+        while found is not None:
+            jobs.append(found)
+            if len(jobs) == _MAX_TOGETHER:
+                return jobs, False
+            try:
+                found = self._jobs.get_nowait()
+            except queue.Empty:
+                return jobs, False
+        return jobs, True
+
+    def _process(self, jobs: list[_Job]) -> None:
+        self._begun_at = monotonic()
+        try:
+            results = self._run_together(jobs)
+        except Exception as error:  # noqa: BLE001 - each job gets its own exception
+            if len(jobs) > 1 and not is_database_failure(error):
+                for job in jobs:
+                    self._process([job])
+                return
+            failure = error
+            if isinstance(error, SQLAlchemyError):
+                failure = StoreDownError(reason(error))
+            if isinstance(failure, StoreDownError):
+                self.failed_at = monotonic()
+            _deliver([(job, None, failure) for job in jobs])
+            return
+        _deliver([(job, result, None) for job, result in zip(jobs, results, strict=True)])
+
+    def _run_together(self, jobs: list[_Job]) -> list[Any]:
+        with self._engine.connect() as connection:
+            connection = connection.execution_options(writes=True)
+            with connection.begin():
+                return [job.work(connection) for job in jobs]
 
 
-def _truncate(connection: Connection) -> bool:
-    busy, _, _ = connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)").one()
-    return not busy
+def _deliver(finished: list[_Finished]) -> None:
+    by_loop: dict[asyncio.AbstractEventLoop, list[_Finished]] = defaultdict(list)
+    for each in finished:
+        by_loop[each[0].loop].append(each)
+    for loop, jobs in by_loop.items():
+        # A closed loop has no callers.
+        with suppress(RuntimeError):
+            loop.call_soon_threadsafe(_resolve, jobs)
+
+
+def _resolve(finished: list[_Finished]) -> None:
+    for job, result, failure in finished:
+        if job.done.done():
+            continue
+        if failure is None:
+            job.done.set_result(result)
+        else:
+            job.done.set_exception(failure)
+
+
+def is_database_failure(error: Exception) -> bool:
+    """True if the database itself failed, so that an immediate retry would fail, too."""
+    # Transactions of several attempts may deadlock; run one by one, they do not.
+    if is_deadlock(error):
+        return False
+    return isinstance(error, SQLAlchemyError) and (
+        not isinstance(error, DBAPIError)
+        or error.connection_invalidated
+        or type(error).__name__ in ("OperationalError", "InternalError", "InterfaceError")
+    )
 
 
 # --- The file of an SQLite database: open, copy and replace it while other programs may use it
@@ -513,452 +751,212 @@ def _identity(path: Path) -> tuple[int, int] | None:
     return found.st_dev, found.st_ino
 
 
-R = TypeVar("R")
-
-_database_log = logging.getLogger(__name__)
-
-_MIGRATIONS: Final = Path(__file__).parent / "migrations"
-# How long a statement waits for another process that is writing (seconds).
-_LOCK_WAIT: Final = 5.0
-# How long a starting process waits for another one that migrates SQLite (milliseconds).
-_MIGRATION_WAIT: Final = 600_000
-# The PostgreSQL advisory lock that lets only one of several starting processes migrate.
-_MIGRATION_LOCK: Final = 0x6468_6772
-# The most tries of a transaction after deadlocks (PostgreSQL, appendix A, "deadlock_detected").
-_DATABASE_TRIES: Final = 5
-_DEADLOCK: Final = "40P01"
-# Give up a server whose machine is gone after half a minute (libpq, "keepalives_idle" and
-# following). By default TCP would wait a quarter of an hour.
-_WHEN_SILENT: Final = {
-    "keepalives_idle": 10,
-    "keepalives_interval": 5,
-    "keepalives_count": 3,
-    "tcp_user_timeout": 25_000,
-}
+# --- Erase deleted rows from SQLite's write-ahead log (the file ``-wal``)
+#
+# Deleted rows stay in the log until it is truncated, which is possible only while nobody reads.
 
 
-@dataclass(frozen=True, slots=True)
-class Revisions:
-    """The revision of a database's tables (None without tables), and that of this program."""
+# How long one try waits for readers and blocks writers (milliseconds).
+_WAIT: Final = 100
+# The seconds between two such tries of a service.
+_INTERVAL: Final = 60.0
+# How often a service looks for a large log (seconds), and how long it then waits (milliseconds).
+_LOOK: Final = 1.0
+_SHORT_WAIT: Final = 5
+# The number of tries before the caller gets False, and the seconds in between.
+_ERASURE_TRIES: Final = 8
+_PAUSE: Final = 0.2
 
-    found: str | None
-    known: str
-    # True if the tables are those of a newer version of the program.
-    is_newer: bool = False
 
+def overwrite_deleted(
+    engine: Engine, tries: int = _ERASURE_TRIES, wait: int = _WAIT
+) -> bool | None:
+    """Truncate SQLite's write-ahead log; return False if a reader prevents it.
 
-def open_database(url: str, *, create: bool = True, migrate: bool = True) -> Engine:
-    """Open the database at the URL, with the tables of this version of the program.
-
-    ``url`` is an SQLAlchemy URL or the path of an SQLite file. With ``create``, a missing file and
-    missing tables are created. With ``migrate``, older tables are updated. Raises
-    UnusableDatabaseError.
+    Each of the tries waits for ``wait`` milliseconds. Return None for PostgreSQL, which overwrites
+    deleted rows by itself.
     """
-    engine, _ = _opened(url, create=create, migrate=migrate)
-    return engine
-
-
-def migrate_database(url: str) -> Revisions:
-    """Create or update the tables at the URL; return the revision before and that of this program.
-
-    Raises UnusableDatabaseError.
-    """
-    engine, revisions = _opened(url, create=True, migrate=True)
-    engine.dispose()
-    return revisions
-
-
-def _opened(url: str, *, create: bool, migrate: bool) -> tuple[Engine, Revisions]:
-    engine = unmigrated_database(url)
-    if (path := file_of(engine)) is not None and not path.exists():
-        _check_missing(engine, path, create=create)
-        make_private(str(path))
-    try:
-        with engine.connect() as connection:
-            if _is_in_memory(connection):
-                raise UnusableDatabaseError(say("would be kept in memory and lost; name a file"))
-            connection.rollback()
-            revisions = revisions_of(connection)
-            connection.rollback()
-            if revisions.found != revisions.known:
-                if not (migrate or (create and revisions.found is None)):
-                    raise UnusableDatabaseError(_at(engine, unfit(revisions)))
-                revisions = _migrate(connection)
-    except ValueError as error:
-        raise UnusableDatabaseError(say("has parts that the database does not know")) from error
-    except SQLAlchemyError as error:
-        raise UnusableDatabaseError(_at(engine, reason(error))) from error
-    finally:
-        engine.dispose()
-    return engine, revisions
-
-
-def _check_missing(engine: Engine, path: Path, *, create: bool) -> None:
-    # After a killed restore, no program may begin with an empty database.
-    kept = before(path)
-    if kept.exists():
-        problem = say(
-            "there is no such file, but {kept} is there, the database from before a restore. Run "
-            "dh-grader restore again, or move {kept} back to {file}, or away",
-            kept=str(kept),
-            file=str(path),
-        )
-        raise UnusableDatabaseError(_at(engine, problem))
-    for left in unfinished(path):
-        problem = say(
-            "there is no such file, but {left} is there: a restore was interrupted. Run dh-grader "
-            "restore again, or delete {left}",
-            left=str(left),
-        )
-        raise UnusableDatabaseError(_at(engine, problem))
-    if not create:
-        raise UnusableDatabaseError(_at(engine, say("there is no such file")))
-
-
-def _is_in_memory(connection: Connection) -> bool:
-    if connection.dialect.name != "sqlite":
-        return False
-    return not connection.exec_driver_sql("PRAGMA database_list").one()[2]
-
-
-def file_of(engine: Engine) -> Path | None:
-    """Return the file of an SQLite database; None for PostgreSQL, and for an URI of SQLite."""
-    path = engine.url.database or ""
-    return Path(path) if engine.dialect.name == "sqlite" and is_plain(path) else None
-
-
-def revisions_of(connection: Connection) -> Revisions:
-    """Return the revision of the tables, and that of this version of the program."""
-    return compared(MigrationContext.configure(connection).get_current_revision())
-
-
-def compared(found: str | None) -> Revisions:
-    """Compare the revision of a database's tables with that of this version of the program."""
-    scripts = ScriptDirectory.from_config(_config())
-    known = scripts.get_current_head()
-    assert known is not None
-    all_known = {script.revision for script in scripts.walk_revisions()}
-    return Revisions(found, known, found is not None and found not in all_known)
-
-
-def unfit(revisions: Revisions) -> Sentence:
-    """Say why this version of the program cannot use tables of another revision, and what to do."""
-    if revisions.is_newer:
-        return say(
-            "its tables ({found}) are those of a newer version of the program; this version knows "
-            "tables up to {known}",
-            found=str(revisions.found),
-            known=revisions.known,
-        )
-    if revisions.found is None:
-        return say("it has no tables. Create them: dh-grader attempts migrate")
-    return say(
-        "its tables ({found}) are those of an older version of the program; this version needs "
-        "{known}. Back up the database, stop services of the older version, and run: dh-grader "
-        "attempts migrate",
-        found=revisions.found,
-        known=revisions.known,
-    )
-
-
-def unmigrated_database(url: str) -> Engine:
-    """Open the database at the URL without a migration. Raises UnusableDatabaseError."""
-    try:
-        return _engine(url)
-    except (ArgumentError, ValueError) as error:
-        # Do not repeat the URL: it may contain a password.
-        problem = say("is no URL of a database and no path of a file")
-        raise UnusableDatabaseError(problem) from error
-
-
-def _at(engine: Engine, problem: str) -> str:
-    return joined(": ", [safe_url(engine), problem])
-
-
-def _engine(url: str) -> Engine:
-    parsed = make_url(url if "://" in url else f"sqlite:///{url}")
-    match parsed.get_backend_name():
-        case "sqlite" if parsed.drivername in ("sqlite", "sqlite+pysqlite"):
-            engine = create_engine(
-                parsed, connect_args={"timeout": _LOCK_WAIT}, hide_parameters=True
-            )
-            DatabaseFile(engine, _LOCK_WAIT)
-            event.listen(engine, "begin", _begin_sqlite)
-            return engine
-        case "postgresql":
-            # The server releases the locks of a client whose machine is gone after a minute.
-            options = (
-                f"-c lock_timeout={_LOCK_WAIT:.0f}s -c statement_timeout=60s "
-                "-c tcp_keepalives_idle=30 -c tcp_keepalives_interval=10 -c tcp_keepalives_count=3"
-            )
-            return create_engine(
-                parsed.set(drivername="postgresql+psycopg"),
-                pool_pre_ping=True,
-                # Logged errors must not contain answers of students.
-                hide_parameters=True,
-                connect_args=_WHEN_SILENT | {"connect_timeout": 3, "options": options},
-            )
-        case _:
-            raise UnusableDatabaseError(
-                say("{driver} is not supported; use SQLite or PostgreSQL", driver=parsed.drivername)
-            )
-
-
-def _begin_sqlite(connection: Connection) -> None:
-    # A deferred transaction that reads first would fail at its first write beside another writer.
-    writes = connection.get_execution_options().get("writes", False)
-    connection.exec_driver_sql("BEGIN IMMEDIATE" if writes else "BEGIN")
-
-
-def _migrate(connection: Connection) -> Revisions:
-    # Return the revision before. Raises UnusableDatabaseError for tables of a newer version.
-    connection = connection.execution_options(writes=True)
-    with _patient(connection), connection.begin():
-        without_time_limit(connection)
-        if connection.dialect.name == "postgresql":
-            lock = text("SELECT pg_advisory_xact_lock(:key)")
-            connection.execute(lock, {"key": _MIGRATION_LOCK})
-        # Another process may have migrated meanwhile.
-        revisions = revisions_of(connection)
-        if revisions.is_newer:
-            raise UnusableDatabaseError(_at(connection.engine, unfit(revisions)))
-        if revisions.found == revisions.known:
-            return revisions
-        config = _config()
-        config.attributes["connection"] = connection
-        command.upgrade(config, "head")
-    if revisions.found is not None:
-        # At its start, the service has not set up its log yet: only warnings are written.
-        _database_log.warning(
-            "The tables were migrated from %s to %s", revisions.found, revisions.known
-        )
-    return revisions
-
-
-def _config() -> Config:
-    config = Config()
-    config.set_main_option("script_location", str(_MIGRATIONS).replace("%", "%%"))
-    return config
-
-
-@contextmanager
-def _patient(connection: Connection) -> Iterator[None]:
-    driver = connection.connection.driver_connection
-    if connection.dialect.name != "sqlite" or driver is None:
-        yield
-        return
-    # Not by SQLAlchemy, which would begin a transaction and so wait for the lock.
-    driver.execute(f"PRAGMA busy_timeout = {_MIGRATION_WAIT}")
-    try:
-        yield
-    finally:
-        driver.execute(f"PRAGMA busy_timeout = {_LOCK_WAIT * 1000:.0f}")
-
-
-def without_time_limit(connection: Connection) -> None:
-    """Remove the time limits of the connection's transaction."""
-    if connection.dialect.name == "postgresql":
-        for limit in ("lock_timeout", "statement_timeout"):
-            connection.exec_driver_sql(f"SET LOCAL {limit} = 0")
-
-
-def in_transaction(engine: Engine, work: Callable[[Connection], R]) -> R:
-    """Run ``work`` in a transaction and return its result; try again after a deadlock."""
-    tries = 0
-    while True:
+    if engine.dialect.name != "sqlite":
+        return None
+    with engine.connect().execution_options(isolation_level="AUTOCOMMIT") as connection:
+        before = connection.exec_driver_sql("PRAGMA busy_timeout").scalar_one()
+        connection.exec_driver_sql(f"PRAGMA busy_timeout = {wait}")
         try:
-            with engine.connect() as connection:
-                connection = connection.execution_options(writes=True)
-                with connection.begin():
-                    return work(connection)
-        except SQLAlchemyError as error:
-            tries += 1
-            if tries == _DATABASE_TRIES or not is_deadlock(error):
-                raise
+            for _ in range(tries - 1):
+                if _truncate(connection):
+                    return True
+                time.sleep(_PAUSE)
+            return _truncate(connection)
+        finally:
+            connection.exec_driver_sql(f"PRAGMA busy_timeout = {before}")
 
 
-def is_deadlock(error: Exception) -> bool:
-    """True if PostgreSQL ended the transaction because of a deadlock."""
-    return getattr(getattr(error, "orig", None), "sqlstate", None) == _DEADLOCK
+class LogCutter:
+    """Truncates SQLite's write-ahead log every minute, and a large log within seconds.
 
-
-def safe_url(engine: Engine) -> str:
-    """The URL of a database without its password."""
-    return engine.url.render_as_string(hide_password=True)
-
-
-def reason(error: SQLAlchemyError) -> str:
-    """Return the database driver's error message in one line, without values of rows."""
-    said = str(getattr(error, "orig", None) or error).partition("\nDETAIL:")[0]
-    return " ".join(said.split())[:300]
-
-
-# --- The thread that writes to the database, and commits several waiting attempts at once
-
-
-_writer_log = logging.getLogger(__name__)
-
-_SILENT: Final = "the database does not react"
-
-# The most jobs in one transaction, and in the queue before further jobs are refused.
-_MAX_TOGETHER: Final = 64
-_MAX_WAITING: Final = 4096
-# The time until the next call of ``tidy`` after one that failed (seconds).
-_TIDY_AGAIN: Final = 60.0
-# How long a job waits for the database in all (seconds). A paused server raises no error, and
-# waiting for a lock takes up to five seconds.
-_TIMEOUT: Final = 15.0
-# How long the first of several concurrent jobs waits for others (seconds): a commit for each would
-# cost twice the processor time. A client that sends one attempt after the other never waits.
-_GATHER: Final = 0.01
-
-
-@dataclass(frozen=True, slots=True)
-class _Job:
-    work: Callable[[Connection], Any]
-    loop: asyncio.AbstractEventLoop
-    done: "asyncio.Future[Any]"
-
-
-# A job with its result or its exception.
-_Finished = tuple[_Job, Any, Exception | None]
-
-
-class AttemptWriter:
-    """Runs jobs (functions that write) in order, many jobs in one transaction.
-
-    A job gets its result only after the commit. A failing job does not affect others.
+    While a program reads for long, the log grows and cannot be truncated.
     """
 
-    def __init__(self, engine: Engine, tidy: Callable[[], float] = lambda: 3600.0) -> None:
-        """Start the thread, which calls ``tidy``, and again after the seconds that it returns."""
+    def __init__(self, engine: Engine) -> None:
         self._engine = engine
-        self._tidy = tidy
-        self._tidy_at = monotonic()
-        self._jobs: queue.SimpleQueue[_Job | None] = queue.SimpleQueue()
-        # The start of the current transaction; None while the thread is idle.
-        self._begun_at: float | None = None
-        # The time of the last job that the database failed or refused, or that waited too long.
-        self.failed_at = -inf
-        self._thread = threading.Thread(target=self._run, name="attempts", daemon=True)
-        self._thread.start()
+        self._due = time.monotonic()
 
-    async def run(self, work: Callable[[Connection], R]) -> R:
-        """Return the result of ``work`` after its commit. Raises StoreDownError."""
-        begun_at = self._begun_at
-        if begun_at is not None and monotonic() - begun_at > _TIMEOUT:
-            raise self._failed(_SILENT)
-        if self._jobs.qsize() >= _MAX_WAITING:
-            raise self._failed("too many attempts wait to be written")
-        loop = asyncio.get_running_loop()
-        job = _Job(work, loop, loop.create_future())
-        self._jobs.put(job)
-        try:
-            async with asyncio.timeout(_TIMEOUT):
-                result: R = await job.done
-        except TimeoutError as error:
-            raise self._failed(_SILENT) from error
-        return result
+    def next(self) -> float:
+        """Truncate the log if it is due or large; return the seconds until the next call."""
+        if self._engine.dialect.name != "sqlite":
+            return _INTERVAL
+        is_due = time.monotonic() >= self._due
+        with suppress(SQLAlchemyError, OSError):
+            size = self._size_of_log()
+            if size > LARGE_LOG or (size and is_due):
+                overwrite_deleted(self._engine, 1, _WAIT if is_due else _SHORT_WAIT)
+        if is_due:
+            self._due = time.monotonic() + _INTERVAL
+        return _LOOK
 
-    def _failed(self, why: str) -> StoreDownError:
-        self.failed_at = monotonic()
-        return StoreDownError(why)
-
-    def close(self) -> None:
-        """Flush pending jobs and stop the writer thread."""
-        self._jobs.put(None)
-        self._thread.join()
-
-    def _run(self) -> None:
-        ended = is_busy = False
-        while not ended:
-            jobs, ended = self._waiting(_GATHER if is_busy else 0)
-            # Skip jobs whose caller has gone.
-            jobs = [job for job in jobs if not job.done.cancelled()]
-            if jobs:
-                self._process(jobs)
-                self._begun_at = None
-                is_busy = len(jobs) > 1
-            if monotonic() >= self._tidy_at and not ended:
-                pause = _TIDY_AGAIN
-                try:
-                    pause = self._tidy()
-                except Exception:  # noqa: BLE001 - recording must go on
-                    _writer_log.exception("The database could not be tidied up")
-                self._tidy_at = monotonic() + pause
-
-    def _waiting(self, gather: float) -> tuple[list[_Job], bool]:
-        jobs: list[_Job] = []
-        try:
-            found = self._jobs.get(timeout=max(0.0, self._tidy_at - monotonic()))
-        except queue.Empty:
-            return jobs, False
-        if gather and found is not None:
-            sleep(gather)
-        while found is not None:
-            jobs.append(found)
-            if len(jobs) == _MAX_TOGETHER:
-                return jobs, False
-            try:
-                found = self._jobs.get_nowait()
-            except queue.Empty:
-                return jobs, False
-        return jobs, True
-
-    def _process(self, jobs: list[_Job]) -> None:
-        self._begun_at = monotonic()
-        try:
-            results = self._run_together(jobs)
-        except Exception as error:  # noqa: BLE001 - each job gets its own exception
-            if len(jobs) > 1 and not is_database_failure(error):
-                for job in jobs:
-                    self._process([job])
-                return
-            failure = _as_store_error(error)
-            if isinstance(failure, StoreDownError):
-                self.failed_at = monotonic()
-            _deliver([(job, None, failure) for job in jobs])
-            return
-        _deliver([(job, result, None) for job, result in zip(jobs, results, strict=True)])
-
-    def _run_together(self, jobs: list[_Job]) -> list[Any]:
-        with self._engine.connect() as connection:
-            connection = connection.execution_options(writes=True)
-            with connection.begin():
-                return [job.work(connection) for job in jobs]
+    def _size_of_log(self) -> int:
+        path = self._engine.url.database or ""
+        if not is_plain(path):
+            with self._engine.connect() as connection:
+                path = connection.exec_driver_sql("PRAGMA database_list").one()[2]
+        log = Path(f"{path}-wal")
+        return log.stat().st_size if log.exists() else 0
 
 
-def _deliver(finished: list[_Finished]) -> None:
-    by_loop: dict[asyncio.AbstractEventLoop, list[_Finished]] = defaultdict(list)
-    for each in finished:
-        by_loop[each[0].loop].append(each)
-    for loop, jobs in by_loop.items():
-        # A closed loop has no callers.
-        with suppress(RuntimeError):
-            loop.call_soon_threadsafe(_resolve, jobs)
+def _truncate(connection: Connection) -> bool:
+    busy, _, _ = connection.exec_driver_sql("PRAGMA wal_checkpoint(TRUNCATE)").one()
+    return not busy
 
 
-def _resolve(finished: list[_Finished]) -> None:
-    for job, result, failure in finished:
-        if job.done.done():
-            continue
-        if failure is None:
-            job.done.set_result(result)
-        else:
-            job.done.set_exception(failure)
+# --- The queue of scores to be sent to learning platforms
+#
+# A row belongs to a learner and a line item (a column of the platform's gradebook). Points are read
+# when they are sent, so the last change counts.
 
 
-def is_database_failure(error: Exception) -> bool:
-    """True if the database itself failed, so that an immediate retry would fail, too."""
-    # Transactions of several attempts may deadlock; run one by one, they do not.
-    if is_deadlock(error):
-        return False
-    return isinstance(error, SQLAlchemyError) and (
-        not isinstance(error, DBAPIError)
-        or error.connection_invalidated
-        or type(error).__name__ in ("OperationalError", "InternalError", "InterfaceError")
+# In ``Connection.info``: True if the transaction has queued a score.
+QUEUED: Final = "scores_queued"
+# How the learners of scores begin that are to be cleared.
+FORGOTTEN: Final = "forgotten-"
+
+
+class Priority(IntEnum):
+    """The priority of a queued score; the lowest number is sent first."""
+
+    HAND_IN = 0
+    CHANGE = 1
+    REGRADE = 2
+
+
+_COLUMNS: Final = (
+    "line_item", "learner", "sub", "max_points", "version", "wanted_at", "state", "priority",
+    "tries", "next_try_at",
+)  # fmt: skip
+# Build the statements once: building one takes longer than running it.
+_RECEIVERS: Final = (
+    select(
+        line_items.c.number,
+        learners.c.learner,
+        learners.c.sub,
+        line_items.c.max_points,
+        literal(1).label("version"),
+        bindparam("now", type_=UtcTime).label("wanted_at"),
+        literal("waiting").label("state"),
+        bindparam("priority", type_=scores.c.priority.type).label("priority"),
+        literal(0).label("tries"),
+        bindparam("now", type_=UtcTime).label("next_try_at"),
+    )
+    .join_from(line_items, contexts)
+    .join(learners, learners.c.registration == contexts.c.registration)
+)
+_OF_LEARNER: Final = _RECEIVERS.where(
+    line_items.c.assignment == bindparam("assignment"), learners.c.learner == bindparam("learner")
+)
+
+
+def _upsert(dialect: Any, chosen: Any) -> Any:
+    new = dialect.insert(scores).from_select(_COLUMNS, chosen)
+    more_urgent = case(
+        (
+            (scores.c.state == "waiting") & (scores.c.priority < new.excluded.priority),
+            scores.c.priority,
+        ),
+        else_=new.excluded.priority,
+    )
+    return new.on_conflict_do_update(
+        index_elements=[scores.c.line_item, scores.c.learner],
+        set_={
+            "sub": new.excluded.sub,
+            "version": scores.c.version + 1,
+            "wanted_at": new.excluded.wanted_at,
+            "state": "waiting",
+            "priority": more_urgent,
+            "next_try_at": new.excluded.next_try_at,
+        },
     )
 
 
-def _as_store_error(error: Exception) -> Exception:
-    return StoreDownError(reason(error)) if isinstance(error, SQLAlchemyError) else error
+_DIALECTS: Final = {"postgresql": postgresql, "sqlite": sqlite}
+_QUEUE_ONE: Final = {name: _upsert(each, _OF_LEARNER) for name, each in _DIALECTS.items()}
+
+
+def queue_score(
+    connection: Connection, assignment: int | None, learner: str, priority: Priority
+) -> None:
+    """Queue the score of a learner in an assignment, if a platform has a column for this score."""
+    if assignment is not None:
+        _queue(
+            connection,
+            _QUEUE_ONE[connection.dialect.name],
+            priority,
+            assignment=assignment,
+            learner=learner,
+        )
+
+
+def queue_scores(
+    connection: Connection, chosen: ColumnElement[bool], priority: Priority = Priority.CHANGE
+) -> None:
+    """Queue the scores of the chosen attempts; ``chosen`` is an SQL condition."""
+    having = select(attempts.c.assignment, attempts.c.learner).where(
+        chosen, attempts.c.assignment.is_not(None)
+    )
+    having_them = having.distinct().subquery()
+    receivers = _RECEIVERS.join(
+        having_them,
+        (having_them.c.assignment == line_items.c.assignment)
+        & (having_them.c.learner == learners.c.learner),
+    )
+    # SQLite reads "ON CONFLICT" after a join as a part of the join, unless there is a WHERE.
+    receivers = receivers.where(line_items.c.number.is_not(None))
+    _queue(connection, _upsert(_DIALECTS[connection.dialect.name], receivers), priority)
+
+
+def forget_scores(connection: Connection, learner: str) -> None:
+    """Delete a learner's scores: at the platforms if they were sent, else in the queue."""
+    mine = scores.c.learner == learner
+    connection.execute(scores.delete().where(mine, scores.c.stamp.is_(None)))
+    # The platform's id of the learner stays until the platform has cleared the score.
+    now = datetime.now(UTC)
+    left = update(scores).where(mine)
+    changed = connection.execute(
+        left.values(
+            learner=FORGOTTEN + secrets.token_hex(16),
+            version=scores.c.version + 1,
+            points=None,
+            submitted_at=None,
+            wanted_at=now,
+            state="waiting",
+            priority=int(Priority.CHANGE),
+            next_try_at=now,
+            refusal=None,
+        )
+    )
+    if changed.rowcount:
+        connection.info[QUEUED] = True
+
+
+def _queue(connection: Connection, statement: Any, priority: Priority, **more: object) -> None:
+    values = {"now": datetime.now(UTC), "priority": int(priority), **more}
+    if connection.execute(statement, values).rowcount:
+        connection.info[QUEUED] = True

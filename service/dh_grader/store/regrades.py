@@ -1,4 +1,7 @@
-"""Regrade outdated attempts, in steps or in several processes, and reports in memory."""
+"""Regrade outdated attempts, in steps or in several processes, with reports in memory.
+
+What an attempt is and how it is graded is in ``dh_grader.store``.
+"""
 
 import json
 import sys
@@ -52,7 +55,7 @@ from dh_grader.submissions.bodies import GradeRequest
 from dh_grader.translations import say
 from dh_grader.variants import NoVariantError, hidden_variant, pinned, values_of, variant_of
 
-# --- A memory cache of reports with a limit in bytes; the least recently used ones are dropped
+# --- Reports in memory, with a limit in bytes; the least recently used ones are dropped
 
 
 # A report on a table takes 6 kB with its answers; an attacker's may take a hundred times as much.
@@ -108,7 +111,7 @@ def _size(submission: str, report: WrittenReport) -> int:
     return sys.getsizeof(submission) + report.size
 
 
-# --- Regrade outdated attempts. Several processes may share the work through the database
+# --- Regrade outdated attempts; several processes may share the work through the database
 #
 # A worker locks the attempts that it takes until it commits. If the worker dies, the database
 # releases the locks, and another worker takes the attempts.

@@ -1,4 +1,8 @@
-"""What is read from recorded attempts: grades, lists, statistics, and one learner's data."""
+"""What is read from recorded attempts: grades, lists, statistics, and one learner's data.
+
+It also changes what tutors change: points, and whose data are deleted. Attempts are recorded in
+``attempts.py``, and regraded in ``regrades.py``.
+"""
 
 import json
 from collections import Counter, defaultdict
@@ -209,38 +213,14 @@ def _moodle(counted: Iterable[ListedAttempt]) -> Iterator[bytes]:
 # --- Read recorded attempts: lists page by page, or one attempt with its history
 
 
-_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
-_TICK: Final = timedelta(microseconds=1)
-# No number in a database is larger.
-_LARGEST: Final = 2**62
-_CURSOR: Final = regex(r"[0-9a-f]+\.[0-9a-f]+")
+LISTED: Final = [attempts.c[name] for name in ListedAttempt.__dataclass_fields__]
 
 
-def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
-    """Return the SQL condition for the attempts that a filter selects."""
-    return and_(True, *_conditions(wanted))
+# The place of an attempt in time: its moment, and its number among attempts of the same moment.
+TimePlace = tuple[datetime, int]
 
 
-def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
-    if wanted.exercise is not None:
-        exercise, _, seed = wanted.exercise.partition("~")
-        yield attempts.c.exercise == exercise
-        if seed:
-            yield attempts.c.variant == seed
-    if wanted.learner is not None:
-        yield attempts.c.learner == wanted.learner
-    if wanted.since is not None:
-        yield attempts.c.at >= wanted.since
-    if wanted.until is not None:
-        yield attempts.c.at < wanted.until
-    if wanted.course is not None:
-        mine = select(assignments.c.number).where(assignments.c.course == wanted.course)
-        if wanted.assignment is not None:
-            mine = mine.where(assignments.c.id == wanted.assignment)
-        yield attempts.c.assignment.in_(mine)
-    if wanted.counted is not None:
-        has_ordinal = attempts.c.ordinal.is_not(None)
-        yield has_ordinal if wanted.counted else ~has_ordinal
+BY_TIME: Final = (attempts.c.at, attempts.c.number)
 
 
 @dataclass(frozen=True, slots=True)
@@ -257,9 +237,6 @@ class AttemptHistory:
     earlier: Sequence[Row[Any]]
     course: str | None
     hints: Sequence[TakenHint] = ()
-
-
-LISTED: Final = [attempts.c[name] for name in ListedAttempt.__dataclass_fields__]
 
 
 def page(
@@ -304,9 +281,38 @@ def history(connection: Connection, attempt_id: str) -> AttemptHistory | None:
     return AttemptHistory(attempt, submission, report, changed, replaced, course, hints)
 
 
-# The place of an attempt in time: its moment, and its number among attempts of the same moment.
-TimePlace = tuple[datetime, int]
-BY_TIME: Final = (attempts.c.at, attempts.c.number)
+_EPOCH: Final = datetime(1970, 1, 1, tzinfo=UTC)
+_TICK: Final = timedelta(microseconds=1)
+# No number in a database is larger.
+_LARGEST: Final = 2**62
+_CURSOR: Final = regex(r"[0-9a-f]+\.[0-9a-f]+")
+
+
+def condition(wanted: AttemptFilter) -> ColumnElement[bool]:
+    """Return the SQL condition for the attempts that a filter selects."""
+    return and_(True, *_conditions(wanted))
+
+
+def _conditions(wanted: AttemptFilter) -> Iterator[ColumnElement[bool]]:
+    if wanted.exercise is not None:
+        exercise, _, seed = wanted.exercise.partition("~")
+        yield attempts.c.exercise == exercise
+        if seed:
+            yield attempts.c.variant == seed
+    if wanted.learner is not None:
+        yield attempts.c.learner == wanted.learner
+    if wanted.since is not None:
+        yield attempts.c.at >= wanted.since
+    if wanted.until is not None:
+        yield attempts.c.at < wanted.until
+    if wanted.course is not None:
+        mine = select(assignments.c.number).where(assignments.c.course == wanted.course)
+        if wanted.assignment is not None:
+            mine = mine.where(assignments.c.id == wanted.assignment)
+        yield attempts.c.assignment.in_(mine)
+    if wanted.counted is not None:
+        has_ordinal = attempts.c.ordinal.is_not(None)
+        yield has_ordinal if wanted.counted else ~has_ordinal
 
 
 def earlier_than(place: TimePlace) -> ColumnElement[bool]:
@@ -585,11 +591,7 @@ def _wrong_places(content: Mapping[str, Mapping[str, Any]]) -> Iterable[str]:
                 yield f"{part}/{place}"
 
 
-# --- Changes by tutors: they override points, and delete the data of a learner
-
-
-# How often PostgreSQL may report a concurrent write while a learner is being deleted.
-_TRIES: Final = 4
+# --- Points with which a tutor overrides those of a report
 
 
 def override(
@@ -621,6 +623,13 @@ def override(
         update(attempts).where(attempts.c.number == found.number).values(awarded=points)
     )
     queue_scores(connection, attempts.c.number == found.number)
+
+
+# --- The data of one learner: counted, deleted, and written out
+
+
+# How often PostgreSQL may report a concurrent write while a learner is being deleted.
+_TRIES: Final = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -657,9 +666,7 @@ def forget(connection: Connection, learner: str) -> LearnerData:
 
 def _forget(connection: Connection, learner: str) -> LearnerData:
     data = data_of(connection, learner)
-    mine = select(attempts.c.number).where(attempts.c.learner == learner)
-    for table in (regrade_queue, earlier_reports, overrides, hints):
-        connection.execute(delete(table).where(table.c.attempt.in_(mine)))
+    _delete_records(connection, attempts.c.learner == learner)
     forget_scores(connection, learner)
     for table in (
         attempts,
@@ -744,6 +751,25 @@ def everything_of(connection: Connection, learner: str) -> dict[str, Any]:
     }
 
 
+def _known(row: Row[Any]) -> dict[str, Any]:
+    return {name: _plain(name, value) for name, value in _named(row).items() if value is not None}
+
+
+def _named(row: Row[Any]) -> Mapping[str, Any]:
+    return {name: value for name, value in row._mapping.items() if name not in _INNER}
+
+
+def _plain(name: str, value: Any) -> Any:
+    if isinstance(value, datetime):
+        return value.isoformat()
+    if name == "report":
+        return json.loads(shown_report(value, ENGLISH))
+    return json.loads(value) if name in _JSON else value
+
+
+# --- Attempts that are deleted: old ones, and others that are chosen
+
+
 def is_older(before: datetime) -> ColumnElement[bool]:
     """Return the SQL condition for attempts that are too old to be kept.
 
@@ -768,29 +794,17 @@ def delete_older(connection: Connection, before: datetime) -> int:
 
 def delete_attempts(connection: Connection, chosen: ColumnElement[bool]) -> int:
     """Delete attempts with all records about them; return the number of attempts."""
+    _delete_records(connection, chosen)
+    return connection.execute(delete(attempts).where(chosen)).rowcount
+
+
+def _delete_records(connection: Connection, chosen: ColumnElement[bool]) -> None:
     numbers = select(attempts.c.number).where(chosen)
     for table in (regrade_queue, earlier_reports, overrides, hints):
         connection.execute(delete(table).where(table.c.attempt.in_(numbers)))
-    return connection.execute(delete(attempts).where(chosen)).rowcount
 
 
 def months_before(now: datetime, months: int) -> datetime:
     """Return the time some months earlier; a day after the 28th becomes the 28th."""
     total = 12 * now.year + now.month - 1 - months
     return now.replace(year=total // 12, month=total % 12 + 1, day=min(now.day, 28))
-
-
-def _known(row: Row[Any]) -> dict[str, Any]:
-    return {name: _plain(name, value) for name, value in _named(row).items() if value is not None}
-
-
-def _named(row: Row[Any]) -> Mapping[str, Any]:
-    return {name: value for name, value in row._mapping.items() if name not in _INNER}
-
-
-def _plain(name: str, value: Any) -> Any:
-    if isinstance(value, datetime):
-        return value.isoformat()
-    if name == "report":
-        return json.loads(shown_report(value, ENGLISH))
-    return json.loads(value) if name in _JSON else value

@@ -1,4 +1,7 @@
-"""The tables of the database after the newest migration."""
+"""The tables of the database after the newest migration.
+
+Older tables are made and changed by ``migrations``; statements are in the other files.
+"""
 
 from datetime import UTC, datetime
 from typing import Any
@@ -20,8 +23,9 @@ from sqlalchemy import (
     UniqueConstraint,
     text,
 )
-from sqlalchemy import UniqueConstraint as Unique
 from sqlalchemy.types import TypeDecorator
+
+# --- The types and names of columns
 
 
 class UtcTime(TypeDecorator[datetime]):
@@ -54,6 +58,10 @@ metadata = MetaData(
         "pk": "pk_%(table_name)s",
     }
 )
+
+
+# --- The tables of attempts, courses and keys
+
 
 # The verdicts and codes of a report. Many attempts share an outcome, so that the statistics of a
 # class count a few thousand outcomes instead of every cell of every attempt.
@@ -310,7 +318,7 @@ registrations = Table(
     Column("launched_at", UtcTime),
     Column("refused_at", UtcTime),
     Column("refusal", String(64)),
-    Unique("issuer", "client_id"),
+    UniqueConstraint("issuer", "client_id"),
 )
 _REGISTRATION = registrations.c.id
 
@@ -364,7 +372,7 @@ contexts = Table(
     Column("memberships_url", ADDRESS),
     Column("shows_names", Boolean, nullable=False),
     Column("roster_at", UtcTime),
-    Unique("registration", "deployment", "context"),
+    UniqueConstraint("registration", "deployment", "context"),
 )
 
 # A resource link is an assignment, or NULL until a tutor has chosen its exercises. The addresses
@@ -381,7 +389,7 @@ resource_links = Table(
     Column("lineitems_url", ADDRESS),
     Column("scopes", Text, nullable=False),
     Column("launched_at", UtcTime, nullable=False),
-    Unique("context", "link"),
+    UniqueConstraint("context", "link"),
 )
 
 # A user of a platform. ``learner`` is the pseudonym in courses and attempts.
@@ -406,7 +414,7 @@ line_items = Table(
     Column("max_points", Float, nullable=False),
     Column("is_own", Boolean, nullable=False),
     Column("found_at", UtcTime),
-    Unique("resource_link", "assignment"),
+    UniqueConstraint("resource_link", "assignment"),
     Index(None, "assignment"),
 )
 
@@ -469,7 +477,7 @@ handed_files = Table(
     Column("next_try_at", UtcTime, nullable=False),
     Column("leased_until", UtcTime),
     Column("refusal", Text),
-    Unique("registration", "notice"),
+    UniqueConstraint("registration", "notice"),
     Index(None, "state", "next_try_at"),
     Index(None, "registration", "submission"),
 )

@@ -1,4 +1,7 @@
-"""The web pages of the service, and the exercise that other sites embed."""
+"""The web pages of the service, and the exercise that other sites embed.
+
+It puts the routes of the other files together, and has those of the pages for everybody.
+"""
 
 from http import HTTPStatus
 from typing import Final
@@ -54,11 +57,10 @@ _ENTRY: Final = "embed.js"
 
 
 def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPages:
-    """Return all pages of the service with their static files.
+    """Return all pages of the service, with static files, ``/embed.js`` and problem pages.
 
     Without ``tutoring``, nobody sees the pages of tutors.
     """
-    # Also ``/embed.js`` for other sites, and the problem pages.
     router = APIRouter(include_in_schema=False)
     assets = load_assets()
     # Robots are found, but not listed.
@@ -75,8 +77,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/")
     async def home(request: Request, exercise: str | None = None) -> Response:
-        """Return the catalogue page, or redirect to the page of an exercise."""
-        # The query may name the exercise.
+        """Return the catalogue page, or redirect to the exercise that the query names."""
         if exercise is not None:
             known = exercise_or_404(practised, exercise)
             answer = RedirectResponse(f"exercises/{known.id}", HTTPStatus.SEE_OTHER)
@@ -97,8 +98,7 @@ def web_routes(catalogue: Catalogue, tutoring: Tutoring | None = None) -> WebPag
 
     @router.get("/play")
     async def play(request: Request) -> Response:
-        """Return the page of free play, which accepts the table of any robot."""
-        # Its tables stay in the browser.
+        """Return the page of free play; the tables in it stay in the browser."""
         tutor = tutoring.access.shows_solutions(request)
         shown = play_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)
@@ -147,16 +147,14 @@ def _practice_routes(assets: Assets, access: Access) -> APIRouter:
 
     @router.get("/practice")
     async def practice(request: Request) -> Response:
-        """Return the page for practice with generated robots."""
-        # The fragment of the address names the robot.
+        """Return the page for practice; the fragment of the address names the robot."""
         tutor = access.shows_solutions(request)
         shown = practice_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)
 
     @router.get("/learn-dh")
     async def learn_dh(request: Request) -> Response:
-        """Return the page "DH in ten minutes"."""
-        # Its progress stays in the browser.
+        """Return the page "DH in ten minutes"; a learner's progress stays in the browser."""
         tutor = access.shows_solutions(request)
         shown = ten_minutes_page(assets, language_of(request), tutor=tutor)
         return page_answer(request, shown)

@@ -26,8 +26,7 @@ _NICE = 5
 
 
 def main() -> None:
-    """Reply to each request with the findings of the checks."""
-    # Or with an empty message if the checks crash.
+    """Reply to each request with the findings, or with an empty message if a check crashes."""
     answers = os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     # Text that is printed by mistake must not get into the answers.
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())

@@ -1,4 +1,8 @@
-"""The pages on which tutors manage courses, and their routes; the roster of a platform."""
+"""The pages on which tutors manage courses, and their routes; the roster of a platform.
+
+The pages send their forms to the routes of ``api/courses.py``; only links and the roster have
+routes here. The rules of courses are in ``dh_grader.courses``.
+"""
 
 from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
@@ -9,7 +13,7 @@ from urllib.parse import parse_qs
 from fastapi import APIRouter, Query, Request
 from starlette.responses import Response
 
-from dh_grader.api.http import Catalogue, language_of, message_of, validated
+from dh_grader.api.http import NO_STORE, Catalogue, language_of, message_of, validated
 from dh_grader.api.recording import (
     AssignmentId,
     CourseId,
@@ -40,7 +44,7 @@ from dh_grader.courses import (
     with_own_dates,
 )
 from dh_grader.translations import Language, say, told
-from dh_grader.web.pages import FORM_HEADERS, NO_STORE, Assets, form_fields, page, page_answer
+from dh_grader.web.pages import FORM_HEADERS, Assets, form_fields, page, page_answer
 from dh_grader.web.tutor import Tutoring
 
 if TYPE_CHECKING:
@@ -50,67 +54,16 @@ if TYPE_CHECKING:
     from dh_grader.lti.roster import RosterChange
 
 
-# --- The route that reads a course's roster, the platform's list of its members (LTI)
-
-
-def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the route that reads a roster (a platform's list of members)."""
-    router = APIRouter(prefix="/tutor/courses")
-    access, store = tutoring.access, tutoring.store
-
-    @router.post("/{course_id}/roster")
-    async def roster(request: Request, course_id: CourseId) -> Response:
-        """Read the platform's list of members, and return the page with the changes."""
-        from dh_grader.courses import roll
-        from dh_grader.lti.roster import RosterError, ask_for_roster, enrol_members, read_roster
-
-        shows_names = "names" in await form_fields(request)
-        secret = None if access.keys is None else access.keys.secret
-        if secret is None:
-            message = say("Rosters need a secret: set DH_GRADER_SECRET.")
-            raise course_problem(CourseError("unusable", message))
-        known, now, language = secret, datetime.now(UTC), language_of(request)
-        course = await read(store, lambda it: roll.course(it, course_id))
-        try:
-            asked = await write(store, lambda it: ask_for_roster(it, course_id, known, now))
-        except RosterError as error:
-            raise course_problem(CourseError("unusable", message_of(error))) from error
-        try:
-            members = await tutoring.platforms.run(
-                asked.registration.id, lambda: read_roster(asked)
-            )
-        except RosterError as error:
-            content = roster_page(
-                course, None, told(message_of(error), language.translation), assets, language
-            )
-            return page_answer(request, content, FORM_HEADERS, HTTPStatus.BAD_GATEWAY)
-        change = await write(
-            store, lambda it: enrol_members(it, asked, members, known, shows_names=shows_names)
-        )
-        content = roster_page(course, change, "", assets, language)
-        return page_answer(request, content, FORM_HEADERS)
-
-    return router
-
-
-# --- The pages of courses as HTML
-#
-# Scripts send their forms to the routes of the service.
-
-
-# The number of groups in the distribution of points.
-_GROUPS: Final = 10
+# --- The routes of the pages on which tutors manage their courses
 
 
 class CourseState(NamedTuple):
     """A course with its learners and assignments.
 
     ``handed_in`` has the number of learners with a readable attempt, by assignment id. ``roster``
-    is None if the learning platform gives no list of the course's members.
+    is a database row, or None if the learning platform gives no list of the course's members.
+    ``reports`` are the reports on files that did not reach the platform.
     """
-
-    # Otherwise it is a database row. ``reports`` are the reports on files that did not reach the
-    # platform.
 
     course: Course
     learners: Sequence[CourseLearner]
@@ -118,194 +71,6 @@ class CourseState(NamedTuple):
     handed_in: dict[str, int]
     roster: "Row[Any] | None"
     reports: "Sequence[MissingReport]" = ()
-
-
-class PointsGroup(NamedTuple):
-    """The number of learners whose percentage of the points is from ``start`` to below ``end``."""
-
-    start: int
-    end: int
-    learners: int
-
-
-def courses_page(
-    courses: Sequence[Course], assets: Assets, language: Language, *, creates: bool
-) -> bytes:
-    """Return the page with the list of courses; ``creates`` adds a form for a new course."""
-    scripts = ["course_forms.js"]
-    return _page("courses", assets, language, "../", scripts, courses=courses, creates=creates)
-
-
-def course_page(
-    state: CourseState,
-    catalogue: Catalogue,
-    assets: Assets,
-    language: Language,
-    *,
-    has_secret: bool,
-    has_keys: bool,
-    deletes: bool,
-) -> bytes:
-    """Return the page of a course, with a button to delete the course if ``deletes`` is True."""
-    return _page(
-        "course",
-        assets,
-        language,
-        "../../",
-        ["course_forms.js", "deletion.js", "learner_filter.js"],
-        **state._asdict(),
-        catalogue=_in_language(catalogue, language),
-        has_secret=has_secret,
-        has_keys=has_keys,
-        deletes=deletes,
-        shown=_shown,
-    )
-
-
-def assignment_page(
-    state: CourseState,
-    chosen: CourseAssignment,
-    missing: Sequence[MissingLearner],
-    book: Gradebook,
-    scores: Sequence[PlatformScore],
-    catalogue: Catalogue,
-    assets: Assets,
-    language: Language,
-) -> bytes:
-    """Return the page of an assignment: its fields, extensions, missing hand-ins and points."""
-    names = told_apart(state.learners)
-    place_of = {learner: i for i, learner in enumerate(names)}
-    given = sorted(chosen.extensions, key=lambda it: place_of.get(it.learner, len(names)))
-    return _page(
-        "assignment",
-        assets,
-        language,
-        "../../../../",
-        ["course_forms.js", "deletion.js"],
-        course=state.course,
-        learners=state.learners,
-        names=names,
-        assignment=chosen,
-        extension_of={each.learner: each for each in given},
-        extensions=[with_own_dates(chosen, each) for each in given],
-        missing=missing,
-        groups=distribution(book),
-        columns=_columns(book),
-        scores=scores,
-        catalogue=_in_language(catalogue, language),
-        shown=_shown,
-    )
-
-
-def gradebook_page(course: Course, assets: Assets, language: Language) -> bytes:
-    """Return the page of a course's gradebook, which a script fills."""
-    return _page("gradebook", assets, language, "../../../", ["gradebook.js"], course=course)
-
-
-def learner_page(
-    course: OwnCourse,
-    learner: str,
-    variants: Mapping[str, Sequence[LearnerVariant]],
-    scores: Sequence[PlatformScore],
-    reports: "Sequence[MissingReport]",
-    now: datetime,
-    assets: Assets,
-    language: Language,
-) -> bytes:
-    """Return a tutor's page about one learner of a course.
-
-    The page has the learner's results, variants, scores and personal link.
-    """
-    # ``reports`` are the reports on handed-in files that did not reach the platform. ``variants``
-    # has the learner's variants by assignment.
-    return _page(
-        "learner",
-        assets,
-        language,
-        "../../../",
-        ["course_forms.js", "deletion.js"],
-        course=course,
-        learner=learner,
-        variants=variants,
-        scores=scores,
-        reports=reports,
-        now=now,
-        shown=_shown,
-    )
-
-
-def roster_page(
-    course: Course,
-    change: "RosterChange | None",
-    message: str,
-    assets: Assets,
-    language: Language,
-) -> bytes:
-    """Return the page that says how the roster (the platform's list of members) has changed.
-
-    The page may also say why the roster could not be read.
-    """
-    values = {"course": course, "change": change, "message": message}
-    return _page("roster", assets, language, "../../../", [], **values)
-
-
-def distribution(book: Gradebook) -> list[PointsGroup]:
-    """Count the learners in each group of similar points."""
-    # Learners without attempts are left out.
-    most = sum(each.points for each in book.columns)
-    counts = [0] * _GROUPS
-    for row in book.rows:
-        if any(points is not None for points in row.points):
-            # Rounded, because points are sums of floats.
-            group = int(round(_GROUPS * row.total / most, 6)) if most else 0
-            counts[min(group, _GROUPS - 1)] += 1
-    width = 100 // _GROUPS
-    return [PointsGroup(i * width, (i + 1) * width, count) for i, count in enumerate(counts)]
-
-
-def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
-    # Return a tuple for each exercise.
-    # It has the exercise's id, the possible points, the number of learners with an attempt, and the
-    # mean of their points.
-    found = []
-    for i, column in enumerate(book.columns):
-        earned = [row.points[i] for row in book.rows if row.points[i] is not None]
-        mean = sum(each or 0.0 for each in earned) / len(earned) if earned else None
-        found.append((column.exercise, column.points, len(earned), mean))
-    return found
-
-
-def _shown(when: datetime | None) -> str:
-    """Return a date as text, or a dash."""
-    # The date is already in the course's time zone.
-    return f"{when:%Y-%m-%d %H:%M}" if when is not None else "–"
-
-
-def _in_language(catalogue: Catalogue, language: Language) -> Catalogue:
-    return {name: in_language(each, language) for name, each in catalogue.items()}
-
-
-def _page(
-    name: str,
-    assets: Assets,
-    language: Language,
-    root: str,
-    scripts: Sequence[str],
-    **values: Any,
-) -> bytes:
-    return page(
-        f"web/templates/courses/{name}.html",
-        assets,
-        root,
-        ["page.js", *scripts],
-        styles=["tutor.css", "records.css", "courses.css"],
-        language=language,
-        tutor=True,
-        **values,
-    )
-
-
-# --- The routes of the pages on which tutors manage their courses
 
 
 def course_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
@@ -323,8 +88,7 @@ def _set_up_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> 
 
     @router.get("")
     async def courses(request: Request) -> Response:
-        """Return the page with all courses that the tutor may see."""
-        # A tutor of one course sees only this course.
+        """Return the page with all courses that the tutor may see, perhaps one."""
         from dh_grader.courses import roll
 
         only = access.caller(request).course
@@ -462,3 +226,234 @@ def _state(connection: "Connection", course_id: str, language: Language) -> Cour
         roster,
         missing_reports(connection, course_id, language),
     )
+
+
+# --- The pages of courses as HTML
+
+
+# The number of groups in the distribution of points.
+_GROUPS: Final = 10
+
+
+class PointsGroup(NamedTuple):
+    """The number of learners whose percentage of the points is from ``start`` to below ``end``."""
+
+    start: int
+    end: int
+    learners: int
+
+
+def courses_page(
+    courses: Sequence[Course], assets: Assets, language: Language, *, creates: bool
+) -> bytes:
+    """Return the page with the list of courses; ``creates`` adds a form for a new course."""
+    scripts = ["course_forms.js"]
+    return _page("courses", assets, language, "../", scripts, courses=courses, creates=creates)
+
+
+def course_page(
+    state: CourseState,
+    catalogue: Catalogue,
+    assets: Assets,
+    language: Language,
+    *,
+    has_secret: bool,
+    has_keys: bool,
+    deletes: bool,
+) -> bytes:
+    """Return the page of a course, with a button to delete the course if ``deletes`` is True."""
+    return _page(
+        "course",
+        assets,
+        language,
+        "../../",
+        ["course_forms.js", "deletion.js", "learner_filter.js"],
+        **state._asdict(),
+        catalogue=_in_language(catalogue, language),
+        has_secret=has_secret,
+        has_keys=has_keys,
+        deletes=deletes,
+        shown=_shown,
+    )
+
+
+def assignment_page(
+    state: CourseState,
+    chosen: CourseAssignment,
+    missing: Sequence[MissingLearner],
+    book: Gradebook,
+    scores: Sequence[PlatformScore],
+    catalogue: Catalogue,
+    assets: Assets,
+    language: Language,
+) -> bytes:
+    """Return the page of an assignment: its fields, extensions, missing hand-ins and points."""
+    names = told_apart(state.learners)
+    place_of = {learner: i for i, learner in enumerate(names)}
+    given = sorted(chosen.extensions, key=lambda it: place_of.get(it.learner, len(names)))
+    return _page(
+        "assignment",
+        assets,
+        language,
+        "../../../../",
+        ["course_forms.js", "deletion.js"],
+        course=state.course,
+        learners=state.learners,
+        names=names,
+        assignment=chosen,
+        extension_of={each.learner: each for each in given},
+        extensions=[with_own_dates(chosen, each) for each in given],
+        missing=missing,
+        groups=distribution(book),
+        columns=_columns(book),
+        scores=scores,
+        catalogue=_in_language(catalogue, language),
+        shown=_shown,
+    )
+
+
+def gradebook_page(course: Course, assets: Assets, language: Language) -> bytes:
+    """Return the page of a course's gradebook, which a script fills."""
+    return _page("gradebook", assets, language, "../../../", ["gradebook.js"], course=course)
+
+
+def learner_page(
+    course: OwnCourse,
+    learner: str,
+    variants: Mapping[str, Sequence[LearnerVariant]],
+    scores: Sequence[PlatformScore],
+    reports: "Sequence[MissingReport]",
+    now: datetime,
+    assets: Assets,
+    language: Language,
+) -> bytes:
+    """Return a tutor's page about one learner of a course.
+
+    The page has the learner's results, variants (by assignment), scores and personal link, and the
+    ``reports`` on handed-in files that did not reach the platform.
+    """
+    return _page(
+        "learner",
+        assets,
+        language,
+        "../../../",
+        ["course_forms.js", "deletion.js"],
+        course=course,
+        learner=learner,
+        variants=variants,
+        scores=scores,
+        reports=reports,
+        now=now,
+        shown=_shown,
+    )
+
+
+def roster_page(
+    course: Course,
+    change: "RosterChange | None",
+    message: str,
+    assets: Assets,
+    language: Language,
+) -> bytes:
+    """Return the page that says how the roster (the platform's list of members) has changed.
+
+    The page may also say why the roster could not be read.
+    """
+    values = {"course": course, "change": change, "message": message}
+    return _page("roster", assets, language, "../../../", [], **values)
+
+
+def distribution(book: Gradebook) -> list[PointsGroup]:
+    """Count the learners with attempts in each group of similar points."""
+    most = sum(each.points for each in book.columns)
+    counts = [0] * _GROUPS
+    for row in book.rows:
+        if any(points is not None for points in row.points):
+            # Rounded, because points are sums of floats.
+            group = int(round(_GROUPS * row.total / most, 6)) if most else 0
+            counts[min(group, _GROUPS - 1)] += 1
+    width = 100 // _GROUPS
+    return [PointsGroup(i * width, (i + 1) * width, count) for i, count in enumerate(counts)]
+
+
+def _columns(book: Gradebook) -> list[tuple[str, float, int, float | None]]:
+    # Return for each exercise its id, the possible points, the number of learners with an attempt,
+    # and the mean of their points.
+    found = []
+    for i, column in enumerate(book.columns):
+        earned = [row.points[i] for row in book.rows if row.points[i] is not None]
+        mean = sum(each or 0.0 for each in earned) / len(earned) if earned else None
+        found.append((column.exercise, column.points, len(earned), mean))
+    return found
+
+
+def _shown(when: datetime | None) -> str:
+    """Return a date in the course's time zone as text, or a dash."""
+    return f"{when:%Y-%m-%d %H:%M}" if when is not None else "–"
+
+
+def _in_language(catalogue: Catalogue, language: Language) -> Catalogue:
+    return {name: in_language(each, language) for name, each in catalogue.items()}
+
+
+def _page(
+    name: str,
+    assets: Assets,
+    language: Language,
+    root: str,
+    scripts: Sequence[str],
+    **values: Any,
+) -> bytes:
+    return page(
+        f"web/templates/courses/{name}.html",
+        assets,
+        root,
+        ["page.js", *scripts],
+        styles=["tutor.css", "records.css", "courses.css"],
+        language=language,
+        tutor=True,
+        **values,
+    )
+
+
+# --- The route that reads a course's roster, the platform's list of its members (LTI)
+
+
+def roster_routes(assets: Assets, tutoring: Tutoring) -> APIRouter:
+    """Return the route that reads a roster (a platform's list of members)."""
+    router = APIRouter(prefix="/tutor/courses")
+    access, store = tutoring.access, tutoring.store
+
+    @router.post("/{course_id}/roster")
+    async def roster(request: Request, course_id: CourseId) -> Response:
+        """Read the platform's list of members, and return the page with the changes."""
+        from dh_grader.courses import roll
+        from dh_grader.lti.roster import RosterError, ask_for_roster, enrol_members, read_roster
+
+        shows_names = "names" in await form_fields(request)
+        secret = None if access.keys is None else access.keys.secret
+        if secret is None:
+            message = say("Rosters need a secret: set DH_GRADER_SECRET.")
+            raise course_problem(CourseError("unusable", message))
+        known, now, language = secret, datetime.now(UTC), language_of(request)
+        course = await read(store, lambda it: roll.course(it, course_id))
+        try:
+            asked = await write(store, lambda it: ask_for_roster(it, course_id, known, now))
+        except RosterError as error:
+            raise course_problem(CourseError("unusable", message_of(error))) from error
+        try:
+            members = await tutoring.platforms.run(
+                asked.registration.id, lambda: read_roster(asked)
+            )
+        except RosterError as error:
+            content = roster_page(
+                course, None, told(message_of(error), language.translation), assets, language
+            )
+            return page_answer(request, content, FORM_HEADERS, HTTPStatus.BAD_GATEWAY)
+        change = await write(
+            store, lambda it: enrol_members(it, asked, members, known, shows_names=shows_names)
+        )
+        content = roster_page(course, change, "", assets, language)
+        return page_answer(request, content, FORM_HEADERS)
+
+    return router

@@ -1,6 +1,7 @@
-"""The pages of students as HTML, which can be read without scripts, and their static files.
+"""What all pages share, and the pages for everybody: exercises, help, sign-in and errors.
 
-Also help, sign-in and the pages of errors. The pages for tutors are in ``tutor.py``.
+All pages share their headers, their static files and the template of the site. The pages for
+tutors are in ``tutor.py`` and ``courses.py``, those in learning platforms in ``lti_pages.py``.
 """
 
 import hashlib
@@ -21,8 +22,9 @@ from markupsafe import Markup
 from starlette.responses import HTMLResponse, RedirectResponse, Response
 
 from dh_grader.access import CredentialError, Keys, KeysBusyError, KeysUnreachableError, Scope
-from dh_grader.api.grading import SCRIPT, START, STYLE
+from dh_grader.api.document import SCRIPT, START, STYLE
 from dh_grader.api.http import (
+    NO_STORE,
     Catalogue,
     ProblemError,
     ProblemPage,
@@ -45,69 +47,70 @@ from dh_grader.translations import ENGLISH, LANGUAGES, Language, say, template, 
 from dh_grader.typeset import matrix, statement_html, typeset
 from dh_grader.variants.robots import practice_id
 
-# --- Translate the sentences in the pages' scripts: one dictionary for each language
+# --- Pages as responses in the language of their readers, with headers that limit browsers
+
+
+def policy(**more: str) -> str:
+    """Return the Content-Security-Policy of a page; ``more`` replaces some of its directives."""
+    # It allows nothing from other hosts, and no script or style inside the page. Scripts may turn
+    # text into markup only with the Trusted Types policy of markup.js.
+    directives = {
+        "default_src": "'none'",
+        "script_src": "'self'",
+        "style_src": "'self'",
+        "img_src": "'self' blob:",
+        "connect_src": "'self'",
+        "base_uri": "'none'",
+        "form_action": "'self'",
+        "frame_ancestors": "'self'",
+        "require_trusted_types_for": "'script'",
+        "trusted_types": "dh-grader",
+        **more,
+    }
+    return "; ".join(f"{name.replace('_', '-')} {value}" for name, value in directives.items())
+
+
+PAGE_HEADERS: Final = {
+    "Content-Security-Policy": policy(),
+    "Cross-Origin-Opener-Policy": "same-origin",
+    "Referrer-Policy": "no-referrer",
+    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
+    "Cache-Control": "no-cache",
+}
+# Swagger UI makes markup from text, which "require-trusted-types-for" would forbid.
+REFERENCE_HEADERS: Final = {
+    **PAGE_HEADERS,
+    "Content-Security-Policy": (
+        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
+        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
+    ),
+}
+# Browsers must not store what only a tutor may see.
+PRIVATE_HEADERS: Final = {**PAGE_HEADERS, **NO_STORE}
+# A page without a referrer would send its forms without an origin.
+FORM_HEADERS: Final = {**PRIVATE_HEADERS, "Referrer-Policy": "same-origin"}
+
+
+# The headers of a request that a page depends on. The menu depends on a tutor's session.
+_VARY: Final = "Accept-Language, Cookie"
+
+
+def page_answer(
+    request: Request,
+    content: bytes,
+    headers: Mapping[str, str] = PAGE_HEADERS,
+    status: HTTPStatus = HTTPStatus.OK,
+) -> HTMLResponse:
+    """Return a page as a response in the reader's language; store a newly chosen language."""
+    answer = HTMLResponse(content, status, headers=dict(headers))
+    answer.headers["Content-Language"] = language_of(request).tag
+    answer.headers["Vary"] = _VARY
+    keep_language(request, answer)
+    return answer
+
+
+# --- The static files, whose names contain a hash of their content
 #
-# English needs none.
-
-
-# A sentence in a script: the first argument of `worded`, or the first two of `wordedFor`.
-_TEXT: Final = r"\s*(\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
-_WORDED: Final = regex(rf"\bworded\({_TEXT}")
-_COUNTED: Final = regex(rf"\bwordedFor\({_TEXT},{_TEXT}")
-# The place in words.js for the names of the dictionaries.
-_PLACE: Final = "const FILES = {};"
-
-
-class ScriptSentences(NamedTuple):
-    """The English sentences of scripts; ``counted`` has pairs of a singular and a plural."""
-
-    plain: tuple[str, ...]
-    counted: tuple[tuple[str, str], ...]
-
-
-def sentences_in(scripts: Iterable[str]) -> ScriptSentences:
-    """Return the English sentences in all scripts."""
-    # A vendored library is larger than all own scripts and has none.
-    own = [script for script in scripts if "worded" in script]
-    plain = (_unquoted(match[1]) for script in own for match in _WORDED.finditer(script))
-    counted = (
-        (_unquoted(match[1]), _unquoted(match[2]))
-        for script in own
-        for match in _COUNTED.finditer(script)
-    )
-    return ScriptSentences(tuple(plain), tuple(counted))
-
-
-def dictionary(language: Language, sentences: ScriptSentences) -> str:
-    """Return the JavaScript file with a language's translations of the sentences in scripts."""
-    words: dict[str, str] = {}
-    counts: dict[str, tuple[str, str]] = {}
-    translation = language.translation_of_scripts
-    if translation is not None:
-        for text in sentences.plain:
-            if (told := translation.gettext(text)) != text:
-                words[text] = told
-        for one, many in sentences.counted:
-            forms = (translation.ngettext(one, many, 1), translation.ngettext(one, many, 2))
-            if forms != (one, many):
-                counts[one] = forms
-    found: dict[str, Any] = {"tag": language.tag, "words": words, "counts": counts}
-    return f"export default {json.dumps(found, ensure_ascii=False, sort_keys=True)};\n"
-
-
-def with_dictionaries(script: str, names: dict[str, str]) -> str:
-    """Return the script words.js with the addresses of the dictionaries inserted."""
-    # ``script`` is the text of words.js, and ``names`` has the addresses by language.
-    return script.replace(_PLACE, f"const FILES = {json.dumps(names)};")
-
-
-def _unquoted(text: str) -> str:
-    """Return the text of a string literal in JavaScript."""
-    if text[0] == "'":
-        text = '"' + text[1:-1].replace("\\'", "'").replace('"', '\\"') + '"'
-    return str(json.loads(text))
-
-
 # The names are made when the service starts; there is no build step. In the source, a module
 # imports another one by its path, such as ``"../shared/dom.js"``. Each language but English has one
 # more file, the dictionary of the scripts.
@@ -115,9 +118,10 @@ def _unquoted(text: str) -> str:
 
 FOLDER: Final = Path(__file__).parent / "static"
 _MEDIA_TYPES: Final = {".js": "text/javascript", ".css": "text/css", ".svg": "image/svg+xml"}
-# A file names another one by its path in quotes. A module may also import one later.
-# A pattern that begins with plain characters is ten times as fast.
+# A file names another one by its path in quotes. A pattern that begins with plain characters is ten
+# times as fast.
 _NAMED: Final = regex(r'"(\.\.?/[\w./-]+\.(?:js|css|svg))"')
+# A module may also import another one later.
 _LATER: Final = ("import(", "import.meta.resolve(")
 # The script that loads the dictionaries.
 _WORDS: Final = "words.js"
@@ -127,10 +131,9 @@ _WORDS: Final = "words.js"
 class Asset:
     """A static file, with the ``name`` and the ``content`` that browsers get.
 
-    ``needs`` has the plain names of all files that this file refers to: the names without a hash.
+    ``needs`` has the plain names (those without a hash) of all files that it refers to, but not
+    those of modules that a script imports only when it needs them.
     """
-
-    # It does not have the modules that a script imports only when it needs them.
 
     name: str
     content: bytes
@@ -154,8 +157,7 @@ class Assets:
         return self.by_plain_name[plain_name].name
 
     def modules(self, plain_name: str) -> list[str]:
-        """Return the names of a module and of all modules that it imports."""
-        # Pages preload them.
+        """Return the names of a module and of all modules that it imports, to preload them."""
         found: dict[str, None] = {}
         waiting = [plain_name]
         while waiting:
@@ -226,129 +228,69 @@ def _target(files: Mapping[str, Path], name: str, match: re.Match[str]) -> str:
     return path.name
 
 
-# --- The HTTP headers of the pages, which limit what a browser may load and run
+# --- Translate the sentences in the pages' scripts: one dictionary for each language
+#
+# English needs none.
 
 
-def policy(**more: str) -> str:
-    """Return the Content-Security-Policy of a page; ``more`` replaces some of its directives."""
-    # It allows nothing from other hosts, and no script or style inside the page. Scripts may turn
-    # text into markup only with the Trusted Types policy of markup.js.
-    directives = {
-        "default_src": "'none'",
-        "script_src": "'self'",
-        "style_src": "'self'",
-        "img_src": "'self' blob:",
-        "connect_src": "'self'",
-        "base_uri": "'none'",
-        "form_action": "'self'",
-        "frame_ancestors": "'self'",
-        "require_trusted_types_for": "'script'",
-        "trusted_types": "dh-grader",
-        **more,
-    }
-    return "; ".join(f"{name.replace('_', '-')} {value}" for name, value in directives.items())
+# A sentence in a script: the first argument of `worded`, or the first two of `wordedFor`.
+_TEXT: Final = r"\s*(\"(?:[^\"\\]|\\.)*\"|'(?:[^'\\]|\\.)*')"
+_WORDED: Final = regex(rf"\bworded\({_TEXT}")
+_COUNTED: Final = regex(rf"\bwordedFor\({_TEXT},{_TEXT}")
+# The place in words.js for the names of the dictionaries.
+_PLACE: Final = "const FILES = {};"
 
 
-PAGE_HEADERS: Final = {
-    "Content-Security-Policy": policy(),
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Referrer-Policy": "no-referrer",
-    "Permissions-Policy": "camera=(), geolocation=(), microphone=()",
-    "Cache-Control": "no-cache",
-}
-# Swagger UI makes markup from text, which "require-trusted-types-for" would forbid.
-REFERENCE_HEADERS: Final = {
-    **PAGE_HEADERS,
-    "Content-Security-Policy": (
-        "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; "
-        "connect-src 'self'; base-uri 'none'; form-action 'none'; frame-ancestors 'none'"
-    ),
-}
-# Browsers must not store what only a tutor may see.
-NO_STORE: Final = {"Cache-Control": "no-store"}
-PRIVATE_HEADERS: Final = {**PAGE_HEADERS, **NO_STORE}
-# A page without a referrer would send its forms without an origin.
-FORM_HEADERS: Final = {**PRIVATE_HEADERS, "Referrer-Policy": "same-origin"}
+class ScriptSentences(NamedTuple):
+    """The English sentences of scripts; ``counted`` has pairs of a singular and a plural."""
+
+    plain: tuple[str, ...]
+    counted: tuple[tuple[str, str], ...]
 
 
-# --- Return an HTML page as a response in the language of its reader
+def sentences_in(scripts: Iterable[str]) -> ScriptSentences:
+    """Return the English sentences in all scripts."""
+    # A vendored library is larger than all own scripts and has none.
+    own = [script for script in scripts if "worded" in script]
+    plain = (_unquoted(match[1]) for script in own for match in _WORDED.finditer(script))
+    counted = (
+        (_unquoted(match[1]), _unquoted(match[2]))
+        for script in own
+        for match in _COUNTED.finditer(script)
+    )
+    return ScriptSentences(tuple(plain), tuple(counted))
 
 
-# The headers of a request that a page depends on. The menu depends on a tutor's session.
-_VARY: Final = "Accept-Language, Cookie"
+def dictionary(language: Language, sentences: ScriptSentences) -> str:
+    """Return the JavaScript file with a language's translations of the sentences in scripts."""
+    words: dict[str, str] = {}
+    counts: dict[str, tuple[str, str]] = {}
+    translation = language.translation_of_scripts
+    if translation is not None:
+        for text in sentences.plain:
+            if (told := translation.gettext(text)) != text:
+                words[text] = told
+        for one, many in sentences.counted:
+            forms = (translation.ngettext(one, many, 1), translation.ngettext(one, many, 2))
+            if forms != (one, many):
+                counts[one] = forms
+    found: dict[str, Any] = {"tag": language.tag, "words": words, "counts": counts}
+    return f"export default {json.dumps(found, ensure_ascii=False, sort_keys=True)};\n"
 
 
-def page_answer(
-    request: Request,
-    content: bytes,
-    headers: Mapping[str, str] = PAGE_HEADERS,
-    status: HTTPStatus = HTTPStatus.OK,
-) -> HTMLResponse:
-    """Return a page as a response in the reader's language."""
-    # A newly chosen language is stored.
-    answer = HTMLResponse(content, status, headers=dict(headers))
-    answer.headers["Content-Language"] = language_of(request).tag
-    answer.headers["Vary"] = _VARY
-    keep_language(request, answer)
-    return answer
+def with_dictionaries(script: str, names: dict[str, str]) -> str:
+    """Return words.js, the text ``script``, with the addresses of the dictionaries by language."""
+    return script.replace(_PLACE, f"const FILES = {json.dumps(names)};")
 
 
-# --- The words by which a search finds an exercise in the catalogue
+def _unquoted(text: str) -> str:
+    """Return the text of a string literal in JavaScript."""
+    if text[0] == "'":
+        text = '"' + text[1:-1].replace("\\'", "'").replace('"', '\\"') + '"'
+    return str(json.loads(text))
 
 
-_KIND_NAMES: Final = {
-    "dh_table": say("DH table"),
-    "dh_row": say("DH row"),
-    "frames": say("placing frames"),
-    "find_slip": say("finding the slip"),
-    "link_transforms": say("link transforms"),
-    "euler_angles": say("Euler angles"),
-    "screw_axes": say("screw axes"),
-    "matrix": say("matrix"),
-    "position": say("position"),
-    "rotation": say("rotation"),
-    "transform": say("transform"),
-    "vector": say("vector"),
-}
-# The words that lectures and books use.
-_CONVENTIONS: Final = {
-    Convention.STANDARD: "standard distal",
-    Convention.MODIFIED: "modified proximal Craig",
-}
-_JOINTS: Final = {"R": "revolute rotary turning", "P": "prismatic linear sliding"}
-
-
-def kinds_of(exercise: Exercise) -> Iterable[str]:
-    """Return the kinds of answers that an exercise asks for, such as a DH table."""
-    # Each kind once.
-    return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
-
-
-def words_of(
-    exercise: Exercise, language: Language = ENGLISH, original: Exercise | None = None
-) -> str:
-    """Return all words of an exercise by which a search may find it.
-
-    The words of the English ``original`` are included.
-    """
-    texts = [told(each, language.translation) for each in _texts(exercise)]
-    if language.translation:
-        texts += _texts(original or exercise)
-    return " ".join(dict.fromkeys(" ".join(texts).split()))
-
-
-def _texts(exercise: Exercise) -> Iterator[str]:
-    yield from (exercise.id, exercise.title, exercise.summary, *exercise.keywords)
-    yield from (_CONVENTIONS[convention] for convention in exercise.conventions)
-    if joints := exercise.structure:
-        letters = dict.fromkeys(joints)
-        # A "6R" arm has six joints that turn. The search reads "6 dof" as "6dof".
-        yield from (joints, f"{len(joints)}dof", *(_JOINTS[letter] for letter in letters))
-        if len(letters) == 1:
-            yield f"{len(joints)}{joints[0]}"
-    yield from kinds_of(exercise)
-    for part in exercise.parts:
-        yield from (part.title, part.prompt)
+# --- The pages of students as HTML, which can be read without scripts
 
 
 # The entries of the menu: text, and address relative to the root.
@@ -436,8 +378,7 @@ def play_page(assets: Assets, language: Language, *, tutor: bool = False) -> byt
 
 
 def practice_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
-    """Return the page for practice with generated robots."""
-    # A script loads one after the other.
+    """Return the page for practice with generated robots, which a script loads one by one."""
     return page(
         "web/templates/practice.html",
         assets,
@@ -451,7 +392,6 @@ def practice_page(assets: Assets, language: Language, *, tutor: bool = False) ->
 
 def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False) -> bytes:
     """Return the page "DH in ten minutes"."""
-    # It can be read without scripts.
     return page(
         "web/templates/learn_dh.html",
         assets,
@@ -469,8 +409,7 @@ def ten_minutes_page(assets: Assets, language: Language, *, tutor: bool = False)
 
 
 def learner_page(assets: Assets, language: Language) -> bytes:
-    """Return the page of a learner with a personal link."""
-    # Its script loads the assignments.
+    """Return the page of a learner with a personal link; its script loads the assignments."""
     return page(
         "web/templates/learn.html",
         assets,
@@ -541,6 +480,63 @@ def page(
 def _markdown(text: str, exercise: Exercise) -> Markup:
     """Return the HTML of a text that the exercise's author has written in Markdown."""
     return own_html(statement_html(text, exercise.symbols))
+
+
+# --- The words by which a search finds an exercise in the catalogue
+
+
+_KIND_NAMES: Final = {
+    "dh_table": say("DH table"),
+    "dh_row": say("DH row"),
+    "frames": say("placing frames"),
+    "find_slip": say("finding the slip"),
+    "link_transforms": say("link transforms"),
+    "euler_angles": say("Euler angles"),
+    "screw_axes": say("screw axes"),
+    "matrix": say("matrix"),
+    "position": say("position"),
+    "rotation": say("rotation"),
+    "transform": say("transform"),
+    "vector": say("vector"),
+}
+# The words that lectures and books use.
+_CONVENTIONS: Final = {
+    Convention.STANDARD: "standard distal",
+    Convention.MODIFIED: "modified proximal Craig",
+}
+_JOINTS: Final = {"R": "revolute rotary turning", "P": "prismatic linear sliding"}
+
+
+def kinds_of(exercise: Exercise) -> Iterable[str]:
+    """Return each kind of answer that an exercise asks for, such as a DH table."""
+    return dict.fromkeys(_KIND_NAMES.get(part.kind, part.kind) for part in exercise.parts)
+
+
+def words_of(
+    exercise: Exercise, language: Language = ENGLISH, original: Exercise | None = None
+) -> str:
+    """Return all words of an exercise by which a search may find it.
+
+    The words of the English ``original`` are included.
+    """
+    texts = [told(each, language.translation) for each in _texts(exercise)]
+    if language.translation:
+        texts += _texts(original or exercise)
+    return " ".join(dict.fromkeys(" ".join(texts).split()))
+
+
+def _texts(exercise: Exercise) -> Iterator[str]:
+    yield from (exercise.id, exercise.title, exercise.summary, *exercise.keywords)
+    yield from (_CONVENTIONS[convention] for convention in exercise.conventions)
+    if joints := exercise.structure:
+        letters = dict.fromkeys(joints)
+        # A "6R" arm has six joints that turn. The search reads "6 dof" as "6dof".
+        yield from (joints, f"{len(joints)}dof", *(_JOINTS[letter] for letter in letters))
+        if len(letters) == 1:
+            yield f"{len(joints)}{joints[0]}"
+    yield from kinds_of(exercise)
+    for part in exercise.parts:
+        yield from (part.title, part.prompt)
 
 
 # --- The help pages and their routes
@@ -698,8 +694,7 @@ async def form_fields(request: Request, most: int = _MOST_FIELDS) -> dict[str, s
 
 def _see(path: str) -> Response:
     # Relative to /tutor/…, so that it works below the prefix of a proxy.
-    headers = {"Cache-Control": "no-store"}
-    return RedirectResponse(f"..{path}", HTTPStatus.SEE_OTHER, headers)
+    return RedirectResponse(f"..{path}", HTTPStatus.SEE_OTHER, NO_STORE)
 
 
 def set_session_cookie(answer: Response, request: Request, session: str) -> None:
@@ -733,8 +728,10 @@ _FOR_TUTORS: Final[Mapping[str, str]] = {
 
 
 def problem_page(assets: Assets) -> ProblemPage:
-    """Return a function that makes an HTML error page from a problem."""
-    # The function returns None if the request did not ask for a page.
+    """Return a function that makes an HTML error page from a problem.
+
+    The function returns None if the request did not ask for a page.
+    """
 
     def made(request: Request, problem: ProblemError) -> Response | None:
         path = request.url.path.removeprefix(request.scope.get("root_path", ""))

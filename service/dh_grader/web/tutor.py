@@ -1,4 +1,8 @@
-"""The pages for tutors (editor, class, attempts), and the routes that these pages call."""
+"""The pages for tutors (home, solutions, editor, class, attempts), and the routes that they call.
+
+What the editor and the report on a class compute is in ``tutor_checks.py``; the pages of courses
+are in ``courses.py``.
+"""
 
 import re
 from collections.abc import Sequence
@@ -14,6 +18,7 @@ from pydantic import Field
 from starlette.responses import HTMLResponse, JSONResponse, Response
 
 from dh_grader.api.http import (
+    NO_STORE,
     BoundedWork,
     Catalogue,
     ChunkedResponse,
@@ -37,7 +42,6 @@ from dh_grader.translations import Language, say, told
 from dh_grader.typeset import formula_html
 from dh_grader.web.pages import (
     FORM_HEADERS,
-    NO_STORE,
     PRIVATE_HEADERS,
     Assets,
     page,
@@ -68,12 +72,11 @@ class Tutoring:
     """The settings of the pages for tutors.
 
     ``access`` decides who sees solutions. ``records`` is True if attempts are recorded, in
-    ``store``. ``feedback`` is the highest feedback level for students.
+    ``store``. ``feedback`` is the highest feedback level for students. ``folders`` have the
+    exercise files, and the editor saves in ``editor_dir``. ``checking`` checks the text in the
+    editor. ``drafts`` has the exercises in the preview. ``platforms`` are the threads that wait for
+    learning platforms.
     """
-
-    # ``folders`` have the exercise files, and the editor saves in ``editor_dir``. ``checking``
-    # checks the text in the editor. ``drafts`` has the exercises in the preview. ``platforms`` are
-    # the threads that wait for learning platforms.
 
     access: Access
     folders: Sequence[Path] = field(default=())
@@ -92,10 +95,8 @@ class Tutoring:
 
 
 def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> APIRouter:
-    """Return the routes of the pages for tutors."""
-    # And the routes that these pages call.
+    """Return the routes of the pages for tutors, and those that these pages call."""
     access = tutoring.access
-
     router = APIRouter(include_in_schema=False)
     work = BoundedWork()
     has_lti = tutoring.store is not None and access.keys is not None and bool(access.keys.secret)
@@ -109,8 +110,7 @@ def tutor_routes(catalogue: Catalogue, assets: Assets, tutoring: Tutoring) -> AP
 
     @router.get("/tutor")
     async def home(request: Request) -> Response:
-        """Return the home page of tutors."""
-        # If the caller's key is restricted to some exercises, the page shows only these.
+        """Return the home page of tutors, with the exercises that the caller's key is for."""
         caller = access.caller(request)
         shown = reachable_exercises(catalogue, caller)
         content = tutor_page(
@@ -156,8 +156,7 @@ def _solution_routes(catalogue: Catalogue, assets: Assets, access: Access) -> AP
 
     @router.get("/solutions/{exercise_id}/frames.svg")
     async def frames(exercise_id: str) -> Response:
-        """Return a drawing of the robot with its frames."""
-        # The frames are those of its correct table.
+        """Return a drawing of the robot with the frames of its correct table."""
         exercise = exercise_or_404(catalogue, exercise_id)
         if not isinstance(exercise.reference, Robot):
             raise ProblemError(HTTPStatus.NOT_FOUND, say("The exercise has no frames to draw."))
@@ -191,9 +190,11 @@ def tutor_page(
     has_platforms: bool = False,
     signed_in: bool = False,
 ) -> bytes:
-    """Return the home page of tutors, with links to all pages for tutors."""
-    # Without ``of_all``, it has no links to the editor and the report on a class.
-    return _tutor_pages_page(
+    """Return the home page of tutors, with links to all pages for tutors.
+
+    Without ``of_all``, it has no links to the editor and the report on a class.
+    """
+    return _page(
         "home",
         assets,
         "",
@@ -209,12 +210,14 @@ def tutor_page(
 def solution_page(
     exercise: Exercise, assets: Assets, language: Language, *, of_all: bool = True
 ) -> bytes:
-    """Return the page with the correct answers to an exercise, and the steps to find them."""
-    # Without ``of_all``, it has no link to the editor.
+    """Return the page with the correct answers to an exercise, and the steps to find them.
+
+    Without ``of_all``, it has no link to the editor.
+    """
     exercise = in_language(exercise, language)
     solution = solve(exercise)
     pose, answered = solution.pose, [part.text for part in solution.parts]
-    return _tutor_pages_page(
+    return _page(
         "solution",
         assets,
         "../../",
@@ -239,7 +242,7 @@ def misconceptions_page(
     # Imported here, because it loads an algebra system.
     from dh_grader.authoring import misconceptions_of
 
-    return _tutor_pages_page(
+    return _page(
         "misconceptions",
         assets,
         "../../",
@@ -264,7 +267,7 @@ def editor_page(
 
     ``copied`` is the id of the exercise from which the text was copied, or "".
     """
-    return _tutor_pages_page(
+    return _page(
         "editor",
         assets,
         "../",
@@ -281,18 +284,23 @@ def editor_page(
 def class_page(catalogue: Catalogue, assets: Assets, language: Language) -> bytes:
     """Return the page on which a tutor uploads the files of a class."""
     exercises = [in_language(each, language) for each in catalogue.values()]
-    return _tutor_pages_page(
-        "class", assets, "../", "class.js", language=language, exercises=exercises
-    )
+    return _page("class", assets, "../", "class.js", language=language, exercises=exercises)
 
 
-def _tutor_pages_page(name: str, assets: Assets, root: str, *scripts: str, **values: Any) -> bytes:
+def _page(
+    name: str,
+    assets: Assets,
+    root: str,
+    *scripts: str,
+    styles: Sequence[str] = ("tutor.css",),
+    **values: Any,
+) -> bytes:
     return page(
         f"web/templates/tutor/{name}.html",
         assets,
         root,
         ["page.js", *scripts],
-        styles=["tutor.css"],
+        styles=styles,
         tutor=True,
         **values,
     )
@@ -366,8 +374,7 @@ def editor_routes(
 
     @router.post("/check")
     async def check(request: Request) -> Response:
-        """Return the findings on the text of an exercise file."""
-        # The text is not stored.
+        """Return the findings on the text of an exercise file; do not store the text."""
         body = await read_body(CheckRequest, request)
         language = language_of(request)
         content = await work.do(partial(checking.checked, body, language))
@@ -375,8 +382,7 @@ def editor_routes(
 
     @router.post("/import")
     async def import_robot(request: Request) -> Response:
-        """Return the text of an exercise file for an imported robot."""
-        # The text is not stored.
+        """Return the text of an exercise file for an imported robot; do not store it."""
         body = await read_body(ImportRequest, request)
         language = language_of(request)
         content = await work.do(partial(imported, body, language))
@@ -455,8 +461,7 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
 
     @router.post("/class")
     async def report(request: Request) -> Response:
-        """Grade a class, and return the reports as a ZIP file."""
-        # Nothing is stored.
+        """Grade a class, and return the reports as a ZIP file; store nothing."""
         packed = await request.body()
         language = language_of(request)
         content = await work.do(lambda: class_archive(unpacked(packed), catalogue, language))
@@ -466,7 +471,9 @@ def class_routes(catalogue: Catalogue, assets: Assets, work: BoundedWork) -> API
     return router
 
 
-# --- The pages of recorded attempts as HTML, which scripts fill
+# --- The routes of the pages of recorded attempts
+#
+# Scripts load the attempts themselves.
 
 
 class CoursePlace(NamedTuple):
@@ -474,84 +481,6 @@ class CoursePlace(NamedTuple):
 
     course: str = ""
     assignment: str = ""
-
-
-def attempts_page(
-    catalogue: Catalogue,
-    assets: Assets,
-    language: Language,
-    place: CoursePlace,
-    *,
-    of_all: bool = True,
-    forgets: bool = True,
-) -> bytes:
-    """Return the page with the list of attempts, its filters, the export, and the deletion.
-
-    Without ``of_all``, the page shows one exercise at a time. Without ``forgets``, the page has no
-    deletion.
-    """
-    # Deletion concerns all exercises and courses.
-    all_of_them = [("", say("All exercises"))] if of_all else []
-    titles = ((each.id, in_language(each, language).title) for each in catalogue.values())
-    choices = [*all_of_them, *titles]
-    return _attempt_pages_page(
-        "attempts",
-        assets,
-        language,
-        "../",
-        "attempts.js",
-        choices=choices,
-        forgets=forgets,
-        **place._asdict(),
-    )
-
-
-def attempt_page(attempt_id: str, assets: Assets, language: Language) -> bytes:
-    """Return the page of an attempt: the answers, their report, and the tutor's points."""
-    return _attempt_pages_page(
-        "attempt", assets, language, "../../", "attempt.js", attempt_id=attempt_id
-    )
-
-
-def statistics_page(
-    exercise: Exercise, assets: Assets, language: Language, place: CoursePlace
-) -> bytes:
-    """Return the page with an exercise's statistics."""
-    # It also has the export of attempts and the regrade.
-    return _attempt_pages_page(
-        "statistics",
-        assets,
-        language,
-        "../../",
-        "statistics.js",
-        exercise=in_language(exercise, language),
-        **place._asdict(),
-    )
-
-
-def nothing_recorded_page(assets: Assets, language: Language, root: str) -> bytes:
-    """Return the page that explains how to start the service with recording of attempts."""
-    return _attempt_pages_page("nothing_recorded", assets, language, root)
-
-
-def _attempt_pages_page(
-    name: str, assets: Assets, language: Language, root: str, *scripts: str, **values: Any
-) -> bytes:
-    return page(
-        f"web/templates/tutor/{name}.html",
-        assets,
-        root,
-        ["page.js", *scripts],
-        styles=["tutor.css", "records.css"],
-        language=language,
-        tutor=True,
-        **values,
-    )
-
-
-# --- The routes of the pages of recorded attempts
-#
-# Scripts load the attempts themselves.
 
 
 _NAME: Final = regex(r"[a-z0-9-]{1,64}", re.ASCII)
@@ -607,3 +536,73 @@ def _place(request: Request) -> CoursePlace:
     if not _NAME.fullmatch(course):
         return CoursePlace()
     return CoursePlace(course, assignment if _NAME.fullmatch(assignment) else "")
+
+
+# --- The pages of recorded attempts as HTML, which scripts fill
+
+
+_STYLES: Final = ("tutor.css", "records.css")
+
+
+def attempts_page(
+    catalogue: Catalogue,
+    assets: Assets,
+    language: Language,
+    place: CoursePlace,
+    *,
+    of_all: bool = True,
+    forgets: bool = True,
+) -> bytes:
+    """Return the page with the list of attempts, its filters, the export, and the deletion.
+
+    Without ``of_all``, the page shows one exercise at a time. Without ``forgets``, the page has no
+    deletion, which concerns all exercises and courses.
+    """
+    all_of_them = [("", say("All exercises"))] if of_all else []
+    titles = ((each.id, in_language(each, language).title) for each in catalogue.values())
+    choices = [*all_of_them, *titles]
+    return _page(
+        "attempts",
+        assets,
+        "../",
+        "attempts.js",
+        styles=_STYLES,
+        language=language,
+        choices=choices,
+        forgets=forgets,
+        **place._asdict(),
+    )
+
+
+def attempt_page(attempt_id: str, assets: Assets, language: Language) -> bytes:
+    """Return the page of an attempt: the answers, their report, and the tutor's points."""
+    return _page(
+        "attempt",
+        assets,
+        "../../",
+        "attempt.js",
+        styles=_STYLES,
+        language=language,
+        attempt_id=attempt_id,
+    )
+
+
+def statistics_page(
+    exercise: Exercise, assets: Assets, language: Language, place: CoursePlace
+) -> bytes:
+    """Return the page with an exercise's statistics, the export of attempts, and the regrade."""
+    return _page(
+        "statistics",
+        assets,
+        "../../",
+        "statistics.js",
+        styles=_STYLES,
+        language=language,
+        exercise=in_language(exercise, language),
+        **place._asdict(),
+    )
+
+
+def nothing_recorded_page(assets: Assets, language: Language, root: str) -> bytes:
+    """Return the page that explains how to start the service with recording of attempts."""
+    return _page("nothing_recorded", assets, root, styles=_STYLES, language=language)

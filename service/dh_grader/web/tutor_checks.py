@@ -1,4 +1,7 @@
-"""What the pages for tutors compute: imports, checks and previews of files, a class's report."""
+"""What the editor and the page of a class compute: checks, previews, files, imports, reports.
+
+The routes and pages are in ``tutor.py``. Nothing here is specific to HTTP but the errors.
+"""
 
 import hashlib
 import io
@@ -63,6 +66,419 @@ from dh_grader.submissions.files import (
 from dh_grader.translations import ENGLISH, Language, Translation, reason_of, say, told
 from dh_grader.typeset import statement_html
 
+# --- Check the text of an exercise file in the editor, and preview the exercise
+
+
+# The largest exercise that comes with the program has 8 kB.
+MAX_CHARACTERS: Final = 64 * 1024
+
+
+class CheckRequest(BaseModel):
+    """The text of an exercise file to check."""
+
+    model_config = ConfigDict(extra="forbid")
+
+    id: Annotated[str, Field(max_length=100)]
+    text: Annotated[str, Field(max_length=MAX_CHARACTERS)]
+
+
+@dataclass(frozen=True, slots=True)
+class FileFinding:
+    """A problem in an exercise file: ``level`` is unusable, failed or warning."""
+
+    level: str
+    field: str
+    text: str
+    line: int | None
+
+
+@dataclass(frozen=True, slots=True)
+class ExercisePreview:
+    """A short preview of what students will see."""
+
+    title: str
+    source: str
+    statement_html: str
+    parts: tuple[str, ...]
+    figure: str | None
+
+
+@dataclass(frozen=True, slots=True)
+class CheckAnswer:
+    """The findings on an exercise file, and a preview if the file can be used."""
+
+    findings: tuple[FileFinding, ...]
+    summary: str
+    preview: ExercisePreview | None = None
+
+
+_ANSWER: Final = TypeAdapter(CheckAnswer)
+
+
+def checked(body: CheckRequest, language: Language = ENGLISH) -> bytes:
+    """Return the findings on an exercise file as JSON."""
+    return _ANSWER.dump_json(check(body.id, body.text, language))
+
+
+def check(exercise_id: str, text: str, language: Language = ENGLISH) -> CheckAnswer:
+    """Return the findings of ``exercises check`` on an exercise file with this text."""
+    # Imported here, because it loads an algebra system.
+    from dh_grader.authoring import examine, summary
+
+    translation = language.translation
+
+    try:
+        exercise = exercise_of(exercise_id, text)
+    except CatalogueError as error:
+        faults = (
+            FileFinding("unusable", each.field, told(each.reason, translation), each.line)
+            for each in error.faults
+        )
+        return CheckAnswer(tuple(faults), told(say("The file cannot be used."), translation))
+    lines = value_lines(text.replace("\r\n", "\n"))
+    findings = tuple(
+        FileFinding(
+            remark.level.value,
+            remark.field,
+            told(remark.text, translation),
+            line_of(remark.field, lines),
+        )
+        for remark in examine(exercise)
+    )
+    return CheckAnswer(
+        findings,
+        told(summary(exercise), translation),
+        _preview(exercise, translation),
+    )
+
+
+def exercise_of(exercise_id: str, text: str) -> Exercise:
+    """Return the exercise that a file with this id and text defines. Raises CatalogueError."""
+    file = Path(f"{exercise_id}.toml")
+    if not is_exercise_id(exercise_id):
+        raise CatalogueError(
+            [Fault(file, "", say("the id is the name of the file: {advice}", advice=ID_ADVICE))]
+        )
+    if text.count(".") > MAX_TOML_DOTS:
+        raise CatalogueError(
+            [Fault(file, "", say("has more than {most:,} dots", most=MAX_TOML_DOTS))]
+        )
+    return read_exercise(file, text)
+
+
+def _preview(exercise: Exercise, translation: Translation | None) -> ExercisePreview:
+    from dh_grader.figures import exercise_figure
+
+    points = (say("{points} points", points=number(part.points)) for part in exercise.parts)
+    parts = tuple(
+        f"{part.title}, {told(worth, translation)}"
+        for part, worth in zip(exercise.parts, points, strict=True)
+    )
+    return ExercisePreview(
+        exercise.title,
+        exercise.source,
+        statement_html(exercise.statement, exercise.symbols),
+        parts,
+        exercise_figure(exercise) if exercise.reference is not None else None,
+    )
+
+
+# --- Check exercise files for the editor, in a process that is killed if it takes too long
+
+
+# Ten times what `exercises check` takes for the largest exercise of the catalogue.
+SECONDS: Final = 20.0
+# An idle process ends, because it holds about 120 MB.
+IDLE_SECONDS: Final = 300.0
+# Seconds until a new process is ready, even on a very busy machine.
+_START: Final = 60.0
+# The first byte of a message.
+READY: Final = b"r"
+DONE: Final = b"d"
+_MODULE: Final = "dh_grader.web.check_process"
+
+
+class Checking:
+    """Checks exercise files one by one in a process that starts with the first check."""
+
+    def __init__(self, seconds: float = SECONDS) -> None:
+        self._seconds = seconds
+        self._process: subprocess.Popen[bytes] | None = None
+        self._is_ready = False
+        self._closed = False
+
+    def checked(self, body: CheckRequest, language: Language = ENGLISH) -> bytes:
+        """Return the findings on an exercise file as JSON.
+
+        Only one thread may call this method at a time. Raises ProblemError if the checks take too
+        long, or if the service ends.
+        """
+        if self._process is None or self._process.poll() is not None:
+            self._start()
+        process = self._process
+        assert process is not None
+        try:
+            content = self._asked(process, f"{language.code}\n{body.model_dump_json()}".encode())
+        except BaseException as error:
+            _end(process)
+            if self._closed:
+                raise _ending() from error
+            if isinstance(error, _TooLongError):
+                raise _too_long(self._seconds) from error
+            if isinstance(error, OSError) and process.returncode == 0:
+                # The idle process has ended just now.
+                return self.checked(body, language)
+            raise
+        if not content:
+            raise RuntimeError("the checks failed; the log has their traceback")
+        return content
+
+    def close(self) -> None:
+        """Kill the process, even during a check."""
+        self._closed = True
+        if self._process is not None:
+            # The thread that waits for its answer finds the pipe closed.
+            self._process.kill()
+
+    def _start(self) -> None:
+        if self._closed:
+            raise _ending()
+        # In a new session, Ctrl+C in the terminal reaches only the service, which kills this one.
+        self._process = subprocess.Popen(
+            [sys.executable, "-m", _MODULE],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            start_new_session=os.name == "posix",
+        )
+        self._is_ready = False
+        weakref.finalize(self, _end, self._process)
+
+    def _asked(self, process: "subprocess.Popen[bytes]", body: bytes) -> bytes:
+        # The service may have ended just before this process was started.
+        if self._closed:
+            raise ConnectionResetError
+        if not self._is_ready:
+            _answer(process, READY, _START)
+            self._is_ready = True
+        assert process.stdin is not None
+        send(process.stdin, DONE, body)
+        return _answer(process, DONE, self._seconds)
+
+
+class _TooLongError(Exception):
+    """The process has not replied in time."""
+
+
+def _answer(process: "subprocess.Popen[bytes]", expected: bytes, seconds: float) -> bytes:
+    late = threading.Event()
+
+    def give_up() -> None:
+        late.set()
+        process.kill()
+
+    timer = threading.Timer(seconds, give_up)
+    timer.daemon = True
+    timer.start()
+    try:
+        assert process.stdout is not None
+        kind, content = received(process.stdout)
+    except EOFError as error:
+        if late.is_set():
+            raise _TooLongError from error
+        raise ConnectionResetError("the process of the checks has ended") from error
+    finally:
+        timer.cancel()
+    return content if kind == expected else b""
+
+
+def send(pipe: IO[bytes], kind: bytes, content: bytes = b"") -> None:
+    """Write a message: a byte for its kind, its length, its content."""
+    pipe.write(kind + len(content).to_bytes(4) + content)
+    pipe.flush()
+
+
+def received(pipe: IO[bytes]) -> tuple[bytes, bytes]:
+    """Return the kind and the content of the next message. Raises EOFError."""
+    head = pipe.read(5)
+    content = pipe.read(int.from_bytes(head[1:])) if len(head) == 5 else b""
+    if len(head) < 5 or len(content) < int.from_bytes(head[1:]):
+        raise EOFError
+    return head[:1], content
+
+
+def _end(process: "subprocess.Popen[bytes]") -> None:
+    process.kill()
+    process.wait()
+    for pipe in (process.stdin, process.stdout):
+        if pipe is not None:
+            try:
+                pipe.close()
+            except OSError:
+                # A part of the last message was not written.
+                continue
+
+
+def _too_long(seconds: float) -> ProblemError:
+    return ProblemError(
+        HTTPStatus.UNPROCESSABLE_ENTITY,
+        say(
+            "The checks of this exercise take more than {seconds} seconds, so they were stopped. "
+            "Check fewer parts at once, or use dh-grader exercises check FILE, which has no limit.",
+            seconds=f"{seconds:g}",
+        ),
+        "checks-too-long",
+        say("The checks take too long"),
+    )
+
+
+def _ending() -> ProblemError:
+    return ProblemError(
+        HTTPStatus.SERVICE_UNAVAILABLE,
+        say("The service is shutting down. Send this request again in a minute."),
+        headers={"Retry-After": "60"},
+    )
+
+
+# --- The exercise files that the editor opens, and the folder in which it saves them
+
+
+# A character of the text has four bytes at most.
+_LARGEST: Final = 4 * MAX_CHARACTERS
+# The most characters of an id before "-copy" and a number.
+_LONGEST_START: Final = 50
+
+
+class SaveRequest(CheckRequest):
+    """The text of an exercise file to save.
+
+    ``before`` is the hash of the file that it replaces, or "".
+    """
+
+    before: Annotated[str, Field(max_length=64)] = ""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedFile:
+    """The text of an exercise file; ``mark`` is its hash, or "" outside the editor's folder."""
+
+    text: str
+    mark: str
+
+
+class ExerciseFolder:
+    """The files in the catalogue's folders and in the editor's own folder."""
+
+    def __init__(self, folders: Sequence[Path], written: Path | None) -> None:
+        self._folders = folders
+        self._written = written
+        self._writing = Lock()
+
+    @property
+    def can_write(self) -> bool:
+        """True if the editor may save files."""
+        return self._written is not None
+
+    def opened(self, exercise_id: str) -> OpenedFile | None:
+        """Return the file of an exercise, first of the editor's own folder, or None."""
+        if not is_exercise_id(exercise_id):
+            return None
+        own = self._own(exercise_id)
+        if own is not None:
+            return OpenedFile(own.decode(errors="replace"), _mark(own))
+        found = self._files().get(exercise_id)
+        if found is None:
+            return None
+        return OpenedFile(read_regular(found, _LARGEST).decode(errors="replace"), "")
+
+    def free_id(self, exercise_id: str) -> str:
+        """Return an unused id for a copy of an exercise."""
+        copies = (f"{exercise_id[:_LONGEST_START]}-copy{i}" for i in chain([""], count(2)))
+        taken = self._files()
+        return next(each for each in copies if each not in taken and self._own(each) is None)
+
+    def save(self, body: SaveRequest) -> str:
+        """Save a file, and return the hash of its content. Raises ProblemError."""
+        # At any time, the file has either the whole old content or the whole new content.
+        if self._written is None:
+            raise _not_saved(
+                say("This service cannot save files: DH_GRADER_EDITOR_DIR is not set.")
+            )
+        if not is_exercise_id(body.id):
+            raise _not_saved(
+                say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE)
+            )
+        try:
+            exercise_of(body.id, body.text)
+        except CatalogueError as error:
+            raise _not_saved(say("The file cannot be used. Fix it before you save it.")) from error
+        content = body.text.encode()
+        with self._writing:
+            try:
+                self._write(self._written / f"{body.id}.toml", content, body)
+            except OSError as error:
+                raise _not_saved(
+                    say("The file cannot be saved: {reason}.", reason=reason_of(error))
+                ) from error
+        return _mark(content)
+
+    def _write(self, file: Path, content: bytes, body: SaveRequest) -> None:
+        handle, name = tempfile.mkstemp(prefix=f".{body.id}-", dir=file.parent)
+        written = Path(name)
+        try:
+            with os.fdopen(handle, "wb") as output:
+                output.write(content)
+                output.flush()
+                os.fsync(output.fileno())
+            written.chmod(0o644)
+            own = self._own(body.id)
+            if (_mark(own) if own is not None else "") != body.before:
+                raise _changed(body.id)
+            if own is None:
+                if body.id in self._files():
+                    raise _not_saved(say("The id {id} is taken. Choose another one.", id=body.id))
+                # Unlike a move, this fails if the file was created meanwhile.
+                os.link(written, file)
+            else:
+                written.replace(file)
+        except FileExistsError as error:
+            raise _changed(body.id) from error
+        finally:
+            written.unlink(missing_ok=True)
+
+    def _files(self) -> dict[str, Path]:
+        """Return the files in the catalogue's folders, by exercise id."""
+        try:
+            return {file.stem: file for file in exercise_files(*self._folders)}
+        except CatalogueError:
+            return {}
+
+    def _own(self, exercise_id: str) -> bytes | None:
+        if self._written is None:
+            return None
+        try:
+            return read_regular(self._written / f"{exercise_id}.toml", _LARGEST)
+        except FileNotFoundError:
+            return None
+
+
+def _mark(content: bytes) -> str:
+    return hashlib.sha256(content).hexdigest()
+
+
+def _not_saved(detail: str) -> ProblemError:
+    return ProblemError(HTTPStatus.CONFLICT, detail, "not-saved", say("The file is not saved"))
+
+
+def _changed(exercise_id: str) -> ProblemError:
+    return _not_saved(
+        say(
+            "{exercise}.toml has changed since you opened it, so it was not overwritten. Download "
+            "your text, open the file again, and merge the two.",
+            exercise=exercise_id,
+        )
+    )
+
+
 # --- Make the text of an exercise file from a URDF file or a pasted DH table, for the editor
 
 
@@ -91,7 +507,7 @@ class ImportRequest(BaseModel):
 def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
     """Return the exercise file for a robot, or questions about it, as JSON. Raises ProblemError."""
     if not is_exercise_id(body.id):
-        raise _import_request_refused(
+        raise _unusable_robot(
             say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE)
         )
     options = ImportOptions(
@@ -112,7 +528,7 @@ def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
             found = imported_table(body.text, options)
     except RefusedRobotError as error:
         reason = told(message_of(error), language.translation).rstrip(".。")
-        raise _import_request_refused(
+        raise _unusable_robot(
             say("{reason}.", reason=f"{reason[:1].upper()}{reason[1:]}")
         ) from error
     remarks = [told(each, language.translation) for each in found.remarks]
@@ -122,7 +538,7 @@ def imported(body: ImportRequest, language: Language = ENGLISH) -> bytes:
     return _ROBOT.dump_json(replace(found, remarks=remarks, questions=questions))
 
 
-def _import_request_refused(detail: str) -> ProblemError:
+def _unusable_robot(detail: str) -> ProblemError:
     return ProblemError(
         HTTPStatus.UNPROCESSABLE_ENTITY,
         detail,
@@ -158,9 +574,10 @@ _LONGEST_NAME: Final = 255
 
 
 class UploadedFile(BaseModel):
-    """A file of a student: as a text, as bytes, or as the texts in a file of an office program."""
+    """A file of a student: as a text, as bytes, or as the texts in a file of an office program.
 
-    # Bytes if it is not text. Too large a file has none of these.
+    A file that is too large has none of these.
+    """
 
     model_config = ConfigDict(extra="forbid")
 
@@ -171,8 +588,7 @@ class UploadedFile(BaseModel):
 
     @property
     def content(self) -> bytes:
-        """Return the bytes of the file."""
-        # If the file is too large, zeros that exceed the limit.
+        """Return the bytes of the file; of too large a file, zeros that exceed the limit."""
         if self.members is not None:
             return _office_file(self.members)
         if self.text is not None:
@@ -180,18 +596,8 @@ class UploadedFile(BaseModel):
         return b"\0" * (MAX_BODY_SIZE + 1) if self.base64 is None else self.base64
 
 
-def _office_file(members: Mapping[str, str]) -> bytes:
-    packed = io.BytesIO()
-    with zipfile.ZipFile(packed, "w") as archive:
-        for name, text in members.items():
-            archive.writestr(name, text.encode(errors="replace"))
-    return packed.getvalue()
-
-
 class ClassUpload(BaseModel):
-    """All files of a class, and the exercise that they answer."""
-
-    # Or the part of an exercise.
+    """All files of a class, and the exercise, or the part of one, that they answer."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -229,15 +635,6 @@ def unpacked(body: bytes) -> ClassUpload:
         raise invalid(details, list(ClassUpload.model_fields)) from error
 
 
-def _marks(content: bytes) -> int:
-    # Return a measure of how many values JSON has, in order to refuse too many before parsing.
-    # It is the number of characters outside JSON strings, plus the number of quotation marks.
-    content = content.replace(rb"\\", b"").replace(rb"\"", b"")
-    quotes = content.count(b'"')
-    # With too many quotation marks, do not build the list of pieces between them.
-    return quotes if quotes > _MOST_MARKS else quotes + sum(map(len, content.split(b'"')[::2]))
-
-
 def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language = ENGLISH) -> bytes:
     """Grade a class, and return the reports and the gradebook as a ZIP file.
 
@@ -271,6 +668,23 @@ def class_archive(upload: ClassUpload, catalogue: Catalogue, language: Language 
                 for each in found
             ]
         return _archive(_Class(found, left_out, assignment, folder, sheet), language)
+
+
+def _office_file(members: Mapping[str, str]) -> bytes:
+    packed = io.BytesIO()
+    with zipfile.ZipFile(packed, "w") as archive:
+        for name, text in members.items():
+            archive.writestr(name, text.encode(errors="replace"))
+    return packed.getvalue()
+
+
+def _marks(content: bytes) -> int:
+    # Return a measure of how many values JSON has, in order to refuse too many before parsing.
+    # It is the number of characters outside JSON strings, plus the number of quotation marks.
+    content = content.replace(rb"\\", b"").replace(rb"\"", b"")
+    quotes = content.count(b'"')
+    # With too many quotation marks, do not build the list of pieces between them.
+    return quotes if quotes > _MOST_MARKS else quotes + sum(map(len, content.split(b'"')[::2]))
 
 
 @dataclass(frozen=True, slots=True)
@@ -435,427 +849,4 @@ def _all_graded(
 def _unusable(detail: str) -> ProblemError:
     return ProblemError(
         HTTPStatus.UNPROCESSABLE_ENTITY, detail, "unusable-files", say("The files cannot be used")
-    )
-
-
-# --- Check the text of an exercise file in the editor, and preview the exercise
-
-
-# The largest exercise that comes with the program has 8 kB.
-MAX_CHARACTERS: Final = 64 * 1024
-
-
-class CheckRequest(BaseModel):
-    """The text of an exercise file to check."""
-
-    model_config = ConfigDict(extra="forbid")
-
-    id: Annotated[str, Field(max_length=100)]
-    text: Annotated[str, Field(max_length=MAX_CHARACTERS)]
-
-
-@dataclass(frozen=True, slots=True)
-class FileFinding:
-    """A problem in an exercise file: ``level`` is unusable, failed or warning."""
-
-    level: str
-    field: str
-    text: str
-    line: int | None
-
-
-@dataclass(frozen=True, slots=True)
-class ExercisePreview:
-    """A short preview of what students will see."""
-
-    title: str
-    source: str
-    statement_html: str
-    parts: tuple[str, ...]
-    figure: str | None
-
-
-@dataclass(frozen=True, slots=True)
-class CheckAnswer:
-    """The findings on an exercise file, and a preview if the file can be used."""
-
-    findings: tuple[FileFinding, ...]
-    summary: str
-    preview: ExercisePreview | None = None
-
-
-_ANSWER: Final = TypeAdapter(CheckAnswer)
-
-
-def checked(body: CheckRequest, language: Language = ENGLISH) -> bytes:
-    """Return the findings on an exercise file as JSON."""
-    return _ANSWER.dump_json(check(body.id, body.text, language))
-
-
-def check(exercise_id: str, text: str, language: Language = ENGLISH) -> CheckAnswer:
-    """Return the findings on an exercise file with this text."""
-    # The same as those of ``exercises check``.
-    # Imported here, because it loads an algebra system.
-    from dh_grader.authoring import examine, summary
-
-    translation = language.translation
-
-    try:
-        exercise = exercise_of(exercise_id, text)
-    except CatalogueError as error:
-        faults = (
-            FileFinding("unusable", each.field, told(each.reason, translation), each.line)
-            for each in error.faults
-        )
-        return CheckAnswer(tuple(faults), told(say("The file cannot be used."), translation))
-    lines = value_lines(text.replace("\r\n", "\n"))
-    findings = tuple(
-        FileFinding(
-            remark.level.value,
-            remark.field,
-            told(remark.text, translation),
-            line_of(remark.field, lines),
-        )
-        for remark in examine(exercise)
-    )
-    return CheckAnswer(
-        findings,
-        told(summary(exercise), translation),
-        _preview(exercise, translation),
-    )
-
-
-def exercise_of(exercise_id: str, text: str) -> Exercise:
-    """Return the exercise that a file with this id and text defines. Raises CatalogueError."""
-    file = Path(f"{exercise_id}.toml")
-    if not is_exercise_id(exercise_id):
-        raise CatalogueError(
-            [Fault(file, "", say("the id is the name of the file: {advice}", advice=ID_ADVICE))]
-        )
-    if text.count(".") > MAX_TOML_DOTS:
-        raise CatalogueError(
-            [Fault(file, "", say("has more than {most:,} dots", most=MAX_TOML_DOTS))]
-        )
-    return read_exercise(file, text)
-
-
-def _preview(exercise: Exercise, translation: Translation | None) -> ExercisePreview:
-    from dh_grader.figures import exercise_figure
-
-    points = (say("{points} points", points=number(part.points)) for part in exercise.parts)
-    parts = tuple(
-        f"{part.title}, {told(worth, translation)}"
-        for part, worth in zip(exercise.parts, points, strict=True)
-    )
-    return ExercisePreview(
-        exercise.title,
-        exercise.source,
-        statement_html(exercise.statement, exercise.symbols),
-        parts,
-        exercise_figure(exercise) if exercise.reference is not None else None,
-    )
-
-
-# --- The exercise files that the editor opens, and the folder in which it saves them
-
-
-# A character of the text has four bytes at most.
-_LARGEST: Final = 4 * MAX_CHARACTERS
-# The most characters of an id before "-copy" and a number.
-_LONGEST_START: Final = 50
-
-
-class SaveRequest(CheckRequest):
-    """The text of an exercise file to save.
-
-    ``before`` is the hash of the file that it replaces, or "".
-    """
-
-    before: Annotated[str, Field(max_length=64)] = ""
-
-
-@dataclass(frozen=True, slots=True)
-class OpenedFile:
-    """The text of an exercise file, and the hash of the file."""
-
-    # ``mark`` is the hash, or "" if the file is not in the editor's folder.
-
-    text: str
-    mark: str
-
-
-class ExerciseFolder:
-    """The files in the catalogue's folders and in the editor's own folder."""
-
-    def __init__(self, folders: Sequence[Path], written: Path | None) -> None:
-        self._folders = folders
-        self._written = written
-        self._writing = Lock()
-
-    @property
-    def can_write(self) -> bool:
-        """True if the editor may save files."""
-        return self._written is not None
-
-    def opened(self, exercise_id: str) -> OpenedFile | None:
-        """Return the file of an exercise, or None."""
-        # A file in the editor's own folder is preferred.
-        if not is_exercise_id(exercise_id):
-            return None
-        own = self._own(exercise_id)
-        if own is not None:
-            return OpenedFile(own.decode(errors="replace"), _mark(own))
-        found = self._files().get(exercise_id)
-        if found is None:
-            return None
-        return OpenedFile(read_regular(found, _LARGEST).decode(errors="replace"), "")
-
-    def free_id(self, exercise_id: str) -> str:
-        """Return an unused id for a copy of an exercise."""
-        copies = (f"{exercise_id[:_LONGEST_START]}-copy{i}" for i in chain([""], count(2)))
-        taken = self._files()
-        return next(each for each in copies if each not in taken and self._own(each) is None)
-
-    def _files(self) -> dict[str, Path]:
-        """Return the files in the catalogue's folders, by exercise id."""
-        try:
-            return {file.stem: file for file in exercise_files(*self._folders)}
-        except CatalogueError:
-            return {}
-
-    def save(self, body: SaveRequest) -> str:
-        """Save a file, and return the hash of its content. Raises ProblemError."""
-        # At any time, the file has either the whole old content or the whole new content.
-        if self._written is None:
-            raise _exercise_folder_refused(
-                say("This service cannot save files: DH_GRADER_EDITOR_DIR is not set.")
-            )
-        if not is_exercise_id(body.id):
-            raise _exercise_folder_refused(
-                say("This cannot be the id of an exercise: {advice}.", advice=ID_ADVICE)
-            )
-        try:
-            exercise_of(body.id, body.text)
-        except CatalogueError as error:
-            raise _exercise_folder_refused(
-                say("The file cannot be used. Fix it before you save it.")
-            ) from error
-        content = body.text.encode()
-        with self._writing:
-            try:
-                self._write(self._written / f"{body.id}.toml", content, body)
-            except OSError as error:
-                raise _exercise_folder_refused(
-                    say("The file cannot be saved: {reason}.", reason=reason_of(error))
-                ) from error
-        return _mark(content)
-
-    def _write(self, file: Path, content: bytes, body: SaveRequest) -> None:
-        handle, name = tempfile.mkstemp(prefix=f".{body.id}-", dir=file.parent)
-        written = Path(name)
-        try:
-            with os.fdopen(handle, "wb") as output:
-                output.write(content)
-                output.flush()
-                os.fsync(output.fileno())
-            written.chmod(0o644)
-            own = self._own(body.id)
-            if (_mark(own) if own is not None else "") != body.before:
-                raise _changed(body.id)
-            if own is None:
-                if body.id in self._files():
-                    raise _exercise_folder_refused(
-                        say("The id {id} is taken. Choose another one.", id=body.id)
-                    )
-                # Unlike a move, this fails if the file was created meanwhile.
-                os.link(written, file)
-            else:
-                written.replace(file)
-        except FileExistsError as error:
-            raise _changed(body.id) from error
-        finally:
-            written.unlink(missing_ok=True)
-
-    def _own(self, exercise_id: str) -> bytes | None:
-        if self._written is None:
-            return None
-        try:
-            return read_regular(self._written / f"{exercise_id}.toml", _LARGEST)
-        except FileNotFoundError:
-            return None
-
-
-def _mark(content: bytes) -> str:
-    return hashlib.sha256(content).hexdigest()
-
-
-def _exercise_folder_refused(detail: str) -> ProblemError:
-    return ProblemError(HTTPStatus.CONFLICT, detail, "not-saved", say("The file is not saved"))
-
-
-def _changed(exercise_id: str) -> ProblemError:
-    return _exercise_folder_refused(
-        say(
-            "{exercise}.toml has changed since you opened it, so it was not overwritten. Download "
-            "your text, open the file again, and merge the two.",
-            exercise=exercise_id,
-        )
-    )
-
-
-# --- Check exercise files for the editor, in a process that is killed if it takes too long
-
-
-# Ten times what `exercises check` takes for the largest exercise of the catalogue.
-SECONDS: Final = 20.0
-# An idle process ends, because it holds about 120 MB.
-IDLE_SECONDS: Final = 300.0
-# Seconds until a new process is ready, even on a very busy machine.
-_START: Final = 60.0
-# The first byte of a message.
-READY: Final = b"r"
-DONE: Final = b"d"
-_MODULE: Final = "dh_grader.web.check_process"
-
-
-class Checking:
-    """Checks exercise files one by one in a process of its own."""
-
-    # The process starts with the first check.
-
-    def __init__(self, seconds: float = SECONDS) -> None:
-        self._seconds = seconds
-        self._process: subprocess.Popen[bytes] | None = None
-        self._is_ready = False
-        self._closed = False
-
-    def checked(self, body: CheckRequest, language: Language = ENGLISH) -> bytes:
-        """Return the findings on an exercise file as JSON. Raises ProblemError.
-
-        Only one thread may call this method at a time.
-        """
-        # ProblemError if the checks take too long, or if the service ends.
-        if self._process is None or self._process.poll() is not None:
-            self._start()
-        process = self._process
-        assert process is not None
-        try:
-            content = self._asked(process, f"{language.code}\n{body.model_dump_json()}".encode())
-        except BaseException as error:
-            _end(process)
-            if self._closed:
-                raise _ending() from error
-            if isinstance(error, _TooLongError):
-                raise _too_long(self._seconds) from error
-            if isinstance(error, OSError) and process.returncode == 0:
-                # The idle process has ended just now.
-                return self.checked(body, language)
-            raise
-        if not content:
-            raise RuntimeError("the checks failed; the log has their traceback")
-        return content
-
-    def close(self) -> None:
-        """Kill the process, even during a check."""
-        self._closed = True
-        if self._process is not None:
-            # The thread that waits for its answer finds the pipe closed.
-            self._process.kill()
-
-    def _start(self) -> None:
-        if self._closed:
-            raise _ending()
-        # In a new session, Ctrl+C in the terminal reaches only the service, which kills this one.
-        self._process = subprocess.Popen(
-            [sys.executable, "-m", _MODULE],
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            start_new_session=os.name == "posix",
-        )
-        self._is_ready = False
-        weakref.finalize(self, _end, self._process)
-
-    def _asked(self, process: "subprocess.Popen[bytes]", body: bytes) -> bytes:
-        # The service may have ended just before this process was started.
-        if self._closed:
-            raise ConnectionResetError
-        if not self._is_ready:
-            _answer(process, READY, _START)
-            self._is_ready = True
-        assert process.stdin is not None
-        send(process.stdin, DONE, body)
-        return _answer(process, DONE, self._seconds)
-
-
-class _TooLongError(Exception):
-    """The process has not replied in time."""
-
-
-def _answer(process: "subprocess.Popen[bytes]", expected: bytes, seconds: float) -> bytes:
-    late = threading.Event()
-
-    def give_up() -> None:
-        late.set()
-        process.kill()
-
-    timer = threading.Timer(seconds, give_up)
-    timer.daemon = True
-    timer.start()
-    try:
-        assert process.stdout is not None
-        kind, content = received(process.stdout)
-    except EOFError as error:
-        if late.is_set():
-            raise _TooLongError from error
-        raise ConnectionResetError("the process of the checks has ended") from error
-    finally:
-        timer.cancel()
-    return content if kind == expected else b""
-
-
-def send(pipe: IO[bytes], kind: bytes, content: bytes = b"") -> None:
-    """Write a message: a byte for its kind, its length, its content."""
-    pipe.write(kind + len(content).to_bytes(4) + content)
-    pipe.flush()
-
-
-def received(pipe: IO[bytes]) -> tuple[bytes, bytes]:
-    """Return the kind and the content of the next message. Raises EOFError."""
-    head = pipe.read(5)
-    content = pipe.read(int.from_bytes(head[1:])) if len(head) == 5 else b""
-    if len(head) < 5 or len(content) < int.from_bytes(head[1:]):
-        raise EOFError
-    return head[:1], content
-
-
-def _end(process: "subprocess.Popen[bytes]") -> None:
-    process.kill()
-    process.wait()
-    for pipe in (process.stdin, process.stdout):
-        if pipe is not None:
-            try:
-                pipe.close()
-            except OSError:
-                # A part of the last message was not written.
-                continue
-
-
-def _too_long(seconds: float) -> ProblemError:
-    return ProblemError(
-        HTTPStatus.UNPROCESSABLE_ENTITY,
-        say(
-            "The checks of this exercise take more than {seconds} seconds, so they were stopped. "
-            "Check fewer parts at once, or use dh-grader exercises check FILE, which has no limit.",
-            seconds=f"{seconds:g}",
-        ),
-        "checks-too-long",
-        say("The checks take too long"),
-    )
-
-
-def _ending() -> ProblemError:
-    return ProblemError(
-        HTTPStatus.SERVICE_UNAVAILABLE,
-        say("The service is shutting down. Send this request again in a minute."),
-        headers={"Retry-After": "60"},
     )

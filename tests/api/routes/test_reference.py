@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import httpx
 import pytest
-from dh_grader.api.grading import FOLDER
+from dh_grader.api.document import FOLDER
 from playwright.sync_api import expect
 
 from tests.api.serving import Served

@@ -2,7 +2,7 @@
 
 import pytest
 from dh_grader.lti.fetching import FetchError
-from dh_grader.lti.grade_services import LaterError, told
+from dh_grader.lti.grade_services import LaterError, problem_told
 from dh_grader.translations import ENGLISH, language_named, say
 
 from tests.cli.conftest import Run
@@ -64,7 +64,7 @@ def test_problems_are_told_in_the_language_of_the_reader(journey: Journey) -> No
     assert score["problem"].startswith("Die Plattform lehnt die Punkte ab (Status 400).")
     reason = FetchError(say("the status is {status}", status=503))
     stored = LaterError("token-refused", reason=reason).stored
-    assert told(stored, language_named("de") or ENGLISH) == (
+    assert problem_told(stored, language_named("de") or ENGLISH) == (
         "Die Plattform gibt kein Zugriffstoken: der Status ist 503"
     )
 
