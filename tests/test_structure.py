@@ -55,6 +55,7 @@ SHORT: Final = {
     "app.py": "an entry point",
     "bundles/templates/prairielearn/server.py": "is copied into bundles",
     "cli/licences.py": "an entry point: the licences of the packages in the image",
+    "cli/remote.py": "opens the client, which most runs do without",
     "cli/options.py": "loads the catalogue, without which the help and the version do",
     "notebook.py": "the face of the package for programs",
     "regex.py": "is below every package",

@@ -26,7 +26,7 @@ TODAY: Final[Mapping[str, tuple[int, ...]]] = {
     "right, other frames": (21, 188, 753, 23, 284),
     "one wrong sign": (30, 394, 1557, 23, 565),
     "all twists wrong": (31, 537, 14025, 27, 4027),
-    "right, pasted as CSV": (30, 281, 1927, 26, 784),
+    "right, pasted as CSV": (30, 283, 1931, 26, 784),
     "right, pasted as a toolbox script": (27, 230, 1994, 27, 869),
 }
 MODULES: Final = 142  # the goal is 140

@@ -462,7 +462,7 @@ def pause_after(failures: int, chance: float) -> timedelta:
 
     ``chance`` is a random number from 0 to 1, on which half of the pause depends.
     """
-    return min(_FIRST * 2 ** min(failures, 20), _LONGEST) * (0.5 + 0.5 * chance)
+    return min(_FIRST * (1 << min(failures, 20)), _LONGEST) * (0.5 + 0.5 * chance)
 
 
 @dataclass(slots=True)

@@ -225,8 +225,8 @@ def _keys(settings: Settings, store: "AttemptStore | None", host: str | None) ->
         if not ring.has_their_secret:
             raise SettingsError(joined(": ", ["DH_GRADER_SECRET", WRONG_SECRET]))
     has_keys = ring is not None and ring.has_keys
-    is_here = host is None or host == "localhost" or is_loopback(host)
-    if not (is_here or has_keys or settings.open is not None):
+    is_here = host == "localhost" or (host is not None and is_loopback(host))
+    if host is not None and not (is_here or has_keys or settings.open is not None):
         raise SettingsError(
             say(
                 "DH_GRADER_HOST: other machines can reach {host}, but there are no API keys. "

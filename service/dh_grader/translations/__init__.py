@@ -224,7 +224,7 @@ _REASONS: Final = {
 def reason_of(error: OSError) -> str:
     """Return why the operating system refused something."""
     reason = _REASONS.get(error.errno or 0)
-    return say(reason) if reason == error.strerror else str(error.strerror)
+    return say(reason) if reason and reason == error.strerror else str(error.strerror)
 
 
 def listed(words: Sequence[str]) -> str:

@@ -20,6 +20,7 @@ from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Re
 from dh_grader.access import Caller, Scope, Secret
 from dh_grader.api.http import (
     LANGUAGE_FIELD,
+    NO_STORE,
     Catalogue,
     ProblemError,
     current_request,
@@ -109,7 +110,6 @@ from dh_grader.web.lti_pages import (
 )
 from dh_grader.web.pages import (
     FORM_HEADERS,
-    NO_STORE,
     SESSION,
     Assets,
     form_fields,

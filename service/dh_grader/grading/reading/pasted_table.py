@@ -507,11 +507,12 @@ def _columns_by_headers(
         )
         raise GridError("unknown_header", message, place_of(unknown))
     places: dict[str, int] = {}
-    named = Counter(header.column for header in found if header)
-    if all(named[column] > 1 for column in COLUMNS):
+    times = Counter(header.column for header in found if header)
+    if all(times[column] > 1 for column in COLUMNS):
         # A tidy table beside the one that the student worked in.
-        place = place_of([cell for cell, header in zip(row, found, strict=True) if header])
-        raise GridError("two_tables", say("There are two tables here; paste one of them."), place)
+        headers = [cell for cell, header in zip(row, found, strict=True) if header]
+        message = say("There are two tables here; paste one of them.")
+        raise GridError("two_tables", message, place_of(headers))
     for i, header in enumerate(found):
         if header is None or header.column in (LABEL, ASIDE):
             continue
