@@ -22,14 +22,14 @@ COUNTS: Final = ("files", "functions", "calls", "depth", "switches")
 # Today's counts, in the order of COUNTS. They may only fall: a change that lowers one lowers it
 # here, too.
 TODAY: Final[Mapping[str, tuple[int, ...]]] = {
-    "right": (17, 116, 488, 14, 211),
-    "right, other frames": (21, 188, 753, 23, 284),
-    "one wrong sign": (30, 394, 1557, 23, 565),
-    "all twists wrong": (31, 537, 14025, 27, 4027),
-    "right, pasted as CSV": (30, 283, 1931, 26, 784),
-    "right, pasted as a toolbox script": (27, 230, 1994, 27, 869),
+    "right": (17, 115, 482, 14, 197),
+    "right, other frames": (21, 188, 753, 23, 282),
+    "one wrong sign": (30, 390, 1548, 23, 550),
+    "all twists wrong": (31, 533, 13914, 27, 3940),
+    "right, pasted as CSV": (30, 283, 1931, 26, 772),
+    "right, pasted as a toolbox script": (26, 229, 1927, 27, 852),
 }
-MODULES: Final = 142  # the goal is 140
+MODULES: Final = 138
 # What is aimed at. The last test fails when a goal is reached, so that it becomes the ceiling.
 GOALS: Final = {
     ("right", "files"): 14,
