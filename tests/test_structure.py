@@ -123,7 +123,7 @@ SUITES: Final = {
     "installed", "load", "mutants", "pose_slips", "same", "worst",
 }  # fmt: skip
 # Folders of tests whose package got another name. No new ones.
-FORMER_NAMES: Final = {"attempts": "store", "grids": "pasting"}
+FORMER_NAMES: Final = {"attempts": "store"}
 
 
 def module_name(file: Path) -> str:

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from tests.grading.support.robots import EXACT, RRRP
 from tests.grading.support.submitting import as_data
-from tests.grids.writers import FORMATS
+from tests.pasting.writers import FORMATS
 
 HEADERS = ["a [mm]", "alpha (deg)", "d", "theta"]
 SEEDS = [write([HEADERS, *EXACT.rows(RRRP)]) for write in FORMATS.values()]

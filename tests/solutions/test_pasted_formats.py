@@ -8,7 +8,7 @@ from dh_grader.catalogue.kinds import DhTableSpec
 from dh_grader.kinematics import COLUMNS
 
 from tests.grading.support.submitting import full_marks, handed_in
-from tests.grids.writers import FORMATS
+from tests.pasting.writers import FORMATS
 from tests.shipped import sampled
 from tests.solutions.solved import solved
 

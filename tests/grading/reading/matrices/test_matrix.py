@@ -14,7 +14,7 @@ from sympy.printing.numpy import NumPyPrinter
 
 from tests.grading.support.robots import PLANAR_RRR, ROBOTS, Robot
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
-from tests.grids.writers import FORMATS
+from tests.pasting.writers import FORMATS
 from tests.together import together
 
 POSE = [

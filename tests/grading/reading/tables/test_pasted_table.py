@@ -9,7 +9,7 @@ from dh_grader.grading import PartReport, Severity, Verdict
 from tests.grading.support.robots import ROBOTS, RRRP, Robot, in_pi, with_unit
 from tests.grading.support.submitting import cell, codes, full_marks, handed_in, not_correct, part
 from tests.grading.support.worth import about, points
-from tests.grids.writers import FORMATS, TABLES
+from tests.pasting.writers import FORMATS, TABLES
 from tests.together import together
 
 HEADERS = ["i", "a", "alpha", "d", "theta"]
