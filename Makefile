@@ -130,7 +130,7 @@ rows: $(dev) ## grade tables with one wrong row; leave rows and cells of wrong t
 	$(python) -m tests.frame_choice.rows.careless --seed "$(SEED)"
 
 sums: $(dev) ## hand in 1,000 random wrong answers to the tables of each exercise: do the points add up? (SEED=)
-	$(python) -m tests.grading.judging.marking.sums --tables --seed "$(SEED)"
+	$(python) -m tests.grading.sums --tables --seed "$(SEED)"
 
 policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 draws each (SEED=)
 	$(python) -m tests.frame_choice.by_policy --robots "$(ROBOTS)" --seed "$(SEED)"

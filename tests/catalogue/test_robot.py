@@ -7,7 +7,7 @@ import pytest
 from dh_grader.catalogue import CatalogueError, Exercise, Robot, ScrewRobot
 from dh_grader.kinematics import product_in_space, rot_z
 
-from tests.grading.support.exercise_texts import ANGLES, HEAD, SPATIAL_RRR, one_part
+from tests.grading.support.submitting import ANGLES, HEAD, SPATIAL_RRR, one_part
 from tests.kinematics.constructions import trans
 from tests.together import together
 

@@ -74,18 +74,30 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "fair_points": Package(
         ["service/dh_grader/grading/judging_table.py"],
-        ["tests/grading/judging", "tests/grading/test_unread_cells.py", "tests/frame_choice/rows"],
-        ["tests/grading/judging/marking/test_fair_points.py"],
+        [
+            "tests/grading/frames",
+            "tests/grading/test_fair_points.py",
+            "tests/grading/test_judging_table.py",
+            "tests/grading/test_marks.py",
+            "tests/grading/test_points.py",
+            "tests/grading/test_unread_cells.py",
+            "tests/frame_choice/rows",
+        ],
+        ["tests/grading/test_fair_points.py"],
     ),
     "marks": Package(
         ["service/dh_grader/grading/marks.py", "service/dh_grader/grading/report.py"],
-        ["tests/grading/judging/marking", "tests/grading/test_points.py"],
-        ["tests/grading/judging/marking/test_m", "tests/grading/judging/marking/test_w"],
+        [
+            "tests/grading/test_marks.py",
+            "tests/grading/test_fair_points.py",
+            "tests/grading/test_points.py",
+        ],
+        ["tests/grading/test_marks.py", "tests/grading/test_points.py"],
     ),
     "comparison": Package(
         ["service/dh_grader/grading/numbers.py"],
-        ["tests/grading/numerics", "tests/grading/test_rounding.py"],
-        ["tests/grading/numerics"],
+        ["tests/grading/test_numbers.py", "tests/grading/test_rounding.py"],
+        ["tests/grading/test_numbers.py"],
     ),
 }
 
