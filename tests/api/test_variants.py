@@ -8,7 +8,7 @@ from dh_grader import variants
 from dh_grader.variants import BuiltVariants, built
 
 from tests.together import together
-from tests.variants.shipped import shipped
+from tests.variants.varied_files import shipped
 
 NAME = "vertical-axes~k7"
 VARIANT = built(shipped("vertical-axes"), "k7")

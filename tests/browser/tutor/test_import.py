@@ -14,7 +14,7 @@ from tests.api.serving import served
 from tests.browser.fixtures import Visit
 from tests.browser.test_pages import violations
 from tests.browser.test_tutor import NARROW, wide
-from tests.importing.test_arms import file_of
+from tests.importing.test_urdf import file_of
 
 
 @pytest.mark.long

@@ -10,8 +10,7 @@ import pytest
 from dh_grader.variants import built
 from typer.testing import Result
 
-from tests.variants.shipped import shipped
-from tests.variants.varied_files import varied_text
+from tests.variants.varied_files import shipped, varied_text
 
 Run = Callable[..., Result]
 

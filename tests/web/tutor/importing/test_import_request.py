@@ -8,9 +8,8 @@ from dh_grader.catalogue import Exercise
 from dh_grader.cli.exercises import exercises_commands as commands
 from typer.testing import CliRunner
 
-from tests.importing.test_arms import file_of
 from tests.importing.test_pasted_robot import PASTED
-from tests.importing.test_urdf import REFUSED
+from tests.importing.test_urdf import REFUSED, file_of
 from tests.web.tutor.test_tutor_routes import Tutor
 
 

@@ -1,4 +1,4 @@
-"""Check some generated robots."""
+"""Test robots that are drawn for practice."""
 
 import hashlib
 import json
@@ -8,13 +8,15 @@ import subprocess
 import sys
 from collections import Counter
 from dataclasses import replace
+from hashlib import sha256
 from itertools import pairwise
 
 import pytest
 from dh_grader.catalogue import Exercise, in_language
 from dh_grader.kinematics import Convention
 from dh_grader.translations import ENGLISH, LANGUAGES
-from dh_grader.variants.robots import generated
+from dh_grader.variants.robot_geometry import Draws
+from dh_grader.variants.robots import ALL_NUMBERS, PracticeId, generated, practice_id
 
 from tests.translations.pseudo import PSEUDO
 from tests.variants.robots.checks import (
@@ -26,6 +28,52 @@ from tests.variants.robots.checks import (
     nearest_links,
     overlapping_labels,
 )
+
+
+def test_draws_are_the_words_of_a_hash() -> None:
+    block = sha256(b"a robot\n0").digest()
+    words = [int.from_bytes(block[i : i + 4], "big") for i in range(0, 32, 4)]
+    draws = Draws("a robot")
+    assert [draws.below(1000) for _ in words] == [word * 1000 // 2**32 for word in words]
+
+
+def test_choices_follow_their_weights() -> None:
+    draws = Draws("weights")
+    found = [draws.weighted([("a", 3), ("b", 0), ("c", 1)]) for _ in range(4000)]
+    assert "b" not in found
+    assert 2850 < found.count("a") < 3150
+    assert 350 < sum(draws.chance(10) for _ in range(4000)) < 450
+
+
+# --- Practice id
+
+
+@pytest.mark.parametrize("number", [0, 35, 36, 1295, 10**9, ALL_NUMBERS - 1])
+def test_an_id_is_read_as_it_is_written(number: int) -> None:
+    name = PracticeId(3, Convention.MODIFIED, number)
+    assert practice_id(str(name)) == name
+    assert int(name.seed, 36) == number
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "practice-2-standard", "practice-2-standard~", "practice-0-standard~a",
+        "practice-5-standard~a", "practice-2-other~a", "practice-2-standard~01",
+        "practice-2-standard~A", "practice-2-standard~123456789", "practice-2-standard~a\n",
+        "practice-²-standard~a", "scara", "scara~a",
+    ],
+)  # fmt: skip
+def test_other_texts_are_no_robots(text: str) -> None:
+    assert practice_id(text) is None
+
+
+def test_the_first_robot_follows_the_last_one() -> None:
+    last = PracticeId(1, Convention.STANDARD, ALL_NUMBERS - 1)
+    assert last.following().number == 0
+
+
+# --- Check some generated robots
 
 LEVELS = (1, 2, 3, 4)
 JOINTS = {1: {2, 3}, 2: {3, 4}, 3: {4, 5, 6}, 4: {5, 6, 7}}
@@ -54,7 +102,7 @@ def test_robots_are_the_same_on_every_python() -> None:
     "seed", ["1", *(pytest.param(each, marks=pytest.mark.campaign) for each in ("2", "3", "4"))]
 )
 def test_robots_are_the_same_with_every_hash_seed(seed: str) -> None:
-    program = "from tests.variants.robots.test_robot_exercise import digest; print(digest())"
+    program = "from tests.variants.robots.test_robots import digest; print(digest())"
     environment = os.environ | {"PYTHONHASHSEED": seed}
     ran = subprocess.run(
         [sys.executable, "-c", program], env=environment, capture_output=True, check=True, text=True

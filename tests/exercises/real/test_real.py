@@ -1,8 +1,4 @@
-"""Compare the tables of the real robots with tables from other publications."""
-
-# Sources choose different frames, signs and home configurations. But they must agree in |a|, in α
-# modulo 180°, and in |d|, because these are distances and angles between neighbouring joint axes.
-# Each table below was typed from its source, not from the exercise.
+"""Test the exercises about real robots."""
 
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
@@ -10,9 +6,21 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 from dh_grader.catalogue import Exercise
+from dh_grader.kinematics import Convention
 from numpy.typing import NDArray
 
+from tests.exercises.real.campaign import ACCEPTED, REFUSED, policy_of, run
+from tests.exercises.real.makers import ARMS, MAKERS, ROUNDED_MM, differences
+from tests.exercises.real.urdf_comparison import Difference, difference
+from tests.frame_choice.robots import GIVEN, POLICIES
 from tests.shipped import REAL_ROBOTS, shipped_exercises
+from tests.together import together
+
+# --- Compare the tables of the real robots with tables from other publications
+
+# Sources choose different frames, signs and home configurations. But they must agree in |a|, in α
+# modulo 180°, and in |d|, because these are distances and angles between neighbouring joint axes.
+# Each table below was typed from its source, not from the exercise.
 
 Numbers = NDArray[np.float64]
 
@@ -115,3 +123,67 @@ def test_a_robot_has_the_axes_that_another_source_gives_it(name: str) -> None:
 
 def test_only_real_robots_are_compared() -> None:
     assert set(PUBLISHED) <= set(REAL_ROBOTS)
+
+
+# --- Compare tables of real robots with the URDF files in the repository
+
+FILES = {file.stem: file for file in ARMS.glob("*/*.urdf")}
+HERE = {name: FILES[maker.file] for name, maker in MAKERS.items() if maker.file in FILES}
+FARTHEST_MM, FARTHEST_DEGREES = 0.1, 0.01
+
+
+@pytest.mark.parametrize("name", HERE)
+def test_a_table_moves_as_the_file_of_its_maker(name: str) -> None:
+    found = differences(name, HERE[name])
+    assert len(found) == len(shipped_exercises()[name].robot.tables)
+    for each in found:
+        assert each.millimetres <= ROUNDED_MM.get(name, FARTHEST_MM)
+        assert each.degrees <= FARTHEST_DEGREES
+        assert each.base_apart <= ROUNDED_MM.get(name, FARTHEST_MM)
+        assert each.tool_apart <= ROUNDED_MM.get(name, FARTHEST_MM)
+
+
+def test_nine_of_the_robots_are_compared_here() -> None:
+    assert set(MAKERS) <= set(REAL_ROBOTS)
+    assert len(HERE) >= 9
+
+
+def of_ur5e(name: str, signs: Sequence[int]) -> Difference:
+    exercise = shipped_exercises()[name]
+    return difference(exercise, Convention.STANDARD, FILES["ur5e"], signs, (0,) * 6, "tool0")
+
+
+def test_another_robot_or_a_joint_that_counts_the_other_way_is_noticed() -> None:
+    assert of_ur5e("ur5e", (1,) * 6).millimetres < FARTHEST_MM
+    assert of_ur5e("ur3e", (1,) * 6).millimetres > 100
+    assert of_ur5e("ur5e", (1, 1, -1, 1, 1, 1)).degrees > 10
+
+
+# --- Grade a few random tables of the real robots
+
+
+@pytest.mark.long
+@together("name", REAL_ROBOTS)
+def test_valid_tables_are_accepted_and_wrong_ones_refused(name: str) -> None:
+    found = run(name, tables=1, seed=29)
+    assert found.misses == []
+    assert found.counts[ACCEPTED] == found.counts[REFUSED] == 1
+
+
+@pytest.mark.campaign
+@pytest.mark.timeout(3600)
+@pytest.mark.parametrize("name", REAL_ROBOTS)
+def test_a_thousand_tables_of_each_kind_are_judged_rightly(name: str) -> None:
+    found = run(name, tables=1000, seed=1)
+    assert found.misses == []
+    assert found.counts[ACCEPTED] == found.counts[REFUSED] == 1000
+
+
+def test_base_tool_and_directions_are_each_free_somewhere() -> None:
+    policies = {name: policy_of(shipped_exercises()[name]) for name in REAL_ROBOTS}
+    free = {name: policy for name, policy in policies.items() if policy != GIVEN}
+    assert {policy.name for policy in free.values()} == {
+        "free base", "free tool", "free directions", "all free",
+    }  # fmt: skip
+    assert len(free) == 4
+    assert set(policies.values()) <= set(POLICIES)

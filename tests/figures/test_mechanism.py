@@ -1,8 +1,5 @@
 """The corners and joints in a figure move with the robot."""
 
-# The drawing uses screw axes; the tests use the link transforms of the table, or SciPy's matrix
-# exponential if a robot has no table.
-
 from collections.abc import Mapping
 
 import numpy as np
@@ -14,6 +11,9 @@ from dh_grader.kinematics import Convention, Numbers
 from scipy.linalg import expm
 
 from tests.shipped import shipped_exercises
+
+# The drawing uses screw axes; the tests use the link transforms of the table, or SciPy's matrix
+# exponential if a robot has no table.
 
 POSES = 5
 EXACT = 1e-9
