@@ -60,17 +60,17 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "gradebook": Package(
         ["service/dh_grader/courses/gradebook.py"],
-        ["tests/courses/results", "tests/courses/test_courses.py"],
-        ["tests/courses/results"],
+        ["tests/courses/test_gradebook.py", "tests/courses/test_courses.py"],
+        ["tests/courses/test_gradebook.py"],
     ),
     "results": Package(
         ["service/dh_grader/store/results.py"],
         [
-            "tests/attempts/results",
+            "tests/store/test_results.py",
             "tests/api/recording/test_listing.py",
             "tests/api/recording/test_managing.py",
         ],
-        ["tests/attempts/results"],
+        ["tests/store/test_results.py"],
     ),
     "fair_points": Package(
         ["service/dh_grader/grading/judging_table.py"],

@@ -23,10 +23,9 @@ from sqlalchemy import text
 from tests.api.conftest import InProcess
 from tests.attack.honest import watched
 from tests.attack.interface import with_key
-from tests.attempts import campaign
-from tests.attempts.erasure import files_with, reader
-from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, recorded
 from tests.server.raw import HEALTH, service
+from tests.store import campaign
+from tests.store.recorded import LAZY, NO_TWIST, RIGHT, files_with, reader, recorded
 
 HERE = "http://127.0.0.1:8000"
 NOBODY = 32 * "0"

@@ -17,7 +17,7 @@ from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 from sqlalchemy import event, text
 
-from tests.attempts.databases import new_file
+from tests.store.databases import new_file
 
 
 @pytest.fixture

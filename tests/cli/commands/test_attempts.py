@@ -8,10 +8,9 @@ import pytest
 from dh_grader.catalogue import Exercise, shipped_folder
 from dh_grader.store.attempt_store import AttemptStore
 
-from tests.attempts.erasure import files_with, reader
-from tests.attempts.recorded import NO_TWIST, RIGHT, new_attempt, recorded_all
-from tests.attempts.test_upgrade import MIGRATIONS, make_old
 from tests.cli.conftest import Run
+from tests.store.recorded import NO_TWIST, RIGHT, files_with, new_attempt, reader, recorded_all
+from tests.store.test_migrations import MIGRATIONS, make_old
 
 
 @pytest.fixture

@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from tests.attempts.databases import new_file
 from tests.server.raw import service
+from tests.store.databases import new_file
 
 SECRET = "a1_hidden_answer"
 ANSWER = b'{"learner": "Ada", "answers": {"table": "%b 0 0 x"}}' % SECRET.encode()

@@ -15,9 +15,9 @@ from dh_grader.settings import Settings
 from dh_grader.submissions.bodies import MAX_BODY_SIZE
 from prometheus_client.parser import text_string_to_metric_families
 
-from tests.attempts.databases import new_file
-from tests.attempts.recorded import NO_TWIST, RIGHT
 from tests.server.raw import Service, service, until, workers
+from tests.store.databases import new_file
+from tests.store.recorded import NO_TWIST, RIGHT
 
 ROUTE = "/v1/exercises/{exercise_id}/attempts"
 Samples = Mapping[tuple[str, frozenset[str]], float]
