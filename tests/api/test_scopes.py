@@ -52,7 +52,7 @@ from starlette.routing import Route
 from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
 
-STATUSES = Path(__file__).parent / "permissions" / "statuses.txt"
+STATUSES = Path(__file__).parent / "statuses.txt"
 HERE, ELSEWHERE = "http://127.0.0.1:8000", "http://192.0.2.1:8000"
 EXERCISE, OTHER = "planar-rr", "scara"
 SECRET = Secret("0123456789abcdef" * 4)

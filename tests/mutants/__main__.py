@@ -46,8 +46,12 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "permissions": Package(
         ["service/dh_grader/api/permissions.py"],
-        ["tests/api/permissions", "tests/api/test_scopes.py", "tests/api/test_sign_in.py"],
-        ["tests/api/permissions"],
+        [
+            "tests/api/test_permissions.py",
+            "tests/api/test_authentication.py",
+            "tests/api/test_scopes.py",
+        ],
+        ["tests/api/test_permissions.py", "tests/api/test_authentication.py"],
     ),
     "terms": Package(
         ["service/dh_grader/courses/assignments.py"],
@@ -65,11 +69,7 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "results": Package(
         ["service/dh_grader/store/results.py"],
-        [
-            "tests/store/test_results.py",
-            "tests/api/recording/test_listing.py",
-            "tests/api/recording/test_managing.py",
-        ],
+        ["tests/store/test_results.py", "tests/api/test_recording.py"],
         ["tests/store/test_results.py"],
     ),
     "fair_points": Package(

@@ -195,7 +195,7 @@ def test_the_runner_kills_a_mutant_and_lets_an_equivalent_one_live() -> None:
 
 @pytest.mark.long
 def test_the_runner_changes_files_that_load_a_plugin_of_pytest() -> None:
-    home = "tests/api/permissions"
-    package = Package(["service/dh_grader/api/permissions.py"], [f"{home}/test_access.py"], [home])
+    home = "tests/api/test_permissions.py"
+    package = Package(["service/dh_grader/api/permissions.py"], [home], [home])
     results = tried(package, functions=["is_loopback"])
     assert {each.end for each in results} == {"killed"}
