@@ -81,7 +81,7 @@ format: $(dev) ## rewrite the code in the house style
 written = $(python) -m $(1) >"$(2).new" && mv "$(2).new" "$(2)"
 
 pages: $(dev) ## write all that is made from the code: pages of docs, types of scripts, catalogues
-	$(python) -m tests.docs.misconceptions.records
+	$(python) -m tests.docs.misconception_records
 	$(python) -m tests.api.rights_table
 	$(call written,tests.docs.sentences,docs/sentences.md)
 	$(call written,tests.docs.exercise_fields,docs/exercise-fields.md)

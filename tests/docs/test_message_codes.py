@@ -1,6 +1,6 @@
 """docs/messages.md lists exactly the message codes of the program."""
 
-# Its tables of slips are made from the records (`tests/docs/misconceptions`).
+# Its tables of slips are made from the records (`tests/docs/misconception_records.py`).
 
 import json
 import re

@@ -1,15 +1,7 @@
 """Write lists of the codes of misconceptions into pages of docs/.
 
-Run ``python -m tests.docs.misconceptions.records``.
+Run ``python -m tests.docs.misconception_records``.
 """
-
-# The lists are written between comments:
-#
-#     <!-- records: WrongPosition -->
-#     <!-- end -->
-#
-# A comment names the kinds of cases whose codes are listed: `records` lists the codes in a table
-# with meanings and examples, `codes` lists the codes in a line.
 
 import re
 from collections.abc import Iterator
@@ -22,7 +14,15 @@ from dh_grader.grading.misconception import Example, Record, all_records
 from tests.docs.sentences import code_span, shown
 from tests.grading.diagnosis.traces import trace_of
 
-DOCS: Final = Path(__file__).parents[3] / "docs"
+# The lists are written between comments:
+#
+#     <!-- records: WrongPosition -->
+#     <!-- end -->
+#
+# A comment names the kinds of cases whose codes are listed: `records` lists the codes in a table
+# with meanings and examples, `codes` lists the codes in a line.
+
+DOCS: Final = Path(__file__).parents[2] / "docs"
 PAGES: Final = tuple(DOCS / name for name in ("messages.md", "answer-kinds.md"))
 _MARKED: Final = re.compile(r"(<!-- (records|codes): ([\w, ]+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _HEADING: Final = re.compile(r"^##+ (.+)$", re.MULTILINE)

@@ -1,4 +1,4 @@
-"""A lecturer runs a whole course in the browser."""
+"""Test a course from its lecturer to its students."""
 
 import csv
 import json
@@ -6,10 +6,14 @@ from collections.abc import Callable
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 from urllib.request import Request, urlopen
+from zoneinfo import ZoneInfo
 
 import pytest
 from dh_grader.access import Scope, Secret, new_key_text
 from dh_grader.access.key_ring import add_key
+from dh_grader.catalogue import shipped_folder
+from dh_grader.client import GraderClient
+from dh_grader.contract.courses import LearnersRequest, LinksRequest, NewAssignment, NewCourse
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 from playwright.sync_api import Page, expect
@@ -17,9 +21,12 @@ from playwright.sync_api import Page, expect
 from tests.api.serving import served
 from tests.browser.fixtures import Visit
 from tests.browser.hostile import PICTURE
+from tests.browser.learner.test_learner import WRONG, fill, hand_in
 from tests.browser.test_pages import violations
 from tests.browser.test_tutor import NARROW, wide
 from tests.guards import ANSWER
+
+# --- A lecturer runs a whole course in the browser
 
 SECRET = "0123456789abcdef" * 4
 RIGHT = "a1 0 0 θ1\na2 180deg 0 θ2\n0 0 d3 0\n0 0 d4 θ4"
@@ -42,7 +49,7 @@ def administrator(database: str) -> str:
     return text
 
 
-def hand_in(link: str, address: str) -> None:
+def hand_in_as_student(link: str, address: str) -> None:
     body = json.dumps({"exercise": "scara", "answers": {"table": RIGHT}}).encode()
     headers = {"Authorization": f"Bearer {link.partition('#')[2]}", "Idempotency-Key": "1"}
     path = f"{address}/v1/courses/robots/assignments/homework-1/attempts"
@@ -111,7 +118,7 @@ def test_a_lecturer_runs_a_course(visit: Callable[..., Visit], axe: str, tmp_pat
             page.get_by_role("button", name="Download links").click()
         downloading.value.save_as(tmp_path / "links.csv")
         links = csv.DictReader((tmp_path / "links.csv").read_text("utf-8-sig").splitlines())
-        hand_in({row["learner"]: row["link"] for row in links}["u1"], server.address)
+        hand_in_as_student({row["learner"]: row["link"] for row in links}["u1"], server.address)
 
         page.get_by_role("link", name="Homework 1").click()
         page.get_by_text("Not complete: 3 of 4 learners").click()
@@ -204,3 +211,189 @@ def _set_homework(page: Page) -> None:
     points.fill("20")
     page.get_by_label("Due").fill("2030-10-15T23:59")
     page.get_by_role("button", name="Add assignment").click()
+
+
+# --- A tutor gives each learner a personal variant of an exercise
+
+EXERCISE = "planar-rr-numbers"
+
+
+@pytest.mark.long
+def test_a_tutor_sees_and_deals_variants(
+    visit: Callable[..., Visit], axe: str, tmp_path: Path
+) -> None:
+    database = str(tmp_path / "attempts.db")
+    key = administrator(database)
+    options = {"DH_GRADER_DATABASE": database, "DH_GRADER_SECRET": SECRET}
+    with served(tmp_path, **options) as server, GraderClient(server.address, key) as tutor:
+        tutor.create_course(NewCourse(id="robots", title="Robots", zone="Europe/Berlin"))
+        tutor.add_learners("robots", LearnersRequest(csv="id,name\nu1,Ada\n"))
+        chosen = [{"exercise": EXERCISE, "points": 8}]
+        new = {"id": "hw", "title": "Homework", "exercises": chosen}
+        tutor.create_assignment("robots", NewAssignment.model_validate(new))
+        page = visit(bypass_csp=True).page
+        page.add_init_script(axe)
+        page.goto(f"{server.address}/tutor/courses/robots/assignments/hw")
+        page.get_by_label("Your key").fill(key)
+        page.get_by_role("button", name="Sign in").click()
+        page.get_by_text("Change the assignment").click()
+        own = page.get_by_label("Each learner gets numbers of their own")
+        expect(own).not_to_be_checked()
+        own.check()
+        with page.expect_navigation():
+            page.get_by_role("button", name="Save", exact=True).click()
+        assert tutor.assignment("robots", "hw").variants
+        expect(own).to_be_checked()
+
+        [first] = tutor.variants("robots", "hw", "u1").variants
+        page.goto(f"{server.address}/tutor/courses/robots/learner?learner=u1")
+        expect(page.get_by_role("link", name=first.seed, exact=True)).to_be_visible()
+        assert "\n".join(violations(page, "")) == ""
+        page.get_by_role("button", name="Deal a new one").click()
+        expect(page.get_by_text("(deal 2)")).to_be_visible()
+        [second] = tutor.variants("robots", "hw", "u1").variants
+        assert second.seed != first.seed
+
+        [link] = tutor.links("robots", LinksRequest()).links
+        with GraderClient(server.address, link.link.partition("#")[2]) as ada:
+            answers = {"table": "0 0 0 theta1"}
+            attempt = ada.hand_in("robots", "hw", EXERCISE, answers).attempt.id
+        page.goto(f"{server.address}/tutor/attempts/{attempt}")
+        expect(page.get_by_role("link", name=second.seed)).to_be_visible()
+        # The page shows the exercise with the learner's numbers, which has this version.
+        expect(page.get_by_text("Graded by")).to_be_visible()
+        expect(page.get_by_text("not the current version")).to_have_count(0)
+        title = tutor.exercise(second.variant).title
+        expect(page.get_by_role("heading", level=1)).to_have_text(title)
+
+
+# --- Test a whole course in the browser, from the class list to the gradebook
+
+WHOLE_WAY_CLASS = "name,email\nAda Lovelace,ada@example.edu\nGrace Hopper,grace@example.edu\n"
+# A table without the half turn earns 6.25 of the 8 points of the table (docs/attempts.md).
+BEFORE, AFTER = "6.25", "8"
+LATE_BEFORE, LATE_AFTER = "3.13", "4"
+
+
+def day(days: int) -> str:
+    return f"{datetime.now(ZoneInfo('Europe/Berlin')) + timedelta(days=days):%Y-%m-%dT%H:%M}"
+
+
+def correct(folder: Path) -> None:
+    text = (shipped_folder() / "scara.toml").read_text(encoding="utf-8")
+    changed = text.replace('["a2", "180deg",', '["a2", "0",')
+    (folder / "scara.toml").write_text(changed, encoding="utf-8")
+
+
+def set_up(tutor: Page, address: str, key: str) -> None:
+    """Sign in, and create a course with an assignment that is due tomorrow."""
+    tutor.goto(f"{address}/tutor/courses")
+    tutor.get_by_label("Your key").fill(key)
+    tutor.get_by_role("button", name="Sign in").click()
+    tutor.get_by_label("Title").fill("Robots")
+    tutor.get_by_label("Id").fill("robots")
+    tutor.get_by_label("Time zone").fill("Europe/Berlin")
+    tutor.get_by_role("button", name="Create").click()
+    tutor.get_by_label("or paste it").fill(WHOLE_WAY_CLASS)
+    tutor.get_by_role("button", name="Add learners").click()
+    expect(tutor.get_by_role("link", name="Ada Lovelace")).to_be_visible()
+    tutor.get_by_label("Id").fill("homework")
+    tutor.get_by_label("Title").first.fill("Homework")
+    tutor.get_by_label("Exercise", exact=True).select_option("scara")
+    tutor.get_by_label("Due").fill(day(1))
+    tutor.get_by_role("button", name="Add assignment").click()
+    expect(tutor.get_by_role("cell", name="0 of 2")).to_be_visible()
+
+
+def links(tutor: Page, file: Path) -> dict[str, str]:
+    """Download the personal links; return them by the learners' names."""
+    with tutor.expect_download() as downloading:
+        tutor.get_by_role("button", name="Download links").click()
+    downloading.value.save_as(file)
+    rows = csv.DictReader(file.read_text("utf-8-sig").splitlines())
+    return {row["name"]: row["link"] for row in rows}
+
+
+def open_homework(page: Page, link: str) -> None:
+    page.goto(link)
+    page.locator(".assignment").get_by_role("link").click()
+
+
+@pytest.mark.long
+def test_the_whole_way(visit: Callable[..., Visit], tmp_path: Path) -> None:
+    database, folder = str(tmp_path / "attempts.db"), tmp_path / "exercises"
+    folder.mkdir()
+    (folder / "scara.toml").write_bytes((shipped_folder() / "scara.toml").read_bytes())
+    key = administrator(database)
+    settings = {
+        "DH_GRADER_DATABASE": database,
+        "DH_GRADER_SECRET": SECRET,
+        "DH_GRADER_EXERCISES_DIR": str(folder),
+        "DH_GRADER_RELOAD_EXERCISES": "true",
+    }
+    with served(tmp_path, **settings) as server:
+        tutor, ada, grace = (visit().page for _ in range(3))
+        set_up(tutor, server.address, key)
+        link_of = links(tutor, tmp_path / "links.csv")
+
+        # Ada types a table, hands it in, and reads the report.
+        open_homework(ada, link_of["Ada Lovelace"])
+        fill(ada, WRONG)
+        hand_in(ada)
+        expect(ada.get_by_text(f"Handed in. Attempt 1: {BEFORE} of 24 points.")).to_be_visible()
+        expect(ada.locator("td[data-verdict=incorrect]")).to_have_count(1)
+
+        # The tutor sets an earlier due date, and accepts Grace's attempt after it.
+        tutor.get_by_role("link", name="Homework").click()
+        tutor.get_by_text("Change the assignment").click()
+        tutor.get_by_label("Due").nth(1).fill(day(-1))
+        tutor.get_by_role("button", name="Save", exact=True).click()
+        expect(tutor.get_by_text("Not complete: 1 of 2")).to_be_visible()
+        open_homework(grace, link_of["Grace Hopper"])
+        expect(grace.get_by_text("Closed since")).to_be_visible()
+        chosen = tutor.get_by_label("Learner", exact=True)
+        chosen.select_option(
+            chosen.locator("option", has_text="Grace Hopper").get_attribute("value")
+        )
+        tutor.get_by_label("Closes").nth(0).fill(day(1))
+        tutor.get_by_role("button", name="Save extension").click()
+        expect(tutor.get_by_role("link", name="Grace Hopper").first).to_be_attached()
+        open_homework(grace, link_of["Grace Hopper"])
+        expect(grace.get_by_text("earn 50 % of their points")).to_be_visible()
+        fill(grace, WRONG)
+        hand_in(grace)
+        expect(grace.get_by_text(f"{LATE_BEFORE} of 24 points").first).to_be_visible()
+
+        # The gradebook shows both. The exercise is corrected and regraded.
+        book = tutor.locator("#book tbody tr")
+
+        def shows(ada_s: str, grace_s: str) -> None:
+            tutor.goto(f"{server.address}/tutor/courses/robots/gradebook")
+            for name, points in (("Ada", ada_s), ("Grace", grace_s)):
+                row = book.filter(has_text=name).locator("td")
+                expect(row).to_have_text([points, points])
+
+        shows(BEFORE, LATE_BEFORE)
+        correct(folder)
+        tutor.goto(f"{server.address}/tutor/statistics/scara")
+        write = tutor.get_by_role("button", name="Write the new reports")
+        while not write.is_visible():  # until the service has seen the new file
+            tutor.get_by_role("button", name="Preview regrade").click()
+            expect(tutor.get_by_role("button", name="Stop")).to_be_hidden()
+            tutor.wait_for_timeout(100)
+        # The check still says what was right before.
+        expect(tutor.get_by_text("The exercise fails its check.")).to_be_visible()
+        expect(write).to_be_disabled()
+        tutor.get_by_label("Regrade with it as it is").check()
+        write.click()
+        expect(tutor.get_by_text("Regraded: 2 attempts.")).to_be_visible()
+        shows(AFTER, LATE_AFTER)
+
+        for page, name, points in ((ada, "Ada", AFTER), (grace, "Grace", LATE_AFTER)):
+            page.goto(next(link for each, link in link_of.items() if name in each))
+            expect(page.locator(".assignment")).to_contain_text(f"{points} of 24 points count")
+            page.locator(".assignment").get_by_role("link").click()
+            page.locator(".handed-in li").get_by_role("link").click()
+            expect(page.locator(".recorded td[data-verdict=correct]")).to_have_count(16)
+            # The page may still load a style sheet, which would fail when the server has ended.
+            page.close()
