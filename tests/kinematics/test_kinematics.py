@@ -3,6 +3,7 @@
 import doctest
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -546,11 +547,13 @@ def test_the_pose_is_the_closed_form(name: str, values: list[float]) -> None:
     robot = CLOSED_FORMS[name]
     at = dict(zip(LETTERS, values, strict=True))
     table = np.array([[float(at.get(cell, cell)) for cell in row] for row in robot.table])
-    expected = np.asarray(POSES[name](*values), dtype=np.float64)
+    expected = np.asarray(pose_function(name)(*values), dtype=np.float64)
     np.testing.assert_allclose(pose(table, robot.convention), expected, atol=1e-12)
 
 
-POSES = {name: function_of_letters(robot.pose) for name, robot in CLOSED_FORMS.items()}
+@cache
+def pose_function(name: str) -> Callable[..., Any]:
+    return function_of_letters(CLOSED_FORMS[name].pose)
 
 
 @given(values=VALUES)

@@ -4,7 +4,7 @@ import io
 import json
 import time
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from datetime import date
 from itertools import pairwise
@@ -295,50 +295,63 @@ ODS: Final = (
     '<t:table-cell t:number-columns-repeated="{columns}" o:value-type="float" o:value="1"/>'
     "</t:table-row></t:table></x>"
 )
-HOSTILE: Final = {
-    "no zip.xlsx": b"PK\x03\x04" + bytes(100),
-    "zeros.xlsx": xlsx_with(SHEET + bytes(50_000_000)),
-    "a million cells.xlsx": xlsx_with(SHEET + b"<row>" + CELL * 1_000_000 + b"</row>"),
-    "entities.xlsx": xlsx_with(LAUGHS + SHEET + b"</sheetData></worksheet>"),
-    "laughs in texts.xlsx": xlsx_with(b"", {"xl/sharedStrings.xml": BILLION_LAUGHS.encode()}),
-    "laughs in styles.xlsx": xlsx_with(b"", {"xl/worksheets/s2.xml": BILLION_LAUGHS.encode()}),
-    "deep.xlsx": xlsx_with(SHEET + b"<a>" * 100_000),
-    "a million rows.xlsx": xlsx_with(SHEET + b"<row/>" * 300_000 + b"</sheetData></worksheet>"),
-    "other tags.xlsx": xlsx_with(SHEET + b"<a/>" * 50_000 + b"</sheetData></worksheet>"),
-    "macros.xlsx": xlsx_with(b"", {"xl/vbaProject.bin": b"x"}),
-    "links.xlsx": xlsx_with(b"", {"xl/externalLinks/externalLink1.xml": b"<x/>"}),
-    "cut.xlsx": made.xlsx(RIGHT)[:-200],
-    "noise.xls": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(range(256)) * 20,
-    "entities.ods": made.zipped({"content.xml": ODS_LAUGHS}),
-    "wide.ods": made.zipped({"content.xml": ODS.format(rows=1, columns=10**8).encode()}),
-    "long.ods": made.zipped({"content.xml": ODS.format(rows=10**8, columns=9).encode()}),
-    "a million cells.ods": made.zipped({"content.xml": b"<x>" + b"<c/>" * 500_000 + b"</x>"}),
-    "tables in tables.ods": made.zipped(
+# Made when they are read, because they are large.
+HOSTILE: Final[Mapping[str, Callable[[], bytes]]] = {
+    "no zip.xlsx": lambda: b"PK\x03\x04" + bytes(100),
+    "zeros.xlsx": lambda: xlsx_with(SHEET + bytes(50_000_000)),
+    "a million cells.xlsx": lambda: xlsx_with(SHEET + b"<row>" + CELL * 1_000_000 + b"</row>"),
+    "entities.xlsx": lambda: xlsx_with(LAUGHS + SHEET + b"</sheetData></worksheet>"),
+    "laughs in texts.xlsx": lambda: xlsx_with(
+        b"", {"xl/sharedStrings.xml": BILLION_LAUGHS.encode()}
+    ),
+    "laughs in styles.xlsx": lambda: xlsx_with(
+        b"", {"xl/worksheets/s2.xml": BILLION_LAUGHS.encode()}
+    ),
+    "deep.xlsx": lambda: xlsx_with(SHEET + b"<a>" * 100_000),
+    "a million rows.xlsx": lambda: xlsx_with(
+        SHEET + b"<row/>" * 300_000 + b"</sheetData></worksheet>"
+    ),
+    "other tags.xlsx": lambda: xlsx_with(SHEET + b"<a/>" * 50_000 + b"</sheetData></worksheet>"),
+    "macros.xlsx": lambda: xlsx_with(b"", {"xl/vbaProject.bin": b"x"}),
+    "links.xlsx": lambda: xlsx_with(b"", {"xl/externalLinks/externalLink1.xml": b"<x/>"}),
+    "cut.xlsx": lambda: made.xlsx(RIGHT)[:-200],
+    "noise.xls": lambda: b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(range(256)) * 20,
+    "entities.ods": lambda: made.zipped({"content.xml": ODS_LAUGHS}),
+    "wide.ods": lambda: made.zipped({"content.xml": ODS.format(rows=1, columns=10**8).encode()}),
+    "long.ods": lambda: made.zipped({"content.xml": ODS.format(rows=10**8, columns=9).encode()}),
+    "a million cells.ods": lambda: made.zipped(
+        {"content.xml": b"<x>" + b"<c/>" * 500_000 + b"</x>"}
+    ),
+    "tables in tables.ods": lambda: made.zipped(
         {"content.xml": b"<x>" + b"<table>" * 150 + b"<table-row/>" * 50_000 + b"</table>" * 150}
     ),
-    "entities.docx": made.zipped({"word/document.xml": ODS_LAUGHS}),
-    "laughs.docx": made.zipped({"word/document.xml": BILLION_LAUGHS.encode()}),
-    "laughs in UTF-16.docx": made.zipped({"word/document.xml": BILLION_LAUGHS.encode("utf-16")}),
-    "outside.docx": made.zipped({"word/document.xml": OUTSIDE + b"<a>&b;</a>"}),
-    "macros.docx": made.zipped({"word/document.xml": b"<w/>", "word/vbaProject.bin": b"x"}),
-    "a million cells.docx": made.zipped(
+    "entities.docx": lambda: made.zipped({"word/document.xml": ODS_LAUGHS}),
+    "laughs.docx": lambda: made.zipped({"word/document.xml": BILLION_LAUGHS.encode()}),
+    "laughs in UTF-16.docx": lambda: made.zipped(
+        {"word/document.xml": BILLION_LAUGHS.encode("utf-16")}
+    ),
+    "outside.docx": lambda: made.zipped({"word/document.xml": OUTSIDE + b"<a>&b;</a>"}),
+    "macros.docx": lambda: made.zipped({"word/document.xml": b"<w/>", "word/vbaProject.bin": b"x"}),
+    "a million cells.docx": lambda: made.zipped(
         {"word/document.xml": WORD_START + b"<w:p/>" * 300_000 + b"</w:body></w:document>"}
     ),
-    "deep.docx": made.zipped({"word/document.xml": b"<w>" * 100_000}),
-    "deep and closed.docx": made.zipped({"word/document.xml": b"<w>" * 29_000 + b"</w>" * 29_000}),
-    "deep.ipynb": b'{"nbformat": 4, "cells": ' + b"[" * 100_000,
-    "wrong.ipynb": b'{"nbformat": 4, "cells": [{"cell_type": 1, "source": {"a": 1}}]}',
-    "open.rtf": b"{\\rtf1" + b"{" * 25_000,
-    "a million cells.rtf": b"{\\rtf1" + b"\\intbl 1\\cell " * 500_000 + b"}",
-    "braces.rtf": b"{\\rtf1" + b"{}" * 3 * MILLION + b"}",
-    "nearly a picture.rtf": b"{\\rtf1 " + (b"a" * 399 + b"g") * 20_000 + b"}",
-    "not.rtf": b"a, b",
-    "empty.html": b"<p>&nbsp;</p>",
-    "a million cells.html": b"<table><tr>" + b"<td>1" * MILLION,
-    "deep.html": b"<div>" * MILLION,
-    "entities.html": b"&lt;" * MILLION,
-    "openings.html": b"<" * 8 * MILLION,
-    "a million cells.ipynb": b'{"nbformat": 4, "cells": [' + b"1, " * MILLION + b"1]}",
+    "deep.docx": lambda: made.zipped({"word/document.xml": b"<w>" * 100_000}),
+    "deep and closed.docx": lambda: made.zipped(
+        {"word/document.xml": b"<w>" * 29_000 + b"</w>" * 29_000}
+    ),
+    "deep.ipynb": lambda: b'{"nbformat": 4, "cells": ' + b"[" * 100_000,
+    "wrong.ipynb": lambda: b'{"nbformat": 4, "cells": [{"cell_type": 1, "source": {"a": 1}}]}',
+    "open.rtf": lambda: b"{\\rtf1" + b"{" * 25_000,
+    "a million cells.rtf": lambda: b"{\\rtf1" + b"\\intbl 1\\cell " * 500_000 + b"}",
+    "braces.rtf": lambda: b"{\\rtf1" + b"{}" * 3 * MILLION + b"}",
+    "nearly a picture.rtf": lambda: b"{\\rtf1 " + (b"a" * 399 + b"g") * 20_000 + b"}",
+    "not.rtf": lambda: b"a, b",
+    "empty.html": lambda: b"<p>&nbsp;</p>",
+    "a million cells.html": lambda: b"<table><tr>" + b"<td>1" * MILLION,
+    "deep.html": lambda: b"<div>" * MILLION,
+    "entities.html": lambda: b"&lt;" * MILLION,
+    "openings.html": lambda: b"<" * 8 * MILLION,
+    "a million cells.ipynb": lambda: b'{"nbformat": 4, "cells": [' + b"1, " * MILLION + b"1]}",
 }
 
 
@@ -372,7 +385,7 @@ def test_a_hostile_file_is_refused_at_once(name: str) -> None:
     ending = f".{name.rpartition('.')[2]}"
     if ending in FIRST:
         excerpts(FIRST[ending](RIGHT), ending)
-    seconds, found = seconds_to_read(HOSTILE[name], ending)
+    seconds, found = seconds_to_read(HOSTILE[name](), ending)
     assert found == () or name == "open.rtf"
     assert seconds < MOST_SECONDS
 

@@ -16,6 +16,7 @@ import xml.etree.ElementTree as ET
 import zipfile
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping
+from functools import cache
 from html.parser import HTMLParser
 from http import HTTPStatus
 from itertools import pairwise
@@ -167,24 +168,32 @@ def nested(content: bytes, levels: int) -> bytes:
     return content
 
 
-ZEROS = zipped([("table.csv", bytes(10 * MEGABYTE))])
-SHEET = zipped([("[Content_Types].xml", b"<x/>"), ("xl/worksheets/sheet1.xml", bytes(MEGABYTE))])
 ENTITIES = "".join(f'<!ENTITY {b} "{f"&{a};" * 10}">' for a, b in pairwise("abcdefghij"))
-FILES = {
-    "zeros.zip": ZEROS,
-    "nested.zip": nested(zipped([("0", bytes(MEGABYTE))]), 3),
-    "many.zip": zipped((f"{i}.csv", b"") for i in range(1_500)),
-    "table.xlsx": SHEET,
-    "table.ods": SHEET,
-    "table.csv.gz": gzip.compress(bytes(10 * MEGABYTE)),
-    "folder.tar": bytes(20_480),
-    # With the name of a readable kind.
-    "a zip.csv": ZEROS,
-    "a zip.txt": ZEROS,
-    "a zip.json": ZEROS,
-    "a zip.toml": ZEROS,
-    "zeros.txt": bytes(10 * MEGABYTE),
-}
+
+
+@cache
+def hostile_files() -> Mapping[str, bytes]:
+    zeros = zipped([("table.csv", bytes(10 * MEGABYTE))])
+    sheet = zipped(
+        [("[Content_Types].xml", b"<x/>"), ("xl/worksheets/sheet1.xml", bytes(MEGABYTE))]
+    )
+    return {
+        "zeros.zip": zeros,
+        "nested.zip": nested(zipped([("0", bytes(MEGABYTE))]), 3),
+        "many.zip": zipped((f"{i}.csv", b"") for i in range(1_500)),
+        "table.xlsx": sheet,
+        "table.ods": sheet,
+        "table.csv.gz": gzip.compress(bytes(10 * MEGABYTE)),
+        "folder.tar": bytes(20_480),
+        # With the name of a readable kind.
+        "a zip.csv": zeros,
+        "a zip.txt": zeros,
+        "a zip.json": zeros,
+        "a zip.toml": zeros,
+        "zeros.txt": bytes(10 * MEGABYTE),
+    }
+
+
 # A web page is read, but its entities are not expanded to a table.
 LAUGHS = f'<!DOCTYPE t [<!ENTITY a "lol">{ENTITIES}]><table><tr><td>&j;</td></tr></table>'.encode()
 
@@ -192,7 +201,11 @@ LAUGHS = f'<!DOCTYPE t [<!ENTITY a "lol">{ENTITIES}]><table><tr><td>&j;</td></tr
 def test_a_hostile_archive_in_a_folder_affects_only_itself(tmp_path: Path) -> None:
     folder = tmp_path / "class"
     folder.mkdir()
-    for name, content in {**FILES, "laughs.html": LAUGHS, "right.csv": RIGHT.encode()}.items():
+    for name, content in {
+        **hostile_files(),
+        "laughs.html": LAUGHS,
+        "right.csv": RIGHT.encode(),
+    }.items():
         (folder / name).write_bytes(content)
     asked = ["--exercise", "planar-rr", "--part", "table", "--format", "json", str(folder)]
     tracemalloc.start()
@@ -206,7 +219,7 @@ def test_a_hostile_archive_in_a_folder_affects_only_itself(tmp_path: Path) -> No
     found = {Path(each["file"]).name: each for each in json.loads(done.stdout)}
     assert found["right.csv"]["report"]["score"] == 1.0
     assert found["laughs.html"]["report"]["score"] == 0.0
-    for name in FILES:
+    for name in hostile_files():
         problem = found[name]["error"]
         assert any(
             reason in problem
@@ -239,13 +252,13 @@ def test_an_uploaded_hostile_archive_affects_only_itself(tutor: Tutor) -> None:
         {"path": name, "base64": base64.b64encode(content).decode()}
         if len(content) <= MAX_BODY_SIZE
         else {"path": name}
-        for name, content in FILES.items()
+        for name, content in hostile_files().items()
     ]
     answer = tutor.grade([*files, {"path": "right.csv", "text": RIGHT}], part="table")
     assert answer.status_code == 200
     with zipfile.ZipFile(io.BytesIO(answer.content)) as archive:
         index = archive.read("index.html").decode()
-        assert len(archive.namelist()) == len(FILES) + 3
+        assert len(archive.namelist()) == len(hostile_files()) + 3
     assert "zeros.zip holds more than a hand-in needs" in index
     assert "is larger than 256 KiB" in index
 
