@@ -81,8 +81,8 @@ format: $(dev) ## rewrite the code in the house style
 written = $(python) -m $(1) >"$(2).new" && mv "$(2).new" "$(2)"
 
 pages: $(dev) ## write all that is made from the code: pages of docs, types of scripts, catalogues
-	$(python) -m tests.docs.misconceptions.records
-	$(python) -m tests.api.permissions.rights_table
+	$(python) -m tests.docs.misconception_records
+	$(python) -m tests.api.rights_table
 	$(call written,tests.docs.sentences,docs/sentences.md)
 	$(call written,tests.docs.exercise_fields,docs/exercise-fields.md)
 	$(call written,tests.docs.settings,docs/settings.md)
@@ -116,7 +116,7 @@ sizing: $(dev) ## simulate a deadline with measured times: how many students one
 	$(python) -m tests.load.sizing
 	$(python) -m tests.courses.hand_ins.last_minute
 	$(python) -m tests.lti.load.rush
-	$(python) -m pytest -m campaign tests/load tests/lti/scores/test_outbox.py
+	$(python) -m pytest -m campaign tests/load tests/lti/test_outbox.py
 
 worst: $(dev) ## search for the costliest request for MINUTES= (10), and say where its time goes (SEED=)
 	$(python) -m tests.worst --minutes "$(MINUTES)" --seed "$(SEED)"
@@ -130,7 +130,7 @@ rows: $(dev) ## grade tables with one wrong row; leave rows and cells of wrong t
 	$(python) -m tests.frame_choice.rows.careless --seed "$(SEED)"
 
 sums: $(dev) ## hand in 1,000 random wrong answers to the tables of each exercise: do the points add up? (SEED=)
-	$(python) -m tests.grading.judging.marking.sums --tables --seed "$(SEED)"
+	$(python) -m tests.grading.sums --tables --seed "$(SEED)"
 
 policies: $(dev) ## grade tables of ROBOTS= unseen robots under each policy, 20 draws each (SEED=)
 	$(python) -m tests.frame_choice.by_policy --robots "$(ROBOTS)" --seed "$(SEED)"
@@ -162,11 +162,11 @@ mutants: $(dev) ## change rights, marks and comparisons in small ways: does a te
 	$(python) -m tests.mutants $(PACKAGES) --sample "$(SAMPLE)" --seed "$(SEED)" $(if $(RESUME),--resume "$(RESUME)")
 
 durability: $(dev) ## kill the service while it records, and restores, backups, regrades, deletions and migrations, 20 times each
-	$(python) -m pytest -m campaign tests/attempts/test_durability.py tests/attempts/test_kills.py tests/attempts/test_two_versions.py tests/courses/hand_ins/test_hand_ins.py tests/attempts/test_migrations.py tests/lti/scores/test_sending.py
+	$(python) -m pytest -m campaign tests/store/test_durability.py tests/store/test_kills.py tests/store/test_two_versions.py tests/courses/hand_ins/test_hand_ins.py tests/store/test_migrations.py tests/lti/test_outbox.py
 
 attempts: $(dev) ## measure a store of COUNT= attempts; regrade as many by four processes, two being killed
-	$(python) -m tests.attempts.campaign --count "$(COUNT)"
-	$(python) -m tests.attempts.shared_regrade --count "$(COUNT)"
+	$(python) -m tests.store.campaign --count "$(COUNT)"
+	$(python) -m tests.store.shared_regrade --count "$(COUNT)"
 
 prints: $(dev) ## hand in the model solution of every exercise as each program prints it
 	$(python) -m tests.solutions.prints

@@ -18,7 +18,7 @@ from hypothesis import HealthCheck, settings
 from tests.api.serving import Served, served
 from tests.shipped import shipped_exercises
 
-pytest_plugins = ["tests.browser.fixtures", "tests.attempts.databases"]
+pytest_plugins = ["tests.browser.fixtures", "tests.store.databases"]
 
 # The suite starts this program a hundred times: without bytecode it would be compiled each time.
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)

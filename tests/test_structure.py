@@ -123,8 +123,6 @@ SUITES: Final = {
     "attack", "benchmarks", "browser", "deploy", "docs", "exercises", "frame_choice", "front",
     "installed", "load", "mutants", "pose_slips", "same", "worst",
 }  # fmt: skip
-# Folders of tests whose package got another name. No new ones.
-FORMER_NAMES: Final = {"attempts": "store", "grids": "pasting"}
 
 
 def module_name(file: Path) -> str:
@@ -451,7 +449,7 @@ def has_home(test: Path) -> bool:
     folder, *below = test.relative_to(TESTS).parts
     if not below:
         return True
-    return folder in SUITES or FORMER_NAMES.get(folder, folder) in PACKAGES
+    return folder in SUITES or folder in PACKAGES
 
 
 def test_every_test_has_a_home() -> None:

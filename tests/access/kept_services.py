@@ -9,7 +9,7 @@ from dh_grader.access.key_ring import KeyRing
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.tables import metadata
 
-from tests.attempts.databases import migrated_database, new_file
+from tests.store.databases import migrated_database, new_file
 
 SECRET_TEXT = "0123456789abcdef" * 4
 SECRET = Secret(SECRET_TEXT)

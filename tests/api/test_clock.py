@@ -24,8 +24,8 @@ from dh_grader.catalogue.schema_fields import AttemptsSpec
 from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction
 
-from tests.attempts.databases import new_file
-from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT
+from tests.store.databases import new_file
+from tests.store.recorded import LAZY, NO_TWIST, RIGHT
 
 SECRET = Secret("0123456789abcdef" * 4)
 ATTEMPTS = "/v1/exercises/scara/attempts"

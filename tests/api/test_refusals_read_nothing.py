@@ -23,7 +23,7 @@ from dh_grader.grading.reading.entries import Reader
 from dh_grader.store.attempt_store import AttemptStore
 from fastapi import FastAPI
 
-from tests.attempts.databases import new_file
+from tests.store.databases import new_file
 
 ARM = "stanford-arm"
 _TEXT = "[" + "(" * 12_900 + ")" * 12_900 + "]"

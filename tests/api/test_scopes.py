@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Iterator, Mapping
 from contextlib import asynccontextmanager
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
-from functools import partial
+from functools import cache, partial
 from itertools import count
 from pathlib import Path
 from typing import Any
@@ -52,7 +52,7 @@ from starlette.routing import Route
 from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
 
-STATUSES = Path(__file__).parent / "permissions" / "statuses.txt"
+STATUSES = Path(__file__).parent / "statuses.txt"
 HERE, ELSEWHERE = "http://127.0.0.1:8000", "http://192.0.2.1:8000"
 EXERCISE, OTHER = "planar-rr", "scara"
 SECRET = Secret("0123456789abcdef" * 4)
@@ -70,61 +70,65 @@ MAKING = (
     "POST /tutor/files",
 )
 VARIANTS = "GET /v1/courses/robots/assignments/homework/variants"
-# The body of each route that has one.
-BODIES: Mapping[str, Any] = {
-    "POST /v1/exercises/{exercise_id}/grade": ANSWERS,
-    "POST /v1/exercises/{exercise_id}/hints": {
-        "answers": {"table": "0 0 0 θ1\na2 0 0 θ2"},
-        "part": "table",
-        "code": "distance_left_out",
-        "row": "1",
-        "cell": "a",
-        "step": 1,
-    },
-    "POST /v1/exercises/{exercise_id}/solution": {
-        "answers": dict(solved(shipped_exercises()[EXERCISE]).answers)
-    },
-    "POST /v1/exercises/{exercise_id}/choices": {"part": "table", "rows": []},
-    "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
-    "POST /lti/notices": {"notices": [{"jwt": "not signed"}]},
-    "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},
-    "POST /v1/previews": {"exercise": EXERCISE, "part": "table", "entries": [{"text": "a1"}]},
-    "POST /v1/frames": {**example("frames-request"), "exercise": EXERCISE, "table": None},
-    "POST /v1/tokens": {"learner": "ada", "exercises": [EXERCISE], "minutes": 480},
-    "POST /v1/exercises/{exercise_id}/attempts": {"learner": "ada", **ANSWERS},
-    # The exercise has no prices of hints.
-    "POST /v1/attempts/{attempt_id}/hints": {"part": "table", "code": "sign", "step": 1},
-    "POST /v1/attempts/{attempt_id}/override": {"points": 1, "reason": "A misprint."},
-    "POST /v1/learners/forget": {"learner": "nobody", "apply": True},
-    "POST /v1/exercises/{exercise_id}/regrade": {"apply": True},
-    "POST /v1/courses": {"title": "Robots", "zone": "Europe/Berlin"},
-    "POST /v1/courses/{course_id}": {"title": "Robots"},
-    "POST /v1/courses/{course_id}/learners": {"learners": [{"learner": "ada", "name": "Ada"}]},
-    "POST /v1/courses/{course_id}/delete": {"apply": False},
-    "POST /v1/courses/{course_id}/learners/remove": {"learner": "ada", "apply": False},
-    "POST /v1/courses/{course_id}/assignments/{assignment_id}/delete": {"apply": False},
-    "POST /v1/courses/{course_id}/links": {},
-    "POST /v1/courses/{course_id}/links/revoke": {"learners": ["nobody"]},
-    "POST /v1/courses/{course_id}/scores/send": {},
-    "POST /v1/courses/{course_id}/assignments": ASSIGNMENT,
-    "POST /v1/courses/{course_id}/assignments/{assignment_id}": {"title": "Homework"},
-    "POST /v1/courses/{course_id}/assignments/{assignment_id}/extensions": {"learner": "ada"},
-    # The exercise has no variants.
-    "POST /v1/courses/{course_id}/assignments/{assignment_id}/variants": {
-        "learner": "ada",
-        "exercise": EXERCISE,
-    },
-    "POST /v1/courses/{course_id}/assignments/{assignment_id}/attempts": {
-        "exercise": EXERCISE,
-        "learner": "ada",
-        **ANSWERS,
-    },
-    "POST /tutor/check": FILE,
-    "POST /tutor/import": {"kind": "table", "text": "0 | 0 | 0.3 | q1", "id": "arm"},
-    "POST /tutor/drafts": FILE,
-    "POST /tutor/files": {**FILE, "id": "my-arm", "before": ""},
-    "POST /tutor/class": CLASS,
-}
+
+
+@cache
+def bodies() -> Mapping[str, Any]:
+    """Return the body of each route that has one."""
+    return {
+        "POST /v1/exercises/{exercise_id}/grade": ANSWERS,
+        "POST /v1/exercises/{exercise_id}/hints": {
+            "answers": {"table": "0 0 0 θ1\na2 0 0 θ2"},
+            "part": "table",
+            "code": "distance_left_out",
+            "row": "1",
+            "cell": "a",
+            "step": 1,
+        },
+        "POST /v1/exercises/{exercise_id}/solution": {
+            "answers": dict(solved(shipped_exercises()[EXERCISE]).answers)
+        },
+        "POST /v1/exercises/{exercise_id}/choices": {"part": "table", "rows": []},
+        "POST /v1/grade": {"submissions": [{"exercise": EXERCISE, **ANSWERS}]},
+        "POST /lti/notices": {"notices": [{"jwt": "not signed"}]},
+        "POST /v1/preview": {"text": "2*q1", "exercise": EXERCISE},
+        "POST /v1/previews": {"exercise": EXERCISE, "part": "table", "entries": [{"text": "a1"}]},
+        "POST /v1/frames": {**example("frames-request"), "exercise": EXERCISE, "table": None},
+        "POST /v1/tokens": {"learner": "ada", "exercises": [EXERCISE], "minutes": 480},
+        "POST /v1/exercises/{exercise_id}/attempts": {"learner": "ada", **ANSWERS},
+        # The exercise has no prices of hints.
+        "POST /v1/attempts/{attempt_id}/hints": {"part": "table", "code": "sign", "step": 1},
+        "POST /v1/attempts/{attempt_id}/override": {"points": 1, "reason": "A misprint."},
+        "POST /v1/learners/forget": {"learner": "nobody", "apply": True},
+        "POST /v1/exercises/{exercise_id}/regrade": {"apply": True},
+        "POST /v1/courses": {"title": "Robots", "zone": "Europe/Berlin"},
+        "POST /v1/courses/{course_id}": {"title": "Robots"},
+        "POST /v1/courses/{course_id}/learners": {"learners": [{"learner": "ada", "name": "Ada"}]},
+        "POST /v1/courses/{course_id}/delete": {"apply": False},
+        "POST /v1/courses/{course_id}/learners/remove": {"learner": "ada", "apply": False},
+        "POST /v1/courses/{course_id}/assignments/{assignment_id}/delete": {"apply": False},
+        "POST /v1/courses/{course_id}/links": {},
+        "POST /v1/courses/{course_id}/links/revoke": {"learners": ["nobody"]},
+        "POST /v1/courses/{course_id}/scores/send": {},
+        "POST /v1/courses/{course_id}/assignments": ASSIGNMENT,
+        "POST /v1/courses/{course_id}/assignments/{assignment_id}": {"title": "Homework"},
+        "POST /v1/courses/{course_id}/assignments/{assignment_id}/extensions": {"learner": "ada"},
+        # The exercise has no variants.
+        "POST /v1/courses/{course_id}/assignments/{assignment_id}/variants": {
+            "learner": "ada",
+            "exercise": EXERCISE,
+        },
+        "POST /v1/courses/{course_id}/assignments/{assignment_id}/attempts": {
+            "exercise": EXERCISE,
+            "learner": "ada",
+            **ANSWERS,
+        },
+        "POST /tutor/check": FILE,
+        "POST /tutor/import": {"kind": "table", "text": "0 | 0 | 0.3 | q1", "id": "arm"},
+        "POST /tutor/drafts": FILE,
+        "POST /tutor/files": {**FILE, "id": "my-arm", "before": ""},
+        "POST /tutor/class": CLASS,
+    }
 
 
 _number = count()
@@ -176,7 +180,7 @@ class Guarded:
         for file in self.editor_dir.iterdir():
             file.unlink()
         new = {"id": f"new-{next(_number)}"} if route in MAKING else {}
-        body = json.dumps(BODIES[route] | new).encode() if route in BODIES else b""
+        body = json.dumps(bodies()[route] | new).encode() if route in bodies() else b""
         if route == "POST /tutor/class":
             body = gzip.compress(body)
         method, path = self.filled(route).split()
@@ -411,7 +415,7 @@ async def _told(guarded: Guarded, credential: str, mark: str) -> list[str]:
     routes = sorted(RIGHTS.keys() - {"POST /tutor/class"})
     async with guarded.client(credential) as client:
         for route in routes:
-            body = json.dumps(BODIES[route]).encode() if route in BODIES else None
+            body = json.dumps(bodies()[route]).encode() if route in bodies() else None
             method, path = guarded.filled(route).split()
             headers = {"Idempotency-Key": f"{next(_number)}"}
             answer = await client.request(method, path, content=body, headers=headers)

@@ -11,8 +11,8 @@ from dh_grader.catalogue import Exercise
 
 from tests.attack.in_process import Post, grade_path
 from tests.expressions.fuzzing import PIECES, hostile, mutated, seeds
-from tests.grids.test_hostile import FRAGMENTS
-from tests.grids.writers import FORMATS
+from tests.pasting.test_hostile import FRAGMENTS
+from tests.pasting.writers import FORMATS
 from tests.shipped import shipped_exercises
 from tests.solutions.solved import solved
 

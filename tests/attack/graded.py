@@ -29,9 +29,8 @@ from tests.attack.formulas import (
     numbers,
 )
 from tests.attack.spellings import PLAIN, Spelling, Writer
-from tests.grading.support.exercise_texts import graded, one_part
-from tests.grading.support.submitting import handed_in, part
-from tests.grids.writers import FORMATS, TABLES
+from tests.grading.support.submitting import graded, handed_in, one_part, part
+from tests.pasting.writers import FORMATS, TABLES
 from tests.solutions.solved import memoized_by_exercise
 
 Suited = Callable[[str, Random], Spelling]

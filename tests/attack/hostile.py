@@ -22,7 +22,7 @@ from tests.attack import bodies
 from tests.attack.in_process import InProcess, Post, caches
 from tests.benchmarks.floors import stanford_pose
 from tests.expressions.fuzzing import next_outcome, texts
-from tests.grids import test_hostile as grids
+from tests.pasting import test_hostile as grids
 
 # The shares of the kinds of cases; a request costs as much as fifty texts.
 GRIDS: Final = 0.08

@@ -33,7 +33,7 @@ from tests.attack.formulas import (
 )
 from tests.attack.spellings import OPEN, SPELLINGS, Spelling, Writer
 from tests.expressions.corpus_files import ROBOT
-from tests.grids.writers import FORMATS
+from tests.pasting.writers import FORMATS
 
 # The largest share of texts that may be refused, in each spelling and in each format.
 REFUSED: Final = 0.02

@@ -13,10 +13,10 @@ from dh_grader.store.attempt_store import AttemptStore
 from playwright.sync_api import Page, ViewportSize, expect, sync_playwright
 
 from tests.api.serving import ROOT, announced_port
-from tests.attempts.recorded import LAZY, NO_TWIST, RIGHT, new_attempt, recorded_all
 from tests.browser.chromium import ABSENT, OPTIONS, find_chromium
 from tests.browser.fixtures import GUARD
 from tests.browser.steps import cells, open_exercise
+from tests.store.recorded import LAZY, NO_TWIST, RIGHT, new_attempt, recorded_all
 
 FOLDER: Final = ROOT / "docs" / "screenshots"
 SIZES: Final[Mapping[str, ViewportSize]] = {

@@ -8,13 +8,17 @@ import numpy as np
 import pytest
 from dh_grader.catalogue import Exercise, load_catalogue, load_exercise, shipped_folder
 from dh_grader.catalogue.kinds import DhTableSpec
+from dh_grader.catalogue.load import checked_digests
 from dh_grader.grading import Verdict
 from dh_grader.kinematics import Convention
 from numpy.typing import NDArray
 
+from tests.catalogue.checked import digests
 from tests.grading.support.submitting import full_marks, handed_in, part, table
 from tests.shipped import without_most_real_robots
 from tests.together import together
+
+# --- Test the shipped exercises
 
 Numbers = NDArray[np.float64]
 FILES = sorted(shipped_folder().glob("*.toml"))
@@ -135,3 +139,10 @@ def test_a_table_of_one_number_never_passes(
     report = part(handed_in(exercise, {spec.id: table([[number] * 4] * len(rows))}), spec.id)
     assert report.verdict in (Verdict.INCORRECT, Verdict.PARTIAL)
     assert report.points <= report.max_points * (0.75 if number == "0" else 0.5)
+
+
+# --- The list of exercise files that the tests have checked
+
+
+def test_the_list_has_the_shipped_exercises_as_they_are() -> None:
+    assert dict(checked_digests()) == digests(), "an exercise has changed; run make pages"

@@ -1,17 +1,25 @@
-"""Test the program as a process: its version, help, imports and output."""
+"""Test the program, its help, and the list of licences."""
 
 import importlib.metadata
 import json
 import os
+import re
 import subprocess
 import sys
+from collections.abc import Iterator
+from importlib.metadata import PackageNotFoundError, distribution
 from pathlib import Path
+from typing import Any
 
 import pytest
 import typer
 from dh_grader.cli import COMMANDS, commands_of
+from dh_grader.cli.licences import licence_of, licences, needed
+from typer.testing import CliRunner
 
 from tests.submissions import office_documents as office
+
+# --- Test the program as a process: its version, help, imports and output
 
 ROOT = Path(__file__).parents[2]
 DATABASES = {"sqlalchemy", "alembic", "psycopg", "sqlite3"}
@@ -210,3 +218,59 @@ def test_a_shell_completes_commands_and_their_options(words: str, expected: str)
         COMP_CWORD=str(len(words.split()) - 1),
     )
     assert result.stdout.decode().split() == [expected]
+
+
+# --- The help of all commands shows square brackets
+
+
+def commands(found: Any, *path: str) -> Iterator[tuple[tuple[str, ...], Any]]:
+    yield path, found
+    for name, each in getattr(found, "commands", {}).items():
+        yield from commands(each, *path, name)
+
+
+def bracketed(texts: list[str]) -> set[str]:
+    return {word for text in texts for word in re.findall(r"\[[a-z][^\[\]]*\]", text)}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_help_shows_the_words_in_brackets(name: str) -> None:
+    program = commands_of(name)
+    root = typer.main.get_command(program)
+    for path, command in commands(root):
+        result = CliRunner().invoke(program, [*path, "--help"], env={"COLUMNS": "200"})
+        assert result.exit_code == 0
+        assert "``" not in result.output, path
+        texts = [command.help or "", *(getattr(each, "help", "") or "" for each in command.params)]
+        assert [w for w in bracketed(texts) if w not in result.output] == [], path
+
+
+# --- Test the list of installed packages and their licences
+
+LOCK = (Path(__file__).parents[2] / "requirements.lock").read_text(encoding="utf-8")
+
+
+def test_every_locked_package_that_is_installed_is_listed_with_its_licence() -> None:
+    locked = set(re.findall(r"^([a-z0-9-]+)(?:\[[a-z0-9,-]+\])?==", LOCK, re.MULTILINE))
+    installed = set()
+    for name in locked:
+        try:
+            distribution(name)
+        except PackageNotFoundError:  # of another platform
+            continue
+        installed.add(name)
+    listed = needed("dh-grader")
+    assert len(installed) > 20
+    assert installed <= listed.keys()
+    unclear = {name for name, each in listed.items() if licence_of(each) == "see its files"}
+    text = "\n".join(licences())
+    for name, package in listed.items():
+        assert f"{package.name} {package.version}\n" in text
+        has_file = any("licen" in str(file).lower() for file in package.files or ())
+        assert has_file or name not in unclear
+
+
+def test_the_list_includes_the_texts_of_licences() -> None:
+    text = "\n".join(licences())
+    assert "Permission is hereby granted, free of charge" in text
+    assert "Redistributions of source code must retain" in text

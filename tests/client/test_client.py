@@ -1,8 +1,8 @@
-"""Test the sync and the async client, with real and with failing servers."""
+"""Test the client."""
 
 import json
 import socket
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from datetime import UTC, datetime
 from email.utils import format_datetime
 from random import Random
@@ -15,17 +15,25 @@ from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.client import (
     ExerciseSubmission,
     GraderClient,
+    GraderClientError,
     RequestRefusedError,
+    Retries,
     ServerUnreachableError,
     UnexpectedAnswerError,
+    checked_server,
+    client_options,
+    grade_many,
 )
+from dh_grader.client import grade as calls_grade
 from dh_grader.grading import Submission, Verdict, grade
-from dh_grader.submissions.bodies import MAX_SUBMISSIONS, read_json
+from dh_grader.submissions.bodies import MAX_BODY_SIZE, MAX_SUBMISSIONS, read_json
 
 from tests.api.serving import Served
 from tests.attack.bodies import model_of, spoiled
 from tests.client.conftest import Using
 from tests.client.scripted import http, scripted
+
+# --- Test the sync and the async client, with real and with failing servers
 
 READY = http(200, json.dumps({"exercises": []}))
 BUSY = {"type": "about:blank", "title": "Busy", "status": 503, "detail": "Wait.", "instance": "/"}
@@ -274,3 +282,122 @@ def test_an_unreachable_server_is_a_temporary_error(using: Using) -> None:
     with pytest.raises(ServerUnreachableError, match=f"127.0.0.1:{port} cannot be reached") as it:
         using(f"http://127.0.0.1:{port}", lambda client: client.exercises())
     assert it.value.is_temporary
+
+
+# --- Address
+
+
+@pytest.mark.parametrize(
+    ("server", "called"),
+    [
+        ("http://127.0.0.1:8000", "http://127.0.0.1:8000"),
+        ("https://grader.example.edu/", "https://grader.example.edu"),
+        ("https://example.edu:443/a/b/", "https://example.edu/a/b"),
+        ("http://[::1]:8000", "http://[::1]:8000"),
+    ],
+)
+def test_an_address_is_normalized(server: str, called: str) -> None:
+    assert checked_server(server) == called
+
+
+@pytest.mark.parametrize(
+    "server",
+    [
+        "", "localhost:8000", "grader.example.edu", "ftp://example.edu", "http://", "http://x:y",
+        "http://a b", "https://example.edu?a=b", "https://example.edu#a", "file:///etc",
+    ],
+)  # fmt: skip
+def test_an_invalid_address_is_refused(server: str) -> None:
+    with pytest.raises(ValueError, match="address of a server"):
+        checked_server(server)
+
+
+def test_a_password_in_an_address_is_refused_and_not_shown() -> None:
+    with pytest.raises(ValueError, match="only scheme") as caught:
+        checked_server("https://user:hunter2@example.edu")
+    assert "hunter2" not in str(caught.value)
+
+
+@pytest.mark.parametrize("key", ["", " ", "dhg 1", "dhg\r\nX-Admin: 1", "schlüssel", "dhg_\n"])
+def test_a_key_with_invalid_characters_is_refused_and_not_shown(key: str) -> None:
+    with pytest.raises(ValueError, match="The key is empty or") as caught:
+        client_options("http://x", key, 1.0)
+    assert not key.strip() or key.strip() not in str(caught.value)
+
+
+def test_a_key_is_sent_in_the_authorization_header() -> None:
+    options = client_options("http://x", "dhg_1", 1.0)
+    assert options["headers"]["Authorization"] == "Bearer dhg_1"
+    assert "Authorization" not in client_options("http://x", None, 1.0)["headers"]
+
+
+# --- Calls
+
+
+def bodies(answers: Sequence[Any]) -> list[bytes]:
+    submissions = (ExerciseSubmission(exercise="x", answers={"t": each}) for each in answers)
+    return [call.body or b"" for call in grade_many(submissions)]
+
+
+@pytest.mark.parametrize(
+    ("answer", "of_each"),
+    [
+        (1, MAX_SUBMISSIONS),
+        ("θ" * 6_000, 21),  # 12,000 bytes of the 256 KiB
+        ([[]] * 200, 24),  # 204 lists and objects in all, of 5,000
+        ([0] * 1_000, 19),  # 1,001 commas in all, of 20,000
+    ],
+)
+def test_a_request_has_as_many_submissions_as_the_service_accepts(
+    answer: object, of_each: int
+) -> None:
+    sent = bodies([answer] * (2 * of_each + 1))
+    lists = [json.loads(body)["submissions"] for body in sent]
+    assert [len(each) for each in lists] == [of_each, of_each, 1]
+    for body in sent:
+        assert len(body) <= MAX_BODY_SIZE
+        read_json(body)  # raises an error over a limit
+
+
+def test_a_submission_that_is_too_large_is_sent_alone() -> None:
+    assert len(bodies([1, "x" * MAX_BODY_SIZE, 1])) == 3
+    assert bodies([]) == []
+
+
+def test_values_that_json_lacks_arrive_as_text() -> None:
+    answers = {"t": [float("nan"), float("-inf"), "\ud800", "θ"]}
+    assert read_json(calls_grade("x", answers).body or b"") == {
+        "answers": {"t": ["NaN", "-Infinity", "\ufffd", "θ"]}
+    }
+
+
+# --- Retries
+
+RETRIES_BUSY = GraderClientError("busy", is_temporary=True)
+
+
+def test_the_waits_double_up_to_the_longest_and_are_random() -> None:
+    retries = Retries(number=9, first_wait=0.5, longest_wait=4.0)
+    for failures, longest in enumerate((0.5, 1.0, 2.0, 4.0, 4.0), start=1):
+        waits = [retries.wait(failures, RETRIES_BUSY) or 0.0 for _ in range(200)]
+        assert longest / 2 <= min(waits) < 0.6 * longest
+        assert 0.9 * longest < max(waits) <= longest
+
+
+def test_the_default_waits_are_fifteen_seconds_in_all() -> None:
+    longest = [max(Retries().wait(i, RETRIES_BUSY) or 0.0 for _ in range(500)) for i in range(1, 6)]
+    assert sum(longest) == pytest.approx(15.5, rel=0.02)
+    assert Retries().wait(6, RETRIES_BUSY) is None
+
+
+def test_a_wait_is_at_least_as_long_as_the_service_asks() -> None:
+    retries = Retries(longest_wait=20.0)
+    asked = GraderClientError("busy", is_temporary=True, retry_after=20.0)
+    assert 20.25 <= (retries.wait(1, asked) or 0.0) <= 20.5
+    long = GraderClientError("busy", is_temporary=True, retry_after=20.1)
+    assert retries.wait(1, long) is None
+
+
+def test_permanent_failures_are_not_retried() -> None:
+    assert Retries().wait(1, GraderClientError("no")) is None
+    assert Retries(number=0).wait(1, RETRIES_BUSY) is None

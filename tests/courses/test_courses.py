@@ -1,11 +1,13 @@
-"""Test courses: hand-ins, due dates, extensions and the gradebook."""
+"""Test courses and assignments."""
 
 import asyncio
+import io
 import json
 import tomllib
+import zipfile
 from collections.abc import Mapping
 from dataclasses import replace
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,14 +17,23 @@ import pytest
 from dh_grader.access import Scope, Secret, new_key_text
 from dh_grader.access.key_ring import add_key, settle
 from dh_grader.api.http import ARRIVED
-from dh_grader.catalogue import Exercise
+from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.cli import program
+from dh_grader.client import GraderClient, RequestRefusedError
 from dh_grader.contract.courses import (
     AssignmentChange,
+    CourseChange,
+    DealRequest,
+    DeletionRequest,
     Extension,
+    LearnersRequest,
     LinksRequest,
     NewAssignment,
     NewCourse,
     NewLearner,
+    RemovalRequest,
+    RevokeLinksRequest,
+    SendAgainRequest,
 )
 from dh_grader.courses import CourseError, roll
 from dh_grader.courses.assignments import (
@@ -44,6 +55,7 @@ from dh_grader.courses.gradebook import (
 from dh_grader.courses.roll import issue_links, revoke_links
 from dh_grader.server import installed_app
 from dh_grader.settings import Settings
+from dh_grader.store.attempt_store import AttemptStore
 from dh_grader.store.database import in_transaction, open_database
 from dh_grader.store.results import forget
 from dh_grader.translations import ENGLISH
@@ -51,11 +63,15 @@ from dh_grader.web.courses import CourseState, assignment_page
 from dh_grader.web.pages import load_assets
 from pydantic import SecretStr
 from sqlalchemy import Connection
+from typer.testing import CliRunner
 
 from tests.access.kept_services import SECRET
-from tests.attempts.databases import KINDS
+from tests.api.serving import served
 from tests.courses.conftest import ADDRESS, NO_TWIST, NOW, RIGHT, Class, days
-from tests.courses.results.test_workbook import as_tutor, sheets
+from tests.courses.test_gradebook import as_tutor, sheets
+from tests.store.databases import KINDS
+
+# --- Test courses: hand-ins, due dates, extensions and the gradebook
 
 
 def points(class_: Class) -> list[list[float | None]]:
@@ -515,3 +531,202 @@ def test_links_begin_with_the_public_address(
     answer, page = asyncio.run(asked())
     assert answer.json()["links"][0]["link"].startswith(begin)
     assert f",{begin}" in page.text
+
+
+# --- The client has a working method for every route of courses
+
+_CHOSEN = [{"exercise": "scara", "points": 10}]
+CLIENT_METHODS_SECRET = "0123456789abcdef" * 4
+
+
+def administrator(database: str) -> str:
+    store, text, now = AttemptStore.open(database), new_key_text(), datetime.now(UTC)
+    digest, until = Secret(CLIENT_METHODS_SECRET).key_digest(text), now + timedelta(days=1)
+    in_transaction(
+        store.engine, lambda it: add_key(it, "", digest, [Scope.TUTOR], None, now, until)
+    )
+    store.close()
+    return text
+
+
+@pytest.mark.long
+def test_every_route_of_courses_has_a_method(tmp_path: Path) -> None:
+    database = str(tmp_path / "attempts.db")
+    key = administrator(database)
+    new = NewAssignment.model_validate({"id": "hw", "title": "H", "exercises": _CHOSEN})
+    options = {"DH_GRADER_DATABASE": database, "DH_GRADER_SECRET": CLIENT_METHODS_SECRET}
+    with served(tmp_path, **options) as server, GraderClient(server.address, key) as tutor:
+        tutor.create_course(NewCourse(id="robots", title="Robots", zone="Europe/Berlin"))
+        assert tutor.change_course("robots", CourseChange(title="Arms")).title == "Arms"
+        assert tutor.course("robots").zone == "Europe/Berlin"
+        # An id may have characters that an address reserves.
+        people = tutor.add_learners("robots", LearnersRequest(csv="id,name\na/?1,Ada\nu2,Grace\n"))
+        assert (people.listed, people.added) == (2, 2)
+        assert people.learners == tutor.learners("robots").learners
+        tutor.create_assignment("robots", new)
+        later = Extension.model_validate({"learner": "a/?1", "limit": 7})
+        assert tutor.extend("robots", "hw", later).extensions[0].limit == 7
+        change = AssignmentChange(solution="after_due", title="Homework")
+        assert tutor.change_assignment("robots", "hw", change) == tutor.assignment("robots", "hw")
+        varied = {"exercise": "planar-rr-numbers", "points": 2}
+        both = AssignmentChange.model_validate({"exercises": [*_CHOSEN, varied], "variants": True})
+        tutor.change_assignment("robots", "hw", both)
+        wanted = DealRequest(learner="a/?1", exercise="planar-rr-numbers")
+        dealt = tutor.deal_variant("robots", "hw", wanted)
+        assert tutor.variants("robots", "hw", "a/?1").variants == [dealt]
+        assert tutor.exercise(dealt.variant).title
+        tutor.change_assignment("robots", "hw", AssignmentChange(exercises=new.exercises))
+        links = {each.learner: each.link for each in tutor.links("robots", LinksRequest()).links}
+        with GraderClient(server.address, links["a/?1"].partition("#")[2]) as ada:
+            made = ada.hand_in("robots", "hw", "scara", NO_TWIST, idempotency_key="1")
+            assert made == ada.hand_in("robots", "hw", "scara", NO_TWIST, idempotency_key="1")
+            own = ada.own_courses().courses
+            with pytest.raises(RequestRefusedError) as refused:
+                ada.assigned_solution("robots", "hw", "scara")
+            assert refused.value.code == "solution-not-shown"
+            past = {"due": datetime.now(UTC) - timedelta(days=1), "closes": None}
+            tutor.change_assignment("robots", "hw", AssignmentChange.model_validate(past))
+            assert ada.assigned_solution("robots", "hw", "scara").exercise == "scara"
+        [left] = tutor.missing("robots", "hw").missing
+        assert left.name == "Grace"
+        seen = tutor.learner_view("robots", "a/?1").courses
+        assert (
+            seen[0].assignments[0].exercises[0].attempts
+            == own[0].assignments[0].exercises[0].attempts
+        )
+        [ada_, grace] = tutor.gradebook("robots", "hw").rows
+        assert ada_.points[0] == pytest.approx(ada_.total)
+        assert grace.points == [None]
+        workbook = tutor.gradebook_file("robots", "xlsx")
+        assert "xl/workbook.xml" in zipfile.ZipFile(io.BytesIO(workbook)).namelist()
+        assert tutor.gradebook_file("robots", "csv", "hw").startswith(b"learner,name,email,")
+        with pytest.raises(RequestRefusedError):
+            tutor.gradebook("robots", "none")
+        assert tutor.scores("robots", "hw", "u2", failed=True).scores == []
+        assert tutor.send_scores("robots", SendAgainRequest(assignment="hw")).queued == 0
+        assert tutor.regrade("scara", course="robots").regraded == 0
+        assert tutor.revoke_links("robots", RevokeLinksRequest(learners=["u2"])).revoked == 1
+        removal = RemovalRequest(learner="u2", apply=True)
+        assert tutor.remove_learner("robots", removal).deleted
+        every = DeletionRequest(apply=True, with_attempts=True)
+        assert not tutor.delete_course("robots", DeletionRequest()).deleted
+        assert tutor.delete_assignment("robots", "hw", every).attempts == 1
+        assert tutor.assignments("robots").assignments == []
+        assert tutor.delete_course("robots", every).learners == 1
+        assert tutor.courses().courses == []
+
+
+# --- Create an assignment from a file or options, or refuse it with a reason
+
+FILE = """
+title = "Homework 5"
+feedback = "verdicts"
+
+[[exercises]]
+id = "scara"
+points = 30
+"""
+OWN = '[[exercises]]\npath = "{path}"\n'
+
+
+@pytest.mark.sampled(2)
+@pytest.mark.parametrize(
+    ("more", "said"),
+    [
+        ("", ""),
+        ('[[exercises]]\nid = "planar-rr"\nparts = ["table"]\n', "planar-rr: an assignment of a"),
+        (OWN, "planar-rrr: an assignment of a course has whole exercises"),
+        ('[[exercises]]\nid = "no-such"\n', "no-such"),
+    ],
+)
+def test_an_assignment_file_is_taken_whole_or_refused(
+    class_: Class, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, more: str, said: str
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    own = tmp_path / "planar-rrr.toml"
+    shipped = Path(__file__).parents[2] / "exercises/planar-rrr.toml"
+    own.write_bytes(shipped.read_bytes())
+    file = tmp_path / "homework.toml"
+    file.write_text(FILE + more.format(path=own.name), encoding="utf-8")
+    words = ["courses", "assignments", "add", "robots", "homework-5", "--file", str(file)]
+    told = CliRunner().invoke(program, words)
+    assert told.exit_code == (2 if said else 0), told.output
+    assert said in " ".join(told.output.split())
+    if not said:
+        assert "homework-5: Homework 5, 30 points" in told.output
+        assert "feedback verdicts" in told.output
+    listed = CliRunner().invoke(program, ["courses", "assignments", "list", "robots"]).output
+    assert ("homework-5" in listed) is (said == "")
+
+
+@pytest.mark.long
+def test_an_assignment_file_may_set_variants(
+    class_: Class, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    file = tmp_path / "homework.toml"
+    varied = '[[exercises]]\nid = "planar-rr-numbers"\n'
+    file.write_text(f'title = "Numbers"\nvariants = true\n{varied}', encoding="utf-8")
+    add = ["courses", "assignments", "add", "robots"]
+    done = CliRunner().invoke(program, [*add, "one", "--file", str(file)])
+    assert "each learner has variants of their own" in done.output
+    done = CliRunner().invoke(program, [*add, "two", "--file", str(file), "--no-variants"])
+    assert "Numbers" in done.output
+    assert "variants" not in done.output
+    checked = CliRunner().invoke(program, ["assignments", "check", str(file)])
+    assert "each learner has variants of their own" in checked.output
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (
+            ["--exercise", "scara=10", "--due", "15.10.2026"],
+            "This must be a date, such as 2026-12-01",
+        ),
+        (["--exercise", "skara=10"], "There is no exercise skara. Did you mean scara?"),
+    ],
+)
+def test_a_mistyped_assignment_is_refused_with_advice(
+    class_: Class, monkeypatch: pytest.MonkeyPatch, options: list[str], said: str
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    words = ["courses", "assignments", "add", "robots", "hw", "--title", "Homework", *options]
+    told = CliRunner().invoke(program, words)
+    assert told.exit_code == 2
+    assert said in " ".join(told.output.split())
+
+
+@pytest.mark.long
+def test_the_command_says_when_a_service_reads_a_new_file(
+    class_: Class, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    folder = tmp_path / "own"
+    folder.mkdir()
+    text = (shipped_folder() / "planar-rr.toml").read_text(encoding="utf-8")
+    (folder / "brand-new.toml").write_text(text, encoding="utf-8")
+    monkeypatch.setenv("DH_GRADER_EXERCISES_DIR", f"{folder}:shipped")
+    add = ["courses", "assignments", "add", "robots"]
+    said = CliRunner().invoke(program, [*add, "one", "--exercise", "brand-new=3"]).output
+    assert "brand-new: if the file is new, restart the service." in said
+    assert "restart" not in CliRunner().invoke(program, [*add, "two", "--exercise", "scara"]).output
+    monkeypatch.setenv("DH_GRADER_RELOAD_EXERCISES", "true")
+    said = CliRunner().invoke(program, [*add, "three", "--exercise", "brand-new=3"]).output
+    assert "restart" not in said
+
+
+@pytest.mark.long
+def test_the_command_says_which_rules_have_no_effect(
+    class_: Class, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("DH_GRADER_DATABASE", str(class_.store.engine.url.database))
+    add = ["courses", "assignments", "add", "robots", "hw", "--exercise", "scara", "--variants"]
+    said = CliRunner().invoke(program, [*add, "--due", "2026-10-15 23:59"]).output
+    assert "no late attempts" in said
+    assert "but not in scara: no variants there" in said
+    change = ["courses", "assignments", "change", "robots", "hw"]
+    said = CliRunner().invoke(program, [*change, "--closes", "2026-10-17 23:59"]).output
+    assert "late attempts earn 50%" in said
+    said = CliRunner().invoke(program, [*change, "--closes", "none", "--due", "none"]).output
+    assert "no due date" in said

@@ -39,8 +39,8 @@ from dh_grader.store.tables import assignments, attempts, deals
 from dh_grader.variants import built, seed_of
 from sqlalchemy import func, select, update
 
-from tests.attempts.recorded import regraded
 from tests.courses.conftest import Class
+from tests.store.recorded import regraded
 from tests.variants.varied_files import VARY, varied
 
 DEPLOYED = [f"seed{letter}" for letter in "abcdefghijkl"]

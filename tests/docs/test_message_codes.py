@@ -1,6 +1,6 @@
 """docs/messages.md lists exactly the message codes of the program."""
 
-# Its tables of slips are made from the records (`tests/docs/misconceptions`).
+# Its tables of slips are made from the records (`tests/docs/misconception_records.py`).
 
 import json
 import re
@@ -21,8 +21,7 @@ from dh_grader.pasting import GRID_LIMITS
 
 from tests.docs.codes import CodeUse, HiddenCodeError, codes_in, sources
 from tests.expressions.corpus_files import ROBOT
-from tests.grading.support.exercise_texts import all_codes
-from tests.grading.support.submitting import as_data, handed_in, part
+from tests.grading.support.submitting import all_codes, as_data, handed_in, part
 from tests.together import together
 
 ROOT = Path(__file__).parents[2]

@@ -1,4 +1,4 @@
-"""Test properties that hold for every formula."""
+"""Test what holds for all formulas and for random texts."""
 
 import xml.etree.ElementTree as ET
 from operator import add, mul, sub
@@ -6,7 +6,7 @@ from operator import add, mul, sub
 import numpy as np
 import pytest
 import sympy
-from dh_grader.expressions import ExpressionError, Symbol, Vocabulary, joint_variable, read
+from dh_grader.expressions import LIMITS, ExpressionError, Symbol, Vocabulary, joint_variable, read
 from dh_grader.expressions.parser import in_degrees
 from dh_grader.expressions.printing import to_text
 from dh_grader.expressions.vocabulary import (
@@ -21,6 +21,13 @@ from dh_grader.expressions.vocabulary import (
 )
 from hypothesis import example, given
 from hypothesis import strategies as st
+
+from tests.expressions.corpus_files import ROBOT
+from tests.expressions.fuzzing import PIECES, hostile, outcome, seeds, texts
+from tests.guards import STALL
+from tests.together import together
+
+# --- Test properties that hold for every formula
 
 ARM = Vocabulary(
     [
@@ -160,7 +167,7 @@ def _check(error: ExpressionError, source: str | float) -> None:
     assert error.message.isprintable()
 
 
-PIECES = [
+FORMULA_PIECES = [
     *("q1", "θ", "₁", "²", "sin", "c12", "(", ")", "*", "^", "-", " ", "½", "°", "deg", ",", "_{"),
     *("}", "\\", "theta", "1", ".", "e", "√", "=", "\u200b", "а", "k"),
 ]
@@ -169,7 +176,7 @@ PIECES = [
 @pytest.mark.long
 @given(
     st.text(max_size=40)
-    | st.lists(st.sampled_from(PIECES), max_size=20).map("".join)
+    | st.lists(st.sampled_from(FORMULA_PIECES), max_size=20).map("".join)
     | st.integers()
     | st.floats()
 )
@@ -197,3 +204,71 @@ def test_nothing_but_an_expression_error_escapes(source: str | float) -> None:
 def test_a_number_keeps_its_value(number: float) -> None:
     assert read(number, ARM).evaluate({}) == number
     assert read(repr(number), ARM).evaluate({}) == number
+
+
+# --- Any text is read quickly, and always with the same result
+
+HOSTILE = hostile()
+
+formulas: st.SearchStrategy[str] = st.recursive(
+    st.sampled_from(["q1", "θ₁", r"\theta_2", "l1", "2", "0.5", "π", "c12", "90°", "½", "d3*"]),
+    lambda inner: st.one_of(
+        st.tuples(inner, st.sampled_from([*"+-*/^·", " ", r"\cdot ", ".*", "**"]), inner).map(
+            "".join
+        ),
+        st.tuples(st.sampled_from(["sin", "cos ", r"\tan", "√", "sin^2", "-"]), inner).map("".join),
+        st.tuples(
+            st.sampled_from(["(", r"\left(", "[", "{", "sin("]), inner, st.sampled_from(")]}")
+        ).map("".join),
+        st.tuples(inner, inner).map(lambda parts: rf"\frac{{{parts[0]}}}{{{parts[1]}}}"),
+    ),
+    max_leaves=15,
+)
+
+
+def _check_text(text: str) -> None:
+    for degrees in (False, True):
+        first, second = outcome(text, degrees=degrees), outcome(text, degrees=degrees)
+        assert first.fingerprint == second.fingerprint
+        # A garbage collection may slow one of the two.
+        assert min(first.seconds, second.seconds) < STALL
+
+
+@given(formulas)
+def test_random_formulas_give_one_result(text: str) -> None:
+    _check_text(text)
+
+
+@pytest.mark.long
+@given(st.lists(st.sampled_from(PIECES), max_size=25).map("".join) | st.text(max_size=60))
+def test_random_texts_give_one_result(text: str) -> None:
+    _check_text(text)
+
+
+@given(st.sampled_from(seeds()), st.integers(0, 60), st.binary(max_size=6))
+def test_mutated_cases_give_one_result(text: str, at: int, put: bytes) -> None:
+    data = text.encode()
+    _check_text((data[:at] + put + data[at + 1 :]).decode("utf-8", "replace"))
+
+
+def test_a_sample_of_the_fuzz_campaign_gives_one_result() -> None:
+    for text in texts(300, seed=1):
+        _check_text(text)
+
+
+@pytest.mark.long
+@together("text", HOSTILE)
+def test_hostile_texts_give_one_result(text: str) -> None:
+    _check_text(text)
+
+
+@pytest.mark.parametrize("text", [text for text in HOSTILE if "__" in text or "import" in text])
+def test_program_code_is_refused(text: str) -> None:
+    with pytest.raises(ExpressionError):
+        read(text, ROBOT)
+
+
+def test_a_text_that_is_too_long_is_refused_at_once() -> None:
+    with pytest.raises(ExpressionError) as caught:
+        read("(" * 10_000_000, ROBOT)
+    assert (caught.value.code, caught.value.span[0]) == ("too_long", LIMITS.characters)

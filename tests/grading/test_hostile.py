@@ -1,30 +1,45 @@
-"""Every submission, even a hostile one, soon gets a report."""
+"""Test hostile answers, and the limit of work."""
 
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 import pytest
 from dh_grader.catalogue import Exercise
 from dh_grader.expressions import LIMITS
-from dh_grader.grading import FeedbackLevel, Report, Submission, UnknownPartError, Verdict, grade
+from dh_grader.grading import (
+    FeedbackLevel,
+    PartReport,
+    Report,
+    Submission,
+    UnknownPartError,
+    Verdict,
+    grade,
+)
+from dh_grader.grading.reading import preview_pasted
+from dh_grader.grading.report import WorkBudget, messages_of
 from hypothesis import given
 from hypothesis import strategies as st
 
-from tests.grading.support.robots import EXACT, STANFORD
+from tests.grading.support.robots import EXACT, RRRP, STANFORD
 from tests.grading.support.submitting import (
+    about,
     as_data,
     cell,
     codes_at,
     handed_in,
     not_correct,
     part,
+    points,
     table,
 )
-from tests.grading.support.worth import about, points
 from tests.guards import STALL
+from tests.pasting.writers import FORMATS
+from tests.solutions.solved import solved
 from tests.together import together
+
+# --- Every submission, even a hostile one, soon gets a report
 
 
 def nested(levels: int, core: Any = 0) -> Any:
@@ -319,3 +334,176 @@ def test_any_json_gets_a_report(
     assert 0 <= report.points <= report.max_points
     assert report.points == pytest.approx(sum(part.points for part in report.parts))
     json.dumps(as_data(report), allow_nan=False)
+
+
+# --- Every pasted text gets a report
+
+HEADERS = ["a [mm]", "alpha (deg)", "d", "theta"]
+SEEDS = [write([HEADERS, *EXACT.rows(RRRP)]) for write in FORMATS.values()]
+FRAGMENTS = [
+    "[", "]", "(", ")", "<td>", "&", "\\\\", "|", '"', "'", ";", ",", "\n", "\t", " ", "=", "$",
+    "\ud800", "\u202e", "100", "l1", "a", "theta", "1/0", "1e400", "(mm)", "[deg]", "e", "i",
+]  # fmt: skip
+
+
+@st.composite
+def pastes(draw: st.DrawFn) -> str:
+    text = draw(st.sampled_from(SEEDS))
+    for _ in range(draw(st.integers(0, 5))):
+        start = draw(st.integers(0, len(text)))
+        end = min(len(text), start + draw(st.integers(0, 10)))
+        text = text[:start] + draw(st.sampled_from(FRAGMENTS)) + text[end:]
+    return text
+
+
+@pytest.mark.long
+@given(text=pastes() | st.text(max_size=80), level=st.sampled_from(list(FeedbackLevel)))
+def test_any_paste_gets_a_report(
+    catalogue: Mapping[str, Exercise], text: str, level: FeedbackLevel
+) -> None:
+    exercise = catalogue[RRRP.exercise]
+    submission = Submission({"table": text, "pose": text}, feedback=level)
+    report = grade(exercise, submission)
+    assert report == grade(exercise, submission)
+    assert 0 <= report.points <= report.max_points
+    json.dumps(as_data(report), allow_nan=False)
+    messages = [
+        message
+        for part in report.parts
+        for found in (part.feedback, *(c.feedback for row in part.rows for c in row.cells))
+        for message in found
+        if message.span is not None
+    ]
+    assert all(0 <= m.span[0] <= m.span[1] <= len(text) for m in messages if m.span)
+
+
+@pytest.mark.long
+@given(text=pastes() | st.text(max_size=80), part=st.sampled_from(["table", "pose"]))
+def test_any_paste_has_a_preview(catalogue: Mapping[str, Exercise], text: str, part: str) -> None:
+    shown = preview_pasted(text, catalogue[RRRP.exercise], part)
+    assert bool(shown.problem) != bool(shown.rows)
+    for row in shown.rows:
+        for each in row:
+            assert 0 <= each.span[0] <= each.span[1] <= len(text)
+            assert not (each.problem and each.text)
+
+
+# --- The search for explanations stops at a limit
+
+# Many kinds of wrong entries: signs, values, variables of other joints, decimals, undefined values.
+WRONG = ["-theta1", "d2 + 0.333", "0.707", "sin(theta1)", "1", "theta3", "0^-1", "c1*s2"]
+SHIPPED = ["stanford-arm", "scara", "spatial-rrr", "planar-rpr-poe", "simple-twist"]
+
+
+def spoilt(answer: object, every: int) -> object:
+    count = 0
+
+    def changed(inside: object) -> object:
+        nonlocal count
+        if isinstance(inside, list):
+            return [changed(each) for each in inside]
+        if isinstance(inside, dict):
+            return {
+                key: each if key == "convention" else changed(each) for key, each in inside.items()
+            }
+        count += 1
+        return WRONG[count % len(WRONG)] if count % every == 0 else inside
+
+    return changed(answer)
+
+
+def spoilt_answers(exercise: Exercise) -> Iterator[dict[str, object]]:
+    for every in (1, 2, 3, 7):
+        yield {part: spoilt(right, every) for part, right in solved(exercise).answers.items()}
+
+
+def marks(report: Report) -> list[tuple[object, ...]]:
+    return [
+        (part.part, part.verdict, part.points, row.label, row.verdict, row.points, cell.verdict)
+        for part in report.parts
+        for row in part.rows
+        for cell in row.cells
+    ]
+
+
+def told(report: Report) -> list[str]:
+    return [part.part for part in report.parts for m in part.feedback if m.code == "work_limit"]
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("name", SHIPPED)
+def test_marks_are_the_same_without_any_explanation(
+    name: str, catalogue: Mapping[str, Exercise], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    exercise = catalogue[name]
+    for answers in spoilt_answers(exercise):
+        explained = grade(exercise, Submission(answers))
+        with monkeypatch.context() as context:
+            context.setattr("dh_grader.grading.report.WorkBudget.affords", _affords_nothing)
+            bare = grade(exercise, Submission(answers))
+        assert marks(bare) == marks(explained), answers
+        assert len(told(bare)) <= 1
+
+
+def _affords_nothing(budget: WorkBudget, work: float) -> bool:
+    budget.has_left_out = True
+    return False
+
+
+def everything_wrong(exercise: Exercise) -> dict[str, object]:
+    return {part: spoilt(right, 1) for part, right in solved(exercise).answers.items()}
+
+
+def test_an_omission_gets_one_message(catalogue: Mapping[str, Exercise]) -> None:
+    # The 24 wrong cells of the table are explained before the seven wrong matrices.
+    exercise = catalogue["stanford-arm"]
+    report = grade(exercise, Submission(everything_wrong(exercise)))
+    assert len(told(report)) == 1
+    assert "value" in _codes(report.parts[0])
+    # Messages on unreadable or undefined entries do not need the budget for explanations.
+    assert _codes(report.parts[-1]) <= {"undefined", "unknown_joint"}
+
+
+def _codes(part: PartReport) -> set[str]:
+    return {message.code for message, *_ in messages_of(part)}
+
+
+@pytest.mark.parametrize("level", [FeedbackLevel.VERDICTS, FeedbackLevel.SCORE])
+def test_levels_without_hints_have_no_message_on_omissions(
+    level: FeedbackLevel, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue["stanford-arm"]
+    assert told(grade(exercise, Submission(everything_wrong(exercise), feedback=level))) == []
+
+
+def test_an_ordinary_wrong_answer_is_explained_completely(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    exercise = catalogue["stanford-arm"]
+    rows = [list(row) for row in EXACT.rows(STANFORD)]
+    rows[1][1], rows[3][1], rows[4][3] = "-pi/2", "0", "theta4"
+    answers = {**solved(exercise).answers, "table": {"rows": rows}}
+    assert told(grade(exercise, Submission(answers))) == []
+
+
+def test_reading_and_searches_reduce_the_work_for_explanations() -> None:
+    read, searched = WorkBudget(), WorkBudget()
+    assert read.charge_reading(14_000)
+    searched.charge_search(200.0)
+    assert searched.affords(70.0)
+    assert not searched.affords(20.0)
+    assert searched.has_left_out
+    assert WorkBudget().affords(140.0)
+    assert read.affords(140.0)
+    assert read.affords_search(140.0)
+    assert not read.affords(1.0)
+
+
+def test_searches_do_not_depend_on_explanations() -> None:
+    bare, explained = WorkBudget(), WorkBudget()
+    assert not explained.affords(500.0)
+    for budget in (bare, explained):
+        assert budget.affords_search(200.0)
+        # A refused search costs nothing.
+        assert not budget.affords_search(90.0)
+        assert budget.affords_search(10.0)

@@ -1,4 +1,4 @@
-"""Test the feedback levels of reports: full, hints, verdicts, score."""
+"""Test what the levels of feedback tell, and that it is told once."""
 
 import json
 from collections.abc import Mapping
@@ -24,15 +24,9 @@ from dh_grader.grading import (
 from dh_grader.grading.report import messages_of, with_shared_messages
 
 from tests.grading.support.robots import EXACT, STANFORD
-from tests.grading.support.submitting import (
-    as_data,
-    cell,
-    handed_in,
-    not_correct,
-    part,
-    row,
-    table,
-)
+from tests.grading.support.submitting import as_data, cell, handed_in, not_correct, part, row, table
+
+# --- Test the feedback levels of reports: full, hints, verdicts, score
 
 
 def answers() -> dict[str, Any]:
@@ -234,3 +228,61 @@ def test_echo_shows_how_each_cell_was_read(catalogue: Mapping[str, Exercise]) ->
     assert cell(report, "2", "d").read is None
     silent = part(handed_in(catalogue["planar-rrr"], {"table": table(rows)}), "table")
     assert not [c for row in silent.rows for c in row.cells if c.read]
+
+
+# --- A slip gets one message, and errors that it causes elsewhere get none
+
+TOLD_ONCE_STANFORD = """\
+0, -90deg, 0, theta1
+0, 90deg, d2, theta2
+0, 0, {d}, {theta}
+0, -90deg, 0, theta4
+0, 90deg, 0, theta5
+0, 0, d6, theta6"""
+RIGHT = TOLD_ONCE_STANFORD.format(d="d3", theta="0")
+
+
+def report(exercise: Exercise, part: str, answer: str, degrees: bool = False) -> PartReport:
+    graded = grade(exercise, Submission({part: answer}, "degrees" if degrees else "radians"))
+    return next(each for each in graded.parts if each.part == part)
+
+
+def told(part: PartReport) -> list[str]:
+    found = [*part.feedback, *(m for row in part.rows for m in row.feedback)]
+    found += [m for row in part.rows for cell in row.cells for m in cell.feedback]
+    return [m.code for m in found if m.code != "column_order"]
+
+
+def test_a_unit_slip_leaves_no_remark_on_frames(catalogue: Mapping[str, Exercise]) -> None:
+    in_radians = RIGHT.replace("90deg", "1.5708")
+    part = report(catalogue["stanford-arm"], "table", in_radians, degrees=True)
+    assert told(part) == ["radians_as_degrees"]
+
+
+def test_an_extra_row_gets_no_other_message(catalogue: Mapping[str, Exercise]) -> None:
+    first, *others = RIGHT.split("\n")
+    rows = "\n".join([first, "1, 45deg, 1, 1", *others])
+    assert told(report(catalogue["stanford-arm"], "table", rows)) == [
+        "rows_matched",
+        "row_too_many",
+    ]
+
+
+@pytest.mark.parametrize(
+    ("variable", "code"),
+    [("theta3", "joint_variable_absent"), ("d3", "joint_variable_column")],
+)
+def test_a_variable_in_the_wrong_column_is_one_slip(
+    variable: str, code: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    rows = TOLD_ONCE_STANFORD.format(d="0", theta=variable)
+    assert told(report(catalogue["stanford-arm"], "table", rows)) == [code]
+
+
+def test_a_message_on_the_home_pose_does_not_mention_joint_starts(
+    catalogue: Mapping[str, Exercise],
+) -> None:
+    pose = "[1, 0, 0, 1.037165; 0, 1, 0, 0; 0, 0, 1, 0.19135; 0, 0, 0, 1]"
+    [message] = report(catalogue["baxter-left-arm"], "home", pose).feedback
+    assert "joint 2 starts" not in message.message
+    assert "θ, the angle about the axis of joint 2, is not right" in message.message

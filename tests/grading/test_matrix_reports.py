@@ -2,7 +2,8 @@
 
 # SymPy multiplies out the poses from elementary turns and shifts.
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 
 import pytest
 import sympy as sp
@@ -88,173 +89,186 @@ def text(matrix: Matrix) -> list[list[str]]:
     return [[str(entry).replace("**", "^") for entry in matrix.row(i)] for i in range(matrix.rows)]
 
 
-SCARA_LINKS, STANFORD_LINKS = links(SCARA), links(STANFORD)
-SCARA_POSE, STANFORD_POSE = product(SCARA_LINKS), product(STANFORD_LINKS)
-R = STANFORD_POSE[:3, :3]
+@cache
+def links_of(robot: Robot) -> list[Matrix]:
+    return links(robot)
+
+
+@cache
+def pose_of(robot: Robot) -> Matrix:
+    return product(links_of(robot))
+
+
+def rotation() -> Matrix:
+    return pose_of(STANFORD)[:3, :3]
+
+
 WHOLE = {(i, j) for i in range(3) for j in range(4)}
 ROTATION = {(i, j) for i in range(3) for j in range(3)}
 POSITION = {(i, 3) for i in range(3)}
 
 # Robot, answer, the codes of the part's messages, words of them, and the entries they explain.
-Slip = tuple[Robot, Matrix, list[str], str, set[tuple[int, int]]]
+Slip = tuple[Robot, Callable[[], Matrix], list[str], str, set[tuple[int, int]]]
 SLIPS: dict[str, Slip] = {
     "inverse": (
         SCARA,
-        inverse_of(SCARA_POSE),
+        lambda: inverse_of(pose_of(SCARA)),
         ["inverse_transform"],
         "the inverse of the transform",
         WHOLE,
     ),
     "transposed throughout": (
         SCARA,
-        SCARA_POSE.T,
+        lambda: pose_of(SCARA).T,
         ["transposed_matrix"],
         "transposed",
         {(i, j) for i in range(4) for j in range(4)},
     ),
     "transposed rotation": (
         STANFORD,
-        with_rotation(STANFORD_POSE, R.T),
+        lambda: with_rotation(pose_of(STANFORD), rotation().T),
         ["transposed_rotation"],
         "The rotation is transposed",
         ROTATION,
     ),
     "reverse order": (
         STANFORD,
-        product(STANFORD_LINKS[::-1]),
+        lambda: product(links_of(STANFORD)[::-1]),
         ["reversed_product"],
         "A6·A5·A4·A3·A2·A1",
         WHOLE,
     ),
     "other convention": (
         STANFORD,
-        product(links(STANFORD, modified=True)),
+        lambda: product(links(STANFORD, modified=True)),
         ["other_convention"],
         "link transform of the modified convention",
         WHOLE,
     ),
     "stops early": (
         STANFORD,
-        product(STANFORD_LINKS[:5]),
+        lambda: product(links_of(STANFORD)[:5]),
         ["wrong_frame"],
         "the pose of frame {5}. The pose of frame {6} is asked for. Go on with A6.",
         WHOLE,
     ),
     "stops in the middle": (
         STANFORD,
-        product(STANFORD_LINKS[:3]),
+        lambda: product(links_of(STANFORD)[:3]),
         ["wrong_frame"],
         "Go on with A4·A5·A6.",
         WHOLE,
     ),
     "starts late": (
         STANFORD,
-        product(STANFORD_LINKS[1:]),
+        lambda: product(links_of(STANFORD)[1:]),
         ["wrong_base"],
         "seen from frame {1}. The pose in frame {0} is asked for. Put A1 in front.",
         WHOLE,
     ),
     "a link left out": (
         STANFORD,
-        product([*STANFORD_LINKS[:3], *STANFORD_LINKS[4:]]),
+        lambda: product([*links_of(STANFORD)[:3], *links_of(STANFORD)[4:]]),
         ["missing_link"],
         "the product without A4",
         WHOLE,
     ),
     "another link left out": (
         SCARA,
-        product([SCARA_LINKS[0], *SCARA_LINKS[2:]]),
+        lambda: product([links_of(SCARA)[0], *links_of(SCARA)[2:]]),
         ["missing_link"],
         "the product without A2",
         WHOLE,
     ),
     "one from the left": (
         STANFORD,
-        product([STANFORD_LINKS[2], *STANFORD_LINKS[:2], *STANFORD_LINKS[3:]]),
+        lambda: product([links_of(STANFORD)[2], *links_of(STANFORD)[:2], *links_of(STANFORD)[3:]]),
         ["premultiplied"],
         "A3·A1·A2·A4·A5·A6",
         WHOLE,
     ),
     "all from the left": (
         STANFORD,
-        product(links(STANFORD, modified=True)[::-1]),
+        lambda: product(links(STANFORD, modified=True)[::-1]),
         ["premultiplied"],
         "all rotations and translations, each put on the left",
         WHOLE,
     ),
     "inverse of the reverse order": (
         STANFORD,
-        product([inverse_of(link) for link in STANFORD_LINKS]),
+        lambda: product([inverse_of(link) for link in links_of(STANFORD)]),
         ["inverse_transform", "reversed_product"],
         "This is the inverse of the product",
         WHOLE,
     ),
     "position without the tool": (
         STANFORD,
-        with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]),
+        lambda: with_position(pose_of(STANFORD), product(links_of(STANFORD)[:5])[:3, 3]),
         ["distance_left_out"],
         "d, the offset along the axis of joint 6, is left out",
         POSITION,
     ),
     "rotation of another frame": (
         STANFORD,
-        with_rotation(STANFORD_POSE, product(STANFORD_LINKS[:4])[:3, :3]),
+        lambda: with_rotation(pose_of(STANFORD), product(links_of(STANFORD)[:4])[:3, :3]),
         ["wrong_frame"],
         "The rotation comes from the pose of frame {4}",
         ROTATION,
     ),
     "rotation and position, each its own way": (
         STANFORD,
-        with_rotation(with_position(STANFORD_POSE, product(STANFORD_LINKS[:5])[:3, 3]), R.T),
+        lambda: with_rotation(
+            with_position(pose_of(STANFORD), product(links_of(STANFORD)[:5])[:3, 3]), rotation().T
+        ),
         ["transposed_rotation", "distance_left_out"],
         "d6",
         WHOLE,
     ),
     "columns in another order": (
         STANFORD,
-        with_rotation(STANFORD_POSE, R[:, [1, 0, 2]]),
+        lambda: with_rotation(pose_of(STANFORD), rotation()[:, [1, 0, 2]]),
         ["columns_exchanged"],
         "Your columns are its y, x, z axes.",
         {(i, j) for i in range(3) for j in range(2)},
     ),
     "an axis turned over": (
         STANFORD,
-        STANFORD_POSE * sp.diag(1, -1, 1, 1),
+        lambda: pose_of(STANFORD) * sp.diag(1, -1, 1, 1),
         ["column_sign"],
         "Column 2 has the wrong sign throughout: check which way the y axis of the last frame",
         {(i, 1) for i in range(3)},
     ),
     "two axes turned over": (
         STANFORD,
-        STANFORD_POSE * sp.diag(-1, -1, 1, 1),
+        lambda: pose_of(STANFORD) * sp.diag(-1, -1, 1, 1),
         ["column_sign"],
         "Columns 1 and 2 have the wrong sign",
         {(i, j) for i in range(3) for j in range(2)},
     ),
     "position from the tool to the base": (
         STANFORD,
-        with_position(STANFORD_POSE, -STANFORD_POSE[:3, 3]),
+        lambda: with_position(pose_of(STANFORD), -pose_of(STANFORD)[:3, 3]),
         ["column_sign"],
         "check which way the position",
         POSITION,
     ),
     "a base axis turned over": (
         STANFORD,
-        sp.diag(1, 1, -1, 1) * STANFORD_POSE,
+        lambda: sp.diag(1, 1, -1, 1) * pose_of(STANFORD),
         ["row_sign"],
         "Row 3 has the wrong sign throughout: check which way the z axis of the first frame",
         {(2, j) for j in range(4)},
     ),
     "bottom row": (
         SCARA,
-        SCARA_POSE[:3, :].col_join(Matrix([[0, 0, 1, 0]])),
+        lambda: pose_of(SCARA)[:3, :].col_join(Matrix([[0, 0, 1, 0]])),
         ["bottom_row"],
         "It is 0 0 0 1.",
         {(3, 2), (3, 3)},
     ),
     "bottom row and inverse": (
         SCARA,
-        inverse_of(SCARA_POSE)[:3, :].col_join(Matrix([[1, 1, 1, 1]])),
+        lambda: inverse_of(pose_of(SCARA))[:3, :].col_join(Matrix([[1, 1, 1, 1]])),
         ["bottom_row", "inverse_transform"],
         "inverse",
         WHOLE | {(3, 0), (3, 1), (3, 2)},
@@ -275,7 +289,7 @@ def wrong_entries(report: PartReport) -> set[tuple[int, int]]:
 def test_a_misconception_explains_its_matrix(slip: Slip, catalogue: Mapping[str, Exercise]) -> None:
     # There is one message on the part, and none on the entries that it explains.
     robot, matrix, expected, words, explained = slip
-    report = graded_pose(catalogue[robot.exercise], text(matrix))
+    report = graded_pose(catalogue[robot.exercise], text(matrix()))
     assert [message.code for message in report.feedback] == expected
     assert all(message.severity is Severity.ERROR for message in report.feedback)
     told = [(message.message, message.correction) for message in report.feedback]
@@ -300,7 +314,7 @@ def test_a_correct_matrix_gets_no_messages(robot: Robot, catalogue: Mapping[str,
 
 
 def test_the_correction_is_not_shown_below_full(catalogue: Mapping[str, Exercise]) -> None:
-    answers = {"pose": text(product(STANFORD_LINKS[::-1]))}
+    answers = {"pose": text(product(links_of(STANFORD)[::-1]))}
     exercise = catalogue[STANFORD.exercise]
     [told] = part(handed_in(exercise, answers, feedback=FeedbackLevel.HINTS), "pose").feedback
     assert "Multiply" not in told.message
@@ -334,7 +348,7 @@ SINGLE: dict[str, tuple[Robot, dict[tuple[int, int], str], list[str], list[str]]
     "one sign": (SCARA, {(2, 3): "d3 + d4"}, [], ["sign"]),
     "signs apart": (
         STANFORD,
-        {(0, 0): f"-({STANFORD_POSE[0, 0]})", (1, 1): f"-({STANFORD_POSE[1, 1]})"},
+        {(0, 0): f"-({pose_of(STANFORD)[0, 0]})", (1, 1): f"-({pose_of(STANFORD)[1, 1]})"},
         [],
         ["sign", "sign"],
     ),
@@ -380,12 +394,12 @@ def test_wrong_entries_get_messages_of_their_own(
 
 
 def test_a_rotation_says_which_column_to_check(catalogue: Mapping[str, Exercise]) -> None:
-    pose = changed(SCARA_POSE, {(0, 0): "2*cos(q1 + q2 - q4)"})
+    pose = changed(pose_of(SCARA), {(0, 0): "2*cos(q1 + q2 - q4)"})
     message = graded_pose(catalogue[SCARA.exercise], pose).feedback[0]
     assert message.severity is Severity.HINT
     assert "column 1 is no unit vector" in message.message
     angle = "q1 + 2*q2 + 3*q4"
-    skewed = changed(SCARA_POSE, {(0, 1): f"cos({angle})", (1, 1): f"sin({angle})"})
+    skewed = changed(pose_of(SCARA), {(0, 1): f"cos({angle})", (1, 1): f"sin({angle})"})
     message = graded_pose(catalogue[SCARA.exercise], skewed).feedback[0]
     assert "columns 1 and 2 are not at right angles" in message.message
 
@@ -406,14 +420,14 @@ def test_the_work_budget_limits_explanations(catalogue: Mapping[str, Exercise]) 
     nonsense = "c1*s1*c2*s2*c4*s4*a1*a2*d3*d4*c1*s1*c2*s2*c4"
     for long, code in (("c1", "term_sign"), (nonsense, "value")):
         early = {(i, j): long for i in range(2) for j in range(4)}
-        report = graded_pose(exercise, changed(SCARA_POSE, early | late))
+        report = graded_pose(exercise, changed(pose_of(SCARA), early | late))
         assert codes_at(report, "3", "4")[-1:] == [code]
 
 
 def test_without_position_the_rotation_is_still_explained(
     catalogue: Mapping[str, Exercise],
 ) -> None:
-    matrix = text(with_rotation(STANFORD_POSE, R.T))
+    matrix = text(with_rotation(pose_of(STANFORD), rotation().T))
     for i in range(3):
         matrix[i][3] = "?"
     report = graded_pose(catalogue[STANFORD.exercise], matrix)

@@ -21,9 +21,9 @@ from dh_grader.store.tables import attempts
 from sqlalchemy import select
 
 from tests.attack.floods import costly
-from tests.attempts.databases import KINDS, new_database, new_file, postgresql_server
 from tests.load.clients import Mix, Results, submitted
 from tests.server.raw import Service, service
+from tests.store.databases import KINDS, new_database, new_file, postgresql_server
 
 P99 = 5.0
 MIXED = Mix(recorded=0.5)

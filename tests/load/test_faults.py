@@ -1,6 +1,6 @@
 """No attempt is lost or recorded twice when real faults happen under load."""
 
-# Clients send an attempt again until it is recorded. tests/attempts has short tests of these
+# Clients send an attempt again until it is recorded. tests/store has short tests of these
 # faults.
 
 import os
@@ -17,13 +17,13 @@ from pathlib import Path
 import httpx
 import pytest
 
-from tests.attempts.databases import new_database, new_file, postgresql_server
-from tests.attempts.recorded import NO_TWIST
 from tests.guards import ANSWER
 from tests.load.__main__ import MIXED, misrecorded, replicas
 from tests.load.clients import Mix, Results, submitted
 from tests.load.proxy import nginx
 from tests.server.raw import Service, service
+from tests.store.databases import new_database, new_file, postgresql_server
+from tests.store.recorded import NO_TWIST
 
 pytestmark = [
     pytest.mark.campaign,

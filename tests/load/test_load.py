@@ -5,10 +5,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.attempts.databases import new_file
 from tests.load.__main__ import MIXED, misrecorded
 from tests.load.clients import submitted
 from tests.server.raw import service
+from tests.store.databases import new_file
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs many loopback addresses")
 

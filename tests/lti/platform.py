@@ -20,8 +20,8 @@ from fastapi.responses import HTMLResponse, JSONResponse, Response
 from jwt.algorithms import RSAAlgorithm
 
 from tests.guards import ANSWER
+from tests.lti.file_store import FileStore
 from tests.lti.gradebook import Gradebook
-from tests.lti.handed_files.file_store import FileStore
 
 LTI: Final = "https://purl.imsglobal.org/spec/lti/claim/"
 AGS: Final = "https://purl.imsglobal.org/spec/lti-ags/"

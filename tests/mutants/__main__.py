@@ -46,8 +46,12 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "permissions": Package(
         ["service/dh_grader/api/permissions.py"],
-        ["tests/api/permissions", "tests/api/test_scopes.py", "tests/api/test_sign_in.py"],
-        ["tests/api/permissions"],
+        [
+            "tests/api/test_permissions.py",
+            "tests/api/test_authentication.py",
+            "tests/api/test_scopes.py",
+        ],
+        ["tests/api/test_permissions.py", "tests/api/test_authentication.py"],
     ),
     "terms": Package(
         ["service/dh_grader/courses/assignments.py"],
@@ -60,32 +64,40 @@ PACKAGES: Final[Mapping[str, Package]] = {
     ),
     "gradebook": Package(
         ["service/dh_grader/courses/gradebook.py"],
-        ["tests/courses/results", "tests/courses/test_courses.py"],
-        ["tests/courses/results"],
+        ["tests/courses/test_gradebook.py", "tests/courses/test_courses.py"],
+        ["tests/courses/test_gradebook.py"],
     ),
     "results": Package(
         ["service/dh_grader/store/results.py"],
-        [
-            "tests/attempts/results",
-            "tests/api/recording/test_listing.py",
-            "tests/api/recording/test_managing.py",
-        ],
-        ["tests/attempts/results"],
+        ["tests/store/test_results.py", "tests/api/test_recording.py"],
+        ["tests/store/test_results.py"],
     ),
     "fair_points": Package(
         ["service/dh_grader/grading/judging_table.py"],
-        ["tests/grading/judging", "tests/grading/test_unread_cells.py", "tests/frame_choice/rows"],
-        ["tests/grading/judging/marking/test_fair_points.py"],
+        [
+            "tests/grading/frames",
+            "tests/grading/test_fair_points.py",
+            "tests/grading/test_judging_table.py",
+            "tests/grading/test_marks.py",
+            "tests/grading/test_points.py",
+            "tests/grading/test_unread_cells.py",
+            "tests/frame_choice/rows",
+        ],
+        ["tests/grading/test_fair_points.py"],
     ),
     "marks": Package(
         ["service/dh_grader/grading/marks.py", "service/dh_grader/grading/report.py"],
-        ["tests/grading/judging/marking", "tests/grading/test_points.py"],
-        ["tests/grading/judging/marking/test_m", "tests/grading/judging/marking/test_w"],
+        [
+            "tests/grading/test_marks.py",
+            "tests/grading/test_fair_points.py",
+            "tests/grading/test_points.py",
+        ],
+        ["tests/grading/test_marks.py", "tests/grading/test_points.py"],
     ),
     "comparison": Package(
         ["service/dh_grader/grading/numbers.py"],
-        ["tests/grading/numerics", "tests/grading/test_rounding.py"],
-        ["tests/grading/numerics"],
+        ["tests/grading/test_numbers.py", "tests/grading/test_rounding.py"],
+        ["tests/grading/test_numbers.py"],
     ),
 }
 

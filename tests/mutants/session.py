@@ -46,7 +46,7 @@ Cache: TypeAlias = "_lru_cache_wrapper[Any]"
 
 def _databases() -> Any:
     # A plugin of the suite, which pytest must be the first to import.
-    return importlib.import_module("tests.attempts.databases")
+    return importlib.import_module("tests.store.databases")
 
 
 @dataclass(slots=True)

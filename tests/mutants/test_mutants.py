@@ -178,15 +178,15 @@ def test_each_equivalent_mutant_is_one_of_the_code() -> None:
 
 @pytest.mark.long
 def test_the_runner_kills_a_mutant_and_lets_an_equivalent_one_live() -> None:
-    file, home = "service/dh_grader/grading/marks.py", "tests/grading/judging/marking"
-    package = Package([file], [f"{home}/test_worth.py"], [home])
+    file, home = "service/dh_grader/grading/marks.py", "tests/grading/test_points.py"
+    package = Package([file], [home], [home])
     results = tried(package, functions=["_unit"])
     ends = {each.after: each for each in results}
     killed = ends["most = max(least, (total - groups) * cells)"]
     assert (killed.end, killed.function, killed.before) == (
         "killed", "_unit", "most = max(least, (total - groups) // cells)"
     )  # fmt: skip
-    assert killed.by.startswith(f"{home}/test_worth.py::test_")
+    assert killed.by.startswith(f"{home}::test_")
     # Where this limit counts, the other limit, ``least``, is the larger one.
     equal = "exact = total / (cells + groups * min(BESIDES, MOST_BESIDES * cells * groups))"
     assert ends[equal].end == "survived"
@@ -195,7 +195,7 @@ def test_the_runner_kills_a_mutant_and_lets_an_equivalent_one_live() -> None:
 
 @pytest.mark.long
 def test_the_runner_changes_files_that_load_a_plugin_of_pytest() -> None:
-    home = "tests/api/permissions"
-    package = Package(["service/dh_grader/api/permissions.py"], [f"{home}/test_access.py"], [home])
+    home = "tests/api/test_permissions.py"
+    package = Package(["service/dh_grader/api/permissions.py"], [home], [home])
     results = tried(package, functions=["is_loopback"])
     assert {each.end for each in results} == {"killed"}

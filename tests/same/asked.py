@@ -21,7 +21,7 @@ from tests.expressions.corpus_files import cases, repair_cases, repairs
 from tests.frame_choice import misconceptions
 from tests.frame_choice.generator import reassignment
 from tests.frame_choice.robots import POLICIES, Robot, conventions
-from tests.frame_choice.rows.shipped_robots import shipped_robots
+from tests.frame_choice.rows.student_rows import shipped_robots
 from tests.grading.diagnosis.traces import answered, exercises
 from tests.grading.reading.pasted_texts import languages, texts
 from tests.worst.bodies import KNOWN

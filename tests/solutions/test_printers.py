@@ -1,7 +1,4 @@
-"""Model solutions get full marks in the output formats of programs such as MATLAB."""
-
-# `tests.solutions.prints` defines these formats and submits every solution in every format; this
-# file submits a sample.
+"""Test solutions in the formats that other programs print."""
 
 from collections.abc import Callable, Mapping
 from functools import partial, reduce
@@ -11,17 +8,24 @@ from random import Random
 import pytest
 import sympy
 from dh_grader.catalogue import Exercise, shipped_folder
+from dh_grader.catalogue.kinds import DhTableSpec
 from dh_grader.expressions import LIMITS, Expression, read
-from dh_grader.kinematics import Convention
+from dh_grader.kinematics import COLUMNS, Convention
 from dh_grader.solutions.algebra import Algebra
 from sympy.printing.numpy import NumPyPrinter
 
 from tests.grading.support.submitting import full_marks, handed_in
+from tests.pasting.writers import FORMATS
 from tests.samples import one_in
 from tests.shipped import sampled
 from tests.solutions.prints import PRINTERS as MATRIX_PRINTERS
 from tests.solutions.prints import Print, prints, refused
 from tests.solutions.solved import memoized_by_exercise, solved
+
+# --- Model solutions get full marks in the output formats of programs such as MATLAB
+
+# `tests.solutions.prints` defines these formats and submits every solution in every format; this
+# file submits a sample.
 
 IDS = sorted(file.stem for file in shipped_folder().glob("*.toml"))
 PRINTERS: Mapping[str, Callable[[sympy.Expr], str]] = {
@@ -137,3 +141,29 @@ def multiplied_out(exercise: Exercise) -> sympy.Matrix:
         return sympy.Matrix([*lines, [0, 0, 0, 1]])
 
     return reduce(mul, map(link, table.rows)).expand()
+
+
+# --- The model table of every exercise, pasted in every format, gets full marks
+
+
+@pytest.mark.sampled(4)
+@pytest.mark.parametrize("exercise_id", sampled(IDS))
+def test_the_model_table_gets_full_marks_in_every_format(
+    exercise_id: str, catalogue: Mapping[str, Exercise]
+) -> None:
+    exercise = catalogue[exercise_id]
+    tables = [part for part in exercise.parts if isinstance(part, DhTableSpec)]
+    if not tables:
+        pytest.skip("asks for no table")
+    solution = {part.part: part.answer for part in solved(exercise).parts}
+    for part in tables:
+        answer = solution[part.id]
+        assert isinstance(answer, dict)
+        rows = [[str(row[column]) for column in COLUMNS] for row in answer["rows"]]
+        refused = []
+        for name, write in FORMATS.items():
+            report = handed_in(exercise, {part.id: write(rows)})
+            graded = next(each for each in report.parts if each.part == part.id)
+            if not full_marks(graded):
+                refused.append((name, write(rows), graded.feedback))
+        assert not refused, refused[:2]

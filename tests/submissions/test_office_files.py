@@ -1,31 +1,36 @@
-"""Files of office programs, notebooks and web editors are read, and hostile ones are refused."""
+"""Test tables in documents of office programs."""
 
 import io
 import json
 import time
 import zipfile
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from datetime import date
 from itertools import pairwise
 from pathlib import Path
 from typing import Any, Final
 
+import docx
 import openpyxl
 import pytest
+import xlwt
 from dh_grader.formats.graded import GradingTerms, graded
 from dh_grader.submissions import of_one
 from dh_grader.submissions.documents import Excerpt, UnusableFileError, decoded, typed_text
 from dh_grader.submissions.files import all_handed_in
-from dh_grader.submissions.office_files import (
-    OFFICE_ENDINGS,
-    excerpts,
-)
+from dh_grader.submissions.office_files import OFFICE_ENDINGS, excerpts
 from hypothesis import given
 from hypothesis import strategies as st
+from odf.opendocument import OpenDocumentSpreadsheet
+from odf.table import CoveredTableCell, Table, TableCell, TableRow
+from odf.text import P
 
 from tests.shipped import shipped_exercises
 from tests.submissions import office_documents as made
+from tests.submissions.office_documents import Rows, xlsx
+
+# --- Files of office programs, notebooks and web editors are read, and hostile ones are refused
 
 RRR: Final = shipped_exercises()["planar-rrr"]
 NUMBERS: Final = shipped_exercises()["planar-rr-numbers"]
@@ -290,50 +295,63 @@ ODS: Final = (
     '<t:table-cell t:number-columns-repeated="{columns}" o:value-type="float" o:value="1"/>'
     "</t:table-row></t:table></x>"
 )
-HOSTILE: Final = {
-    "no zip.xlsx": b"PK\x03\x04" + bytes(100),
-    "zeros.xlsx": xlsx_with(SHEET + bytes(50_000_000)),
-    "a million cells.xlsx": xlsx_with(SHEET + b"<row>" + CELL * 1_000_000 + b"</row>"),
-    "entities.xlsx": xlsx_with(LAUGHS + SHEET + b"</sheetData></worksheet>"),
-    "laughs in texts.xlsx": xlsx_with(b"", {"xl/sharedStrings.xml": BILLION_LAUGHS.encode()}),
-    "laughs in styles.xlsx": xlsx_with(b"", {"xl/worksheets/s2.xml": BILLION_LAUGHS.encode()}),
-    "deep.xlsx": xlsx_with(SHEET + b"<a>" * 100_000),
-    "a million rows.xlsx": xlsx_with(SHEET + b"<row/>" * 300_000 + b"</sheetData></worksheet>"),
-    "other tags.xlsx": xlsx_with(SHEET + b"<a/>" * 50_000 + b"</sheetData></worksheet>"),
-    "macros.xlsx": xlsx_with(b"", {"xl/vbaProject.bin": b"x"}),
-    "links.xlsx": xlsx_with(b"", {"xl/externalLinks/externalLink1.xml": b"<x/>"}),
-    "cut.xlsx": made.xlsx(RIGHT)[:-200],
-    "noise.xls": b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(range(256)) * 20,
-    "entities.ods": made.zipped({"content.xml": ODS_LAUGHS}),
-    "wide.ods": made.zipped({"content.xml": ODS.format(rows=1, columns=10**8).encode()}),
-    "long.ods": made.zipped({"content.xml": ODS.format(rows=10**8, columns=9).encode()}),
-    "a million cells.ods": made.zipped({"content.xml": b"<x>" + b"<c/>" * 500_000 + b"</x>"}),
-    "tables in tables.ods": made.zipped(
+# Made when they are read, because they are large.
+HOSTILE: Final[Mapping[str, Callable[[], bytes]]] = {
+    "no zip.xlsx": lambda: b"PK\x03\x04" + bytes(100),
+    "zeros.xlsx": lambda: xlsx_with(SHEET + bytes(50_000_000)),
+    "a million cells.xlsx": lambda: xlsx_with(SHEET + b"<row>" + CELL * 1_000_000 + b"</row>"),
+    "entities.xlsx": lambda: xlsx_with(LAUGHS + SHEET + b"</sheetData></worksheet>"),
+    "laughs in texts.xlsx": lambda: xlsx_with(
+        b"", {"xl/sharedStrings.xml": BILLION_LAUGHS.encode()}
+    ),
+    "laughs in styles.xlsx": lambda: xlsx_with(
+        b"", {"xl/worksheets/s2.xml": BILLION_LAUGHS.encode()}
+    ),
+    "deep.xlsx": lambda: xlsx_with(SHEET + b"<a>" * 100_000),
+    "a million rows.xlsx": lambda: xlsx_with(
+        SHEET + b"<row/>" * 300_000 + b"</sheetData></worksheet>"
+    ),
+    "other tags.xlsx": lambda: xlsx_with(SHEET + b"<a/>" * 50_000 + b"</sheetData></worksheet>"),
+    "macros.xlsx": lambda: xlsx_with(b"", {"xl/vbaProject.bin": b"x"}),
+    "links.xlsx": lambda: xlsx_with(b"", {"xl/externalLinks/externalLink1.xml": b"<x/>"}),
+    "cut.xlsx": lambda: made.xlsx(RIGHT)[:-200],
+    "noise.xls": lambda: b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(range(256)) * 20,
+    "entities.ods": lambda: made.zipped({"content.xml": ODS_LAUGHS}),
+    "wide.ods": lambda: made.zipped({"content.xml": ODS.format(rows=1, columns=10**8).encode()}),
+    "long.ods": lambda: made.zipped({"content.xml": ODS.format(rows=10**8, columns=9).encode()}),
+    "a million cells.ods": lambda: made.zipped(
+        {"content.xml": b"<x>" + b"<c/>" * 500_000 + b"</x>"}
+    ),
+    "tables in tables.ods": lambda: made.zipped(
         {"content.xml": b"<x>" + b"<table>" * 150 + b"<table-row/>" * 50_000 + b"</table>" * 150}
     ),
-    "entities.docx": made.zipped({"word/document.xml": ODS_LAUGHS}),
-    "laughs.docx": made.zipped({"word/document.xml": BILLION_LAUGHS.encode()}),
-    "laughs in UTF-16.docx": made.zipped({"word/document.xml": BILLION_LAUGHS.encode("utf-16")}),
-    "outside.docx": made.zipped({"word/document.xml": OUTSIDE + b"<a>&b;</a>"}),
-    "macros.docx": made.zipped({"word/document.xml": b"<w/>", "word/vbaProject.bin": b"x"}),
-    "a million cells.docx": made.zipped(
+    "entities.docx": lambda: made.zipped({"word/document.xml": ODS_LAUGHS}),
+    "laughs.docx": lambda: made.zipped({"word/document.xml": BILLION_LAUGHS.encode()}),
+    "laughs in UTF-16.docx": lambda: made.zipped(
+        {"word/document.xml": BILLION_LAUGHS.encode("utf-16")}
+    ),
+    "outside.docx": lambda: made.zipped({"word/document.xml": OUTSIDE + b"<a>&b;</a>"}),
+    "macros.docx": lambda: made.zipped({"word/document.xml": b"<w/>", "word/vbaProject.bin": b"x"}),
+    "a million cells.docx": lambda: made.zipped(
         {"word/document.xml": WORD_START + b"<w:p/>" * 300_000 + b"</w:body></w:document>"}
     ),
-    "deep.docx": made.zipped({"word/document.xml": b"<w>" * 100_000}),
-    "deep and closed.docx": made.zipped({"word/document.xml": b"<w>" * 29_000 + b"</w>" * 29_000}),
-    "deep.ipynb": b'{"nbformat": 4, "cells": ' + b"[" * 100_000,
-    "wrong.ipynb": b'{"nbformat": 4, "cells": [{"cell_type": 1, "source": {"a": 1}}]}',
-    "open.rtf": b"{\\rtf1" + b"{" * 25_000,
-    "a million cells.rtf": b"{\\rtf1" + b"\\intbl 1\\cell " * 500_000 + b"}",
-    "braces.rtf": b"{\\rtf1" + b"{}" * 3 * MILLION + b"}",
-    "nearly a picture.rtf": b"{\\rtf1 " + (b"a" * 399 + b"g") * 20_000 + b"}",
-    "not.rtf": b"a, b",
-    "empty.html": b"<p>&nbsp;</p>",
-    "a million cells.html": b"<table><tr>" + b"<td>1" * MILLION,
-    "deep.html": b"<div>" * MILLION,
-    "entities.html": b"&lt;" * MILLION,
-    "openings.html": b"<" * 8 * MILLION,
-    "a million cells.ipynb": b'{"nbformat": 4, "cells": [' + b"1, " * MILLION + b"1]}",
+    "deep.docx": lambda: made.zipped({"word/document.xml": b"<w>" * 100_000}),
+    "deep and closed.docx": lambda: made.zipped(
+        {"word/document.xml": b"<w>" * 29_000 + b"</w>" * 29_000}
+    ),
+    "deep.ipynb": lambda: b'{"nbformat": 4, "cells": ' + b"[" * 100_000,
+    "wrong.ipynb": lambda: b'{"nbformat": 4, "cells": [{"cell_type": 1, "source": {"a": 1}}]}',
+    "open.rtf": lambda: b"{\\rtf1" + b"{" * 25_000,
+    "a million cells.rtf": lambda: b"{\\rtf1" + b"\\intbl 1\\cell " * 500_000 + b"}",
+    "braces.rtf": lambda: b"{\\rtf1" + b"{}" * 3 * MILLION + b"}",
+    "nearly a picture.rtf": lambda: b"{\\rtf1 " + (b"a" * 399 + b"g") * 20_000 + b"}",
+    "not.rtf": lambda: b"a, b",
+    "empty.html": lambda: b"<p>&nbsp;</p>",
+    "a million cells.html": lambda: b"<table><tr>" + b"<td>1" * MILLION,
+    "deep.html": lambda: b"<div>" * MILLION,
+    "entities.html": lambda: b"&lt;" * MILLION,
+    "openings.html": lambda: b"<" * 8 * MILLION,
+    "a million cells.ipynb": lambda: b'{"nbformat": 4, "cells": [' + b"1, " * MILLION + b"1]}",
 }
 
 
@@ -367,7 +385,7 @@ def test_a_hostile_file_is_refused_at_once(name: str) -> None:
     ending = f".{name.rpartition('.')[2]}"
     if ending in FIRST:
         excerpts(FIRST[ending](RIGHT), ending)
-    seconds, found = seconds_to_read(HOSTILE[name], ending)
+    seconds, found = seconds_to_read(HOSTILE[name](), ending)
     assert found == () or name == "open.rtf"
     assert seconds < MOST_SECONDS
 
@@ -472,3 +490,139 @@ def test_text_in_another_encoding_is_not_guessed(encoding: str, text: str) -> No
 )  # fmt: skip
 def test_text_in_windows_1252_is_read(text: str) -> None:
     assert decoded(text.encode("cp1252")) == text
+
+
+# --- A value in merged cells is in each row and column that they cover, as people read it
+
+# The first row and column, and the last.
+Area = tuple[int, int, int, int]
+# The zeros of α and d, below the headers, and those of d and θ in the last row.
+ZEROS: Final[list[Area]] = [(1, 1, 3, 1), (1, 2, 3, 2), (4, 1, 4, 3)]
+
+
+def covered(areas: list[Area]) -> set[tuple[int, int]]:
+    return {
+        (i, j)
+        for top, left, bottom, right in areas
+        for i in range(top, bottom + 1)
+        for j in range(left, right + 1)
+        if (i, j) != (top, left)
+    }
+
+
+def xlsx_merged(rows: Rows, areas: list[Area]) -> bytes:
+    book = openpyxl.load_workbook(io.BytesIO(xlsx(rows)))
+    for top, left, bottom, right in areas:
+        book.active.merge_cells(None, top + 1, left + 1, bottom + 1, right + 1)
+    written = io.BytesIO()
+    book.save(written)
+    return written.getvalue()
+
+
+def xls_merged(rows: Rows, areas: list[Area]) -> bytes:
+    book = xlwt.Workbook()
+    sheet = book.add_sheet("Sheet1")
+    firsts = {(top, left): (bottom, right) for top, left, bottom, right in areas}
+    for i, row in enumerate(rows):
+        for j, cell in enumerate(row):
+            if (i, j) in firsts:
+                bottom, right = firsts[i, j]
+                sheet.write_merge(i, bottom, j, right, cell)
+            elif (i, j) not in covered(areas):
+                sheet.write(i, j, cell)
+    written = io.BytesIO()
+    book.save(written)
+    return written.getvalue()
+
+
+def ods_merged(rows: Rows, areas: list[Area]) -> bytes:
+    book = OpenDocumentSpreadsheet()
+    table = Table(name="Sheet1")
+    firsts = {(top, left): (bottom, right) for top, left, bottom, right in areas}
+    for i, row in enumerate(rows):
+        line = TableRow()
+        for j, cell in enumerate(row):
+            if (i, j) in covered(areas):
+                line.addElement(CoveredTableCell())
+                continue
+            bottom, right = firsts.get((i, j), (i, j))
+            entry = TableCell(
+                valuetype="string",
+                numberrowsspanned=bottom - i + 1,
+                numbercolumnsspanned=right - j + 1,
+            )
+            entry.addElement(P(text=str(cell)))
+            line.addElement(entry)
+        table.addElement(line)
+    book.spreadsheet.addElement(table)
+    written = io.BytesIO()
+    book.save(written)
+    return written.getvalue()
+
+
+def docx_merged(rows: Rows, areas: list[Area]) -> bytes:
+    document = docx.Document()
+    table = document.add_table(len(rows), len(rows[0]))
+    for i, row in enumerate(rows):
+        for j, cell in enumerate(row):
+            if (i, j) not in covered(areas):
+                table.cell(i, j).text = str(cell)
+    for top, left, bottom, right in areas:
+        table.cell(top, left).merge(table.cell(bottom, right))
+    written = io.BytesIO()
+    document.save(written)
+    return written.getvalue()
+
+
+MADE: Final[dict[str, Callable[[Rows, list[Area]], bytes]]] = {
+    ".xlsx": xlsx_merged,
+    ".xls": xls_merged,
+    ".ods": ods_merged,
+    ".docx": docx_merged,
+}
+
+
+@pytest.mark.parametrize("ending", MADE)
+def test_a_value_in_merged_cells_is_in_each_of_them(tmp_path: Path, ending: str) -> None:
+    found = grade_files(tmp_path, {f"table{ending}": MADE[ending](RIGHT, ZEROS)})
+    assert (found.problems, found.points) == ((), 8)
+
+
+@pytest.mark.parametrize("ending", MADE)
+def test_a_wrong_value_in_merged_cells_is_wrong_in_each(tmp_path: Path, ending: str) -> None:
+    wrong: Rows = [*RIGHT[:1], [0, 1.5, 0, "q1"], *RIGHT[2:]]
+    found = grade_files(tmp_path, {f"table{ending}": MADE[ending](wrong, ZEROS[:2])})
+    [part] = found.files[0].report.parts
+    verdicts = [[cell.verdict for cell in row.cells][1] for row in part.rows]
+    assert verdicts == ["incorrect", "incorrect", "incorrect", "correct"]
+
+
+@pytest.mark.parametrize("ending", MADE)
+def test_a_title_in_merged_cells_is_no_value(tmp_path: Path, ending: str) -> None:
+    titled: Rows = [["Table", "", "", ""], *RIGHT]
+    content = MADE[ending](titled, [(0, 0, 0, 3), *((a + 1, b, c + 1, d) for a, b, c, d in ZEROS)])
+    assert excerpts(content, ending)[0].text.splitlines()[0].split() == ["Table"]
+    found = grade_files(tmp_path, {f"table{ending}": content})
+    assert (found.problems, found.points) == ((), 8)
+
+
+def test_headers_in_merged_cells_stay_one_row(tmp_path: Path) -> None:
+    rows: Rows = [["a", "alpha", "d", "theta"], ["", "(rad)", "", "(rad)"], *RIGHT[1:]]
+    content = xlsx_merged(rows, [(0, 0, 1, 0), (0, 2, 1, 2)])
+    found = grade_files(tmp_path, {"table.xlsx": content})
+    assert (found.problems, found.points) == ((), 8)
+
+
+def test_a_sheet_with_many_merged_cells_is_refused_at_once() -> None:
+    # Each of the areas has all cells that a sheet may have.
+    book = openpyxl.load_workbook(io.BytesIO(xlsx([*RIGHT, *[["1"]] * 490])))
+    for _ in range(2_000):
+        book.active.merged_cells.ranges.add(openpyxl.worksheet.merge.MergedCellRange(
+            book.active, f"A{len(book.active.merged_cells.ranges) + 1}:BL500",
+        ))  # fmt: skip
+        if len(book.active.merged_cells.ranges) >= 400:
+            break
+    written = io.BytesIO()
+    book.save(written)
+    with pytest.raises(UnusableFileError, match="more than a hand-in needs"):
+        excerpts(written.getvalue(), ".xlsx")

@@ -12,8 +12,7 @@ from dh_grader.variants.deployment import (
     with_deployed,
 )
 
-from tests.variants.shipped import shipped
-from tests.variants.varied_files import VARY, varied, varied_text
+from tests.variants.varied_files import VARY, shipped, varied, varied_text
 
 
 def test_deployed_variants_are_different_and_equally_hard() -> None:

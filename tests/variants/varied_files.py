@@ -1,8 +1,10 @@
-"""Exercise files with variants, for tests."""
+"""Exercises with variants, for tests."""
 
 from pathlib import Path
 
-from dh_grader.catalogue import Exercise, read_exercise
+from dh_grader.catalogue import Exercise, load_exercise, read_exercise, shipped_folder
+
+# --- Exercise files with variants, for tests
 
 VARY = """
 a1 = [0.3, 0.4, 0.5]
@@ -46,3 +48,13 @@ def varied_text(vary: str = VARY, more: str = "") -> str:
 
 def varied(vary: str = VARY, more: str = "", name: str = "arm") -> Exercise:
     return read_exercise(Path(f"{name}.toml"), varied_text(vary, more))
+
+
+# --- The shipped exercises that have variants
+
+VARIED = ("planar-rr-numbers", "elbow-directions", "vertical-axes")
+
+
+def shipped(name: str) -> Exercise:
+    """Return a shipped exercise."""
+    return load_exercise(shipped_folder() / f"{name}.toml")

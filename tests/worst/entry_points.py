@@ -27,8 +27,8 @@ from dh_grader.submissions.files import all_handed_in
 from fastapi import FastAPI
 from rich.console import Console
 
-from tests.attempts.databases import new_file
 from tests.benchmarks.floors import stanford_pose
+from tests.store.databases import new_file
 
 GRADE, ATTEMPTS, PREVIEW, FILE = "grade", "attempts", "preview", "file"
 PREVIEWS, FRAMES = "many-previews", "frames"

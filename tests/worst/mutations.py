@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
-from tests.grids.writers import FORMATS
+from tests.pasting.writers import FORMATS
 from tests.worst.entry_points import FRAMES, PREVIEW, PREVIEWS, SUBMITTED, Attack
 from tests.worst.seeds import NESTING, RUNS, runs
 

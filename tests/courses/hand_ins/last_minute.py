@@ -25,7 +25,6 @@ from typing import Final
 from dh_grader.courses.gradebook import gradebook
 from dh_grader.store.database import open_database
 
-from tests.attempts.databases import KINDS
 from tests.courses.hand_ins.class_of_learners import (
     COURSE,
     SECRET,
@@ -38,6 +37,7 @@ from tests.courses.hand_ins.class_of_learners import (
 from tests.load.__main__ import database, misrecorded
 from tests.load.wrong_answers import tables
 from tests.server.raw import service
+from tests.store.databases import KINDS
 
 EXERCISES: Final = ("planar-rrr", "spherical-wrist", "stanford-arm")
 # The last of them hands in one second before the due date.

@@ -6,10 +6,10 @@ from pathlib import Path
 
 import pytest
 
-from tests.attempts.databases import KINDS
 from tests.courses.hand_ins.kills import killed
 from tests.courses.hand_ins.last_minute import last_minute
 from tests.guards import ANSWER
+from tests.store.databases import KINDS
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="needs many loopback addresses")
 

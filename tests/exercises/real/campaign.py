@@ -15,7 +15,7 @@ from dh_grader.catalogue.kinds import DhTableSpec
 from tests.frame_choice import oracle
 from tests.frame_choice.generator import Table, reassignment
 from tests.frame_choice.robots import POLICIES, Policy, Robot
-from tests.frame_choice.rows.shipped_robots import robot_of
+from tests.frame_choice.rows.student_rows import robot_of
 from tests.frame_choice.trials import CrashError, equivalent, graded, one_slip
 from tests.shipped import shipped_exercises
 

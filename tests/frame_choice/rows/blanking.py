@@ -22,8 +22,8 @@ from tests.frame_choice import misconceptions
 from tests.frame_choice.generator import reassignment
 from tests.frame_choice.robots import POLICIES, Policy, Robot, conventions, exercise
 from tests.frame_choice.rows.one_row import UNSEEN, all_robots
-from tests.frame_choice.rows.shipped_robots import shipped_robots
-from tests.frame_choice.rows.student_rows import Texts, wrong_row
+from tests.frame_choice.rows.student_rows import StudentRowsTexts as Texts
+from tests.frame_choice.rows.student_rows import shipped_robots, wrong_row
 from tests.frame_choice.trials import grade_rows
 
 # The largest share of tries that may raise the points; the aim is 0.

@@ -13,7 +13,7 @@ import numpy as np
 
 from tests.frame_choice.robots import ALPHA, MODIFIED, POLICIES, STANDARD, THETA, A, Robot
 from tests.frame_choice.rows.blanking import MOST, Found, judge
-from tests.frame_choice.rows.student_rows import Texts
+from tests.frame_choice.rows.student_rows import StudentRowsTexts as Texts
 
 LINKS = (("0", "pi/2"), ("0", "-pi/2"), ("0", "0"), ("b1", "0"), ("b2", "0"), ("0.35", "pi/2"))
 OFFSETS = ("0", "0", "b3", "0.42")

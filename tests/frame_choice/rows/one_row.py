@@ -31,9 +31,8 @@ from tests.frame_choice.robots import (
     conventions,
     exercise,
 )
-from tests.frame_choice.rows.shipped_robots import shipped_robots
-from tests.frame_choice.rows.student_rows import Texts, wrong_row
-from tests.frame_choice.rows.true_numbers import is_valid_when_rounded
+from tests.frame_choice.rows.student_rows import StudentRowsTexts as Texts
+from tests.frame_choice.rows.student_rows import is_valid_when_rounded, shipped_robots, wrong_row
 from tests.frame_choice.trials import grade_rows
 from tests.frame_choice.unseen import random_robot
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 from tests.frame_choice.robots import GIVEN, MODIFIED, POLICIES, STANDARD, Policy, Robot
-from tests.frame_choice.rows.student_rows import Texts
+from tests.frame_choice.rows.student_rows import StudentRowsTexts as Texts
 
 _SEVEN = tuple(f"q{i}" for i in range(1, 8))
 _FREE_DIRECTIONS = next(policy for policy in POLICIES if policy.name == "free directions")

@@ -8,8 +8,8 @@ from tests.frame_choice.robots import GIVEN, POLICIES, Policy, Robot, exercise
 from tests.frame_choice.rows import careless
 from tests.frame_choice.rows.blanking import run
 from tests.frame_choice.rows.other_readings import OTHER_READINGS, OtherReading
-from tests.frame_choice.rows.shipped_robots import shipped_robots
-from tests.frame_choice.rows.student_rows import Texts
+from tests.frame_choice.rows.student_rows import StudentRowsTexts as Texts
+from tests.frame_choice.rows.student_rows import shipped_robots
 from tests.frame_choice.trials import grade_rows
 
 EACH = 6

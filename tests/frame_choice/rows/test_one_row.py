@@ -15,8 +15,7 @@ from tests.frame_choice.rows.one_row import (
     run,
     total,
 )
-from tests.frame_choice.rows.shipped_robots import shipped_robots
-from tests.frame_choice.rows.true_numbers import is_valid_when_rounded
+from tests.frame_choice.rows.student_rows import is_valid_when_rounded, shipped_robots
 from tests.frame_choice.trials import grade_rows
 from tests.grading.support.submitting import graded_table, not_correct
 

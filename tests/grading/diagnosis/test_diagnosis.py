@@ -1,4 +1,4 @@
-"""Every misconception is used, and its examples are correct."""
+"""Test the records of all misconceptions."""
 
 import subprocess
 import sys
@@ -10,11 +10,20 @@ import pytest
 from dh_grader.grading import misconception as engine
 from dh_grader.grading.diagnosis.lists import WrongPosition
 from dh_grader.grading.diagnosis.slips_of_the_table import Slip
-from dh_grader.grading.misconception import Record, Written, all_records, records_of, register
+from dh_grader.grading.misconception import (
+    Record,
+    Written,
+    all_records,
+    axes_of_row,
+    records_of,
+    register,
+)
 from dh_grader.kinematics import Numbers
 
 from tests.grading.diagnosis.traces import Trace, trace_of
 from tests.together import together
+
+# --- Every misconception is used, and its examples are correct
 
 NAMED = [record for record in all_records() if record.codes]
 WITHOUT_CODE = [record for record in all_records() if record.function and not record.codes]
@@ -78,7 +87,7 @@ def test_no_two_records_of_a_kind_have_one_rank() -> None:
 
 @pytest.mark.long
 @pytest.mark.parametrize(
-    "first", ["judging.own_frames.written_table", "diagnosis.upstream.slip_kinds", "kinds.position"]
+    "first", ["frames.nearest", "diagnosis.slips_of_the_table", "kinds.matrices"]
 )
 def test_the_order_of_imports_changes_no_record(first: str) -> None:
     program = (
@@ -157,3 +166,20 @@ def test_a_record_that_explains_its_counterexample_is_named() -> None:
 @pytest.mark.usefixtures("known")
 def test_a_correct_record_is_not_named() -> None:
     assert complaint_about_signs(WrongPosition, 5, -1) == ""
+
+
+# --- Test phrases that several kinds of messages contain
+
+
+@pytest.mark.parametrize(
+    ("label", "axes"),
+    [
+        ("1", "z0 and z1"),
+        ("4", "z3 and z4"),
+        ("e", "z6 and the last z axis"),
+        ("e2", "the two z axes"),
+        ("", "the two z axes"),
+    ],
+)
+def test_the_axes_of_a_row_are_named(label: str, axes: str) -> None:
+    assert axes_of_row("z", label, last=6) == axes

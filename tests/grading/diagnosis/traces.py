@@ -17,7 +17,7 @@ from dh_grader.grading import FeedbackLevel, Submission, grade
 from dh_grader.grading.misconception import Hypothesis, Record
 from dh_grader.solutions import solve
 
-from tests.grading.support.exercise_texts import all_codes
+from tests.grading.support.submitting import all_codes
 from tests.shipped import shipped_exercises
 
 END = " ↵ "

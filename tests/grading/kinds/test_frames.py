@@ -9,9 +9,15 @@ import pytest
 from dh_grader.catalogue import Exercise, FeedbackLevel
 from dh_grader.grading import PartReport, Verdict
 
-from tests.grading.support.exercise_texts import Make, all_codes
 from tests.grading.support.placing import broken, drawn_arm, drawn_frames, home_of, is_valid
-from tests.grading.support.submitting import full_marks, handed_in, not_correct, part
+from tests.grading.support.submitting import (
+    Make,
+    all_codes,
+    full_marks,
+    handed_in,
+    not_correct,
+    part,
+)
 
 # The campaign: 200 robots with 100 valid and 100 broken placements each.
 ROBOTS, PLACEMENTS, TABLES, SAMPLE = 200, 100, 20, 4

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 from typing import Any
 
-from tests.grading.support.exercise_texts import one_part
+from tests.grading.support.submitting import one_part
 
 TURN = [["1", "0", "0"], ["0", "0", "-1"], ["0", "1", "0"]]
 TURNED_BACK = [["1", "0", "0"], ["0", "0", "1"], ["0", "-1", "0"]]

@@ -21,12 +21,12 @@ from typing import Final
 
 import numpy as np
 
-from tests.attempts.databases import new_file
 from tests.guards import ANSWER
 from tests.load.sizing.deadline import Costs, Numbers, most_students, waits
 from tests.load.wrong_answers import Body, in_process, tables
 from tests.server.raw import Service, service
 from tests.shipped import shipped_exercises
+from tests.store.databases import new_file
 
 PROCESSES: Final = (1, 2, 8)
 P99: Final = 1.0

@@ -28,11 +28,11 @@ from dh_grader.store.database import in_transaction, open_database
 from rich.console import Console
 
 from tests.access.kept_services import SECRET_TEXT
-from tests.attempts.databases import KINDS
 from tests.guards import ANSWER
 from tests.load.__main__ import database
 from tests.lti.platform import Platform, running
 from tests.server.raw import Service, service
+from tests.store.databases import KINDS
 
 show = Console(highlight=False, soft_wrap=True).print
 # The most processor time from the login to the first view (seconds).
