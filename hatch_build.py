@@ -18,7 +18,7 @@ class CompiledCatalogues(BuildHookInterface[Any]):
             return
         translations = Path(self.root, "service", "dh_grader", "translations")
         # The build environment has no package that the program needs.
-        compiled = runpy.run_path(str(translations / "catalogues.py"))["compiled_catalogue"]
+        compiled = runpy.run_path(str(translations / "__init__.py"))["compiled_catalogue"]
         self._folder = tempfile.mkdtemp()
         for text in sorted(translations.glob("*/*.po")):
             name = f"{text.parent.name}/{text.stem}.mo"

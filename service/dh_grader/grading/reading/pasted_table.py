@@ -531,10 +531,7 @@ def _columns_by_headers(
     if missing:
         message = say(
             "No header is {parameters}. A DH table has the columns a, α, d and θ.",
-            parameters=reduce(
-                lambda first, second: say("{first} or {second}", first=first, second=second),
-                missing,
-            ),
+            parameters=reduce(_either, missing),
         )
         raise GridError("missing_header", message, place_of(row))
     named = tuple((places[column], _header(found, places[column])) for column in COLUMNS)
@@ -545,6 +542,10 @@ def _columns_by_headers(
     if labels is None and found[0] is None:
         labels = 0
     return columns, labels, (*_on_columns(row, found), *_convention_hint(row, columns))
+
+
+def _either(first: str, second: str) -> str:
+    return say("{first} or {second}", first=first, second=second)
 
 
 def _check_names(row: Sequence[GridCell], places: Mapping[str, int]) -> None:
