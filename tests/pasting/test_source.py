@@ -52,6 +52,10 @@ def test_an_empty_line_is_only_layout() -> None:
         (",".join("1" * (GRID_LIMITS.columns + 1)), "too_many_columns"),
         (" ".join("1" * 100) + "\n" + " ".join("1" * 100), "too_many_columns"),
         ("a,b\n" + "," * GRID_LIMITS.separators, "too_many_cells"),
+        # Signs of Chinese keyboards separate cells, too.
+        ("a,b\n" + "，" * GRID_LIMITS.separators, "too_many_cells"),
+        ("1；2\n" * 20 + "；" * GRID_LIMITS.separators, "too_many_cells"),
+        ("｜1" * (GRID_LIMITS.separators + 1), "too_many_cells"),
         ("a,b\n" + " " * GRID_LIMITS.characters, "too_long"),
     ],
 )

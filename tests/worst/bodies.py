@@ -65,6 +65,7 @@ _PASTED: Final[Mapping[str, str]] = {
     "slashes in a list": run("a = [1]; alpha = [2]; d = [3]; theta=[", "/"),
     "dollars in quotes": run("'", "$", "'"),
     "short words in brackets": run("[", "a1 ", "]"),
+    "commas of a Chinese keyboard": run("", "1" + "，" * 20 + "\n"),
 }
 
 # A text that may be several answers, in each part; what stands below its rows is read with them.

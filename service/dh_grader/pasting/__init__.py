@@ -202,7 +202,8 @@ def _limited(text: str) -> SourceText:
         source = source.cut(separator.end(), len(source.text))
     if not source.text.strip():
         raise GridError("empty", say("Nothing is written here."), (0, len(text)))
-    if sum(map(text.count, _SEPARATORS)) - text.count(_THIN_SPACE) > GRID_LIMITS.separators:
+    separators = sum(map(plain.text.count, _SEPARATORS)) - plain.text.count(_THIN_SPACE)
+    if separators > GRID_LIMITS.separators:
         raise too_many_cells((0, len(text)))
     return with_own_symbols(without_docstrings(source))
 
