@@ -139,9 +139,11 @@ def test_the_worksheet_is_filled_and_a_download_in_a_zip_file_is_found(
     page.get_by_label("Worksheet, if you have one").set_input_files(sheet)
     told = page.get_by_role("list", name="Worksheet").get_by_role("listitem")
     expect(told.first).to_have_text(
-        "Grades filled in: 2. Already the same: 0. Left for grading by hand: 0."
+        "Grades filled in: 2. Already the same: 0. Left for grading by hand: 1."
     )
-    expect(told).to_have_count(2)
+    expect(told).to_have_count(3)
+    expect(told.nth(1)).to_contain_text("Ben Out_1236_assignsubmission_file/x.csv is in no row")
+    expect(told.nth(2)).to_contain_text("file that was not read, such as a photo")
     filled = saved(page, "Filled worksheet", tmp_path)
     assert filled.name == "Grades 3-graded.csv"
     with filled.open(encoding="utf-8", newline="") as opened:
