@@ -65,7 +65,6 @@ _PASTED: Final[Mapping[str, str]] = {
     "slashes in a list": run("a = [1]; alpha = [2]; d = [3]; theta=[", "/"),
     "dollars in quotes": run("'", "$", "'"),
     "short words in brackets": run("[", "a1 ", "]"),
-    "commas of a Chinese keyboard": run("", "1" + "，" * 20 + "\n"),
 }
 
 # A text that may be several answers, in each part; what stands below its rows is read with them.
@@ -92,6 +91,8 @@ KNOWN: Final[Mapping[str, Attack]] = {
     "cells that nearly repair, in several parts": _graded(pose=_HALVES, links=[_HALVES] * 6),
     "a grid of cells that nearly repair": _previewed("\n".join(map(", ".join, grid(8, 4))), "pose"),
     "links padded with dollars": _graded(table=[["0"] * 4] * 6, links=padded(24)),
+    # Each such comma has three bytes, so one part is all that a body holds.
+    "commas of a Chinese keyboard": _graded(table=run("", "1" + "，" * 20 + "\n", size=19_000)),
     "links and a pose of brackets": _graded(links="(" * 2_400, pose="[" * 2_400),
     "many cells that each nearly repair": _graded(table={"rows": _REPAIRS}),
     "constants to be computed": _graded(pose=[["sind(30)" * 100 + f"+{i}"] * 4 for i in range(4)]),
