@@ -42,7 +42,7 @@ GRADING: Final = (
 
 # Ceilings, which may only fall: a change that lowers a number lowers it here, too. Only a new
 # feature may raise the number of lines, by what its commit states.
-LINES: Final = 96_262
+LINES: Final = 96_263
 FILES: Final = 198  # the goal is 175
 PARAMETERS_IN_GRADING: Final = 20  # functions of grading with more than five; the goal is none
 EXAMPLES_IN_RECORDS: Final = 345  # test data beside the misconceptions; the goal is none
